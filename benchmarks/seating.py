@@ -59,7 +59,7 @@ def seconds(name: str, pitch: float, columns: int, peg_radius: float, many: int)
     """Task: the best fixtures' seatings, kernels compiled and loaded: seconds of one thread and of two, of cage and placing
     of one fixture, the number of patterns and of seats on average."""
     import workhold
-    from workhold.seating.seating import Solver
+    from workhold.seating.solver import Solver
 
     part = workhold.Workpiece.from_loops(name, NOTCH) if name == "notch" else workhold.load(source(name))
     vise = workhold.Vise(pitch=pitch, columns=columns, peg_radius=peg_radius)

@@ -48,7 +48,7 @@ def get_requires_for_build_wheel(config_settings: Any = None) -> list[str]:
 
 
 def build_wheel(wheel_directory: str, config_settings: Any = None, metadata_directory: str | None = None) -> str:
-    """Build a wheel with the kernels of these sources in it."""
+    """Builds a wheel with the kernels of these sources in it."""
     if is_pure():
         return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
     build(SOURCES / "workhold" / "kernels")

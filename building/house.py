@@ -76,10 +76,13 @@ def raised(places: Places, record: Counts, rules: Sequence[Rule]) -> list[str]:
 
 def check(root: Path) -> int:
     """Says which counts have risen and which subjects of commits are too long; 1 where there are any."""
-    offences = [*raised(places_of(root), read_record(root), rules_of(root)), *long_subjects(root, RECORD)]
+    places, recorded = places_of(root), read_record(root)
+    offences = [*raised(places, recorded, rules_of(root)), *long_subjects(root, RECORD)]
     sys.stdout.write("".join(f"{sentence}\n" for sentence in offences))
     if not offences:
-        sys.stdout.write("The house is no worse than recorded.\n")
+        fallen = counts_of(places) != recorded
+        lower = " Some counts have fallen: write them down with `record`." if fallen else ""
+        sys.stdout.write(f"The house is no worse than recorded.{lower}\n")
     return int(bool(offences))
 
 

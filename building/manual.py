@@ -1,7 +1,7 @@
 """What the manual's site takes from the code as it is built: a hook of MkDocs.
 
 A line ``::: workhold`` on a page becomes what the docstrings of all public names say, with their signatures and, of classes,
-their public members; a line ``::: commands`` becomes the help of every command.
+their public members. A line ``::: commands`` becomes the help of every command.
 """
 
 from __future__ import annotations

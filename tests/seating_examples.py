@@ -18,8 +18,8 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, 
 from workhold.kernels.seating.columns import CONFIG, HOLDING, PEG, PIECE
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
-from workhold.seating.holdings import Holdings
-from workhold.seating.seating import Solver
+from workhold.seating.solver import Solver
+from workhold.seating.two_contact_curves import TwoContactCurves
 
 Array = NDArray[np.float64]
 SAMPLED = json.loads((Path(__file__).parent / "data" / "seating" / "sampled.json").read_text())["cases"]
@@ -176,7 +176,7 @@ def closed(obstacle: Obstacle, config: Array, size: float, stop: float) -> Array
     return config
 
 
-def cells_by_holding(holdings: Holdings, right: int) -> tuple[Array, Array]:
+def cells_by_holding(holdings: TwoContactCurves, right: int) -> tuple[Array, Array]:
     """The cells of one jaw's holdings and their middles, heights from its own first peg."""
     known, before, _ = holdings.jaws[right]
     cells = np.array(known.cells)

@@ -24,7 +24,7 @@ from workhold.version import __version__
 
 ROOT = Path(__file__).parent.parent
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").glob("*.md"))]
-# How a library that is missing is told.
+# What says that a library is missing.
 OPTIONAL = (ModuleNotFoundError, InputError)
 
 
@@ -67,6 +67,17 @@ def test_every_benchmark_has_a_place_on_the_page() -> None:
     sections = {name for path in scripts for name in re.findall(r'Section\(\s*"([a-z-]+)"', path.read_text())}
     places = re.findall(r"<!-- figures: (\S+) -->", (ROOT / "docs" / "benchmarks.md").read_text())
     assert sorted(places) == sorted(sections | {"machine", "plot", "targets"})
+
+
+def test_each_term_with_a_source_has_one() -> None:
+    """The terms of the glossary's sources are named once each, with a year or the paper."""
+    text = (
+        (ROOT / "docs" / "glossary.md").read_text().partition("## Where the terms come from")[2].partition("\n## ")[0]
+    )
+    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", text, flags=re.M)[2:]
+    terms = [term for names, _ in rows for term in names.split(", ")]
+    assert len(terms) == len(set(terms)) > 20
+    assert all(re.search(r"\b(?:18|19|20)\d\d\b", source) or source == "the paper" for _, source in rows)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -118,7 +129,7 @@ def test_the_stations_of_the_walk_are_in_the_picture() -> None:
 
 
 def test_what_is_to_be_cited_is_this_version() -> None:
-    """CITATION.cff is a form of version 1.2, names the version of the sources and tells the paper."""
+    """CITATION.cff is a form of version 1.2, names the version of the sources and names the paper."""
     cited = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert {"cff-version", "message", "title", "authors"} <= cited.keys()
     assert cited["cff-version"] == "1.2.0"
@@ -127,7 +138,7 @@ def test_what_is_to_be_cited_is_this_version() -> None:
     assert cited["references"][0]["title"] == "Modular Fixture Design for Generalized Polyhedra"
 
 
-def test_the_columns_told_are_those_written() -> None:
+def test_the_columns_listed_are_those_written() -> None:
     """Each has a row with its kind of number and its shape; what a fixture takes is the sum."""
     page = (ROOT / "docs" / "columns.md").read_text()
     for name, column in COLUMNS.items():
@@ -137,13 +148,13 @@ def test_the_columns_told_are_those_written() -> None:
     assert f"{one} bytes a fixture, {two} with two clamps" in page
 
 
-def test_the_smallest_toolkit_is_as_small_as_told() -> None:
+def test_the_smallest_toolkit_is_as_small_as_stated() -> None:
     """Its lines are counted, those of the words about it too, and none of the others has fewer."""
     lines = {one: len(inspect.getsource(one).splitlines()) for one in KINDS.values()}
     page = (ROOT / "docs" / "adding-a-toolkit.md").read_text()
     assert min(lines, key=lambda one: lines[one]) is OpeningVise
-    told = (f"## The smallest: {lines[OpeningVise]} lines", f"it has {lines[OpeningVise]} lines")
-    assert all(words in page for words in told)
+    stated = (f"## The smallest: {lines[OpeningVise]} lines", f"it has {lines[OpeningVise]} lines")
+    assert all(words in page for words in stated)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -249,6 +249,12 @@ def test_equal_counts_pass(project: Path, capsys: pytest.CaptureFixture[str]) ->
     assert capsys.readouterr().out == "The house is no worse than recorded.\n"
 
 
+def test_a_fallen_count_passes_and_is_to_be_recorded(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(project, "a = 1\n")
+    assert house.check(project) == 0
+    assert "write them down" in capsys.readouterr().out
+
+
 def test_a_raised_count_is_one_sentence_with_place_and_remedy(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -16,7 +16,7 @@ SOURCES = Path(__file__).parent.parent / "src" / "workhold"
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
 # What is part of the command line: the commands, and the starting of the server for one.
 OF_THE_COMMAND = {"__main__.py", "web/serve.py"}
-# Commands to be typed, quoted as such: another program's, and one that a report tells.
+# Commands to be typed, quoted as such: another program's, and one in a report.
 QUOTED = ("pip install --force-reinstall", "workhold sheet ")
 
 

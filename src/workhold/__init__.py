@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
     from workhold.search.contacts import count_contacts
     from workhold.search.design import answer, design
-    from workhold.seating.seating import seatings
+    from workhold.seating.solver import seatings
 
 __all__ = [
     "Fence",
@@ -89,7 +89,7 @@ HOMES = {
     "open": "workhold.files.result.reader:read_result",
     "polygon_zone": "workhold.model.restrictions",
     "save": "workhold.files.result.save",
-    "seatings": "workhold.seating.seating",
+    "seatings": "workhold.seating.solver",
     "verify": "workhold.completeness",
 }
 

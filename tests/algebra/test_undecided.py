@@ -47,7 +47,7 @@ def test_a_result_without_doubt_has_no_note() -> None:
     assert result.notes == ()
 
 
-def test_a_resultant_that_vanishes_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_resultant_that_vanishes_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four pegs of which two on each jaw are the same: sent past the tests that keep such systems away."""
     coinciding = systems([0, 1, 0, 1], [0, 0, 0, 0], [0, 1, 0, 1])
 

@@ -127,7 +127,7 @@ def test_a_search_loads_nothing_that_it_does_not_need() -> None:
     """Neither ball arithmetic, which searches on fences need, nor what works out seating."""
     words = "import sys; from workhold import Query, Vise, answer, load; "
     words += "answer(Query(load('widget'), Vise(pitch=20, columns=1, peg_radius=3), best=1)); "
-    words += "sys.exit(any(name in sys.modules for name in ('flint', 'workhold.seating.seating')))"
+    words += "sys.exit(any(name in sys.modules for name in ('flint', 'workhold.seating.solver')))"
     assert subprocess.run([sys.executable, "-c", words], capture_output=True, check=False).returncode == 0
 
 

@@ -17,7 +17,7 @@ from workhold.drawing.seating_words import SeatingWords
 from workhold.model.units import INCH, MILLIMETRE
 from workhold.seating.by_hand import WHY
 from workhold.seating.missed import WAS_NOT_FOUND
-from workhold.seating.seating import Solver
+from workhold.seating.solver import Solver
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 

@@ -1,4 +1,4 @@
-"""Chains of chords and arcs that are one line or arc: what becomes one, what stays, and how far off it is told to be."""
+"""Chains of chords and arcs that are one line or arc: what becomes one, what stays, and how far off it is said to be."""
 
 from __future__ import annotations
 

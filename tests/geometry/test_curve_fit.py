@@ -156,7 +156,7 @@ def test_cubics_by_which_programs_write_circles_are_circles(handle: float, digit
 
 
 def test_cubics_with_other_handles_are_no_circle() -> None:
-    """Handles 1 % too long are off by 2.4e-3 radii: another curve, unless it is so small that it cannot be told."""
+    """Handles 1 % too long are off by 2.4e-3 radii: another curve, unless it is so small that nobody could see it."""
     blown = fitted_curve(bezier_circle(50, 1.01 * HANDLE), 0.01)
     assert blown is not None and not blown.is_disguise
     small = fitted_curve(bezier_circle(0.2, 1.01 * HANDLE), 0.01)
@@ -189,7 +189,7 @@ def test_a_line_that_turns_back_is_no_line() -> None:
 
 @pytest.mark.parametrize("fit", [0.2, 0.01, 0.001])
 @pytest.mark.parametrize("shape", ["ellipse", "wave 1", "wave 2", "rational", "closed"])
-def test_biarcs_are_smooth_and_as_near_as_told(fit: float, shape: str) -> None:
+def test_biarcs_are_smooth_and_as_near_as_said(fit: float, shape: str) -> None:
     """Either way no point is farther off than the bound, which points nearly reach; neighbours meet in one direction."""
     closed = [(0.0, 0.0), (50.0, -10.0), (80.0, 20.0), (60.0, 60.0), (-10.0, 30.0)]
     pieces = {
@@ -242,7 +242,7 @@ def test_corners_of_a_curve_stay_corners() -> None:
     fitted = fitted_curve(pieces, 0.05)
     assert fitted is not None
     assert min(dist(point, (30, 0)) for point in fitted.points) < 1e-12
-    # Straight on either side of the corner, so that nothing else tells of it.
+    # Straight on either side of the corner, so that nothing else shows it.
     ahead = polynomial_pieces([(0, 0), (5, 20), (15, 20), (20, 10), (25, 0)])
     aside = polynomial_pieces([(25, 0), (30, -1), (35, -2), (50, 10), (50, 30)])
     straight = fitted_curve(joined_pieces([ahead, aside]), 0.05)
@@ -289,7 +289,7 @@ def test_a_curve_that_turns_back_on_its_circle_is_not_the_arc() -> None:
 
 
 def test_a_cusp_does_not_end_the_fit() -> None:
-    """A curve with a cusp, and one whose handles vanish, are fitted within the tolerance, or told how far off they are."""
+    """A curve with a cusp, and one whose handles vanish, are fitted within the tolerance, or their distance is said."""
     for rows in ([(0, 0), (30, 20), (0, 20), (30, 0)], [(0, 0), (0, 0), (20, 30), (40, 0)]):
         fitted = fitted_curve(polynomial_pieces(rows), 0.01)
         assert fitted is not None and fitted.departure < 0.02

@@ -22,7 +22,7 @@ def edges_of(loop: Loop) -> tuple[HullEdge, ...]:
     return Workpiece.from_loops("part", [loop]).hull_edges
 
 
-def test_pads_on_one_line_are_one_edge_over_the_gap_and_its_ends_are_told_by_the_pads() -> None:
+def test_pads_on_one_line_are_one_edge_over_the_gap_and_its_ends_are_of_the_pads() -> None:
     """Two feet, the arch between them off the line; up to the rounding of a drawing."""
     for off in (0.0, 4e-8, -4e-8):
         feet = [(0, 0, 0), (10, 0, 0), (15, 6, 0), (25, 6, 0), (30, off, 0), (40, off, 0), (40, 20, 0), (0, 20, 0)]
@@ -62,8 +62,8 @@ def test_two_discs_joined_by_a_waist_have_two_edges_from_arc_to_arc() -> None:
         assert edge.height((0.0, 0.0)) == pytest.approx(10.0) and edge.height((40.0, 0.0)) == pytest.approx(4.0)
 
 
-def test_where_a_face_runs_smoothly_into_an_arc_the_face_is_told() -> None:
-    """A slot: two straight sides and two half circles; no edge is told twice."""
+def test_where_a_face_runs_smoothly_into_an_arc_the_face_is_named() -> None:
+    """A slot: two straight sides and two half circles; no edge is listed twice."""
     edges = edges_of([(0, 0, 0), (30, 0, 1), (30, 10, 0), (0, 10, 1)])
     assert [(edge.start.faces, edge.end.faces) for edge in edges] == [((0,), (0,)), ((2,), (2,))]
     assert [edge.length for edge in edges] == [30.0, 30.0]
@@ -96,7 +96,7 @@ def test_they_are_where_the_lowest_point_jumps_as_the_part_turns(count: int, see
         return
     slow = [(angle, left, right) for angle, left, right in orientations(part) if apart(left, right) > 1e-5]
     edges = part.hull_edges
-    # Shorter ones the halving cannot tell from none.
+    # Shorter ones the halving cannot distinguish from none.
     assert sum(edge.length > 1e-5 for edge in edges) == len(slow)
     theta = part.flush.theta
     for angle, left, right in slow:

@@ -35,7 +35,7 @@ def test_a_box_holds_its_arc_and_touches_it_on_all_sides(seed: int) -> None:
 
 
 def test_a_segment_that_lies_in_another_meets_it_at_both_its_ends() -> None:
-    """On one line and on one circle the carriers have no common points to tell of: the ends do, whichever comes first."""
+    """On one line and on one circle the carriers have no common points to list: the ends do, whichever comes first."""
     inner, outer = Line((2.0, 1.0), (5.0, 1.0)), Line((0.0, 1.0), (10.0, 1.0))
     wide, narrow = Arc((0.0, 0.0), 5.0, 1.0, 1.2, 1.0), Arc((0.0, 0.0), 5.0, 0.9, 0.3, -1.0)
     for whole, part in ((outer, inner), (wide, narrow)):

@@ -56,7 +56,7 @@ def test_an_arc_in_pieces_keeps_its_ends() -> None:
 
 
 @pytest.mark.parametrize("off", [5e-6, 1e-4, 1e-2])
-def test_arcs_that_a_drawing_tells_apart_stay(off: float) -> None:
+def test_arcs_that_a_drawing_keeps_apart_stay(off: float) -> None:
     loop = arcs(16, off, 0.3)
     out, changed = on_one_circle(loop, loop_segments(loop))
     assert changed == 0 and (out == loop).all()

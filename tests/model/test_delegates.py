@@ -40,7 +40,7 @@ ORDERS = (
     "workhold.model.fixture",
     "workhold.model.result, workhold.model.workpiece",
     "workhold.presenting.pictures",
-    "workhold.seating.seating",
+    "workhold.seating.solver",
     "workhold.files.result.save",
     "workhold.kernels",
 )

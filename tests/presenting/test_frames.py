@@ -28,7 +28,7 @@ def two_clamps() -> workhold.Result:
 @pytest.mark.parametrize("result", [fake_result(7), two_clamps()], ids=["vise", "two clamps"])
 def test_columns_are_those_of_the_csv_form(result: workhold.Result, monkeypatch: pytest.MonkeyPatch) -> None:
     """Names and values, also over several blocks."""
-    monkeypatch.setattr("workhold.files.result.writer.BLOCK", 3)
+    monkeypatch.setattr("workhold.files.result.fixture_lines.BLOCK", 3)
     rows = list(csv.DictReader(io.StringIO("".join(result_csv_text(result)))))
     columns = columns_of(result)
     assert list(columns) == list(rows[0]) and len(rows) == len(result)

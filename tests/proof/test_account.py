@@ -73,14 +73,14 @@ def test_what_double_precision_leaves_open_is_decided_without_the_families_as_wi
     """Contacts that merge at a fold, as the arcs of this part have, are escalated, and none is left undecided. Those of a
     family that holds nothing need not be, and every stage after agrees that they are no fixtures."""
     part, vise = load("oblongPart"), Vise(pitch=10, columns=2, peg_radius=3)
-    told = design(part, vise)
+    lenient = design(part, vise)
     monkeypatch.setattr(deciding, "hold_nothing", lambda records, _: np.zeros(len(records), np.bool_))
     result = design(part, vise)
     check_account(result)
-    assert result.proof is not None and told.proof is not None
-    assert result.proof.escalated > told.proof.escalated
-    assert evolve(result.proof, escalated=0) == evolve(told.proof, escalated=0)
-    assert np.array_equal(result.table.theta, told.table.theta)
+    assert result.proof is not None and lenient.proof is not None
+    assert result.proof.escalated > lenient.proof.escalated
+    assert evolve(result.proof, escalated=0) == evolve(lenient.proof, escalated=0)
+    assert np.array_equal(result.table.theta, lenient.table.theta)
 
 
 def test_the_algebra_has_an_account_without_cells() -> None:

@@ -1,4 +1,4 @@
-"""Deciding tells how far it is, stops when asked, and then lists nothing that is not decided."""
+"""Deciding reports how far it is, stops when asked, and then lists nothing that is not decided."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Contacts whose wrenches exact lengths make dependent are told from their features and holes, and no others are."""
+"""Contacts whose wrenches exact lengths make dependent are recognized by their features and holes, and no others are."""
 
 from __future__ import annotations
 
@@ -209,7 +209,7 @@ def test_no_proven_fixture_is_of_such_a_family(toolkit: Toolkit, monkeypatch: py
 
 
 def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
-    """A peg in the centre of an arc has no normal, so that nothing can be told of the place; what is around it stays."""
+    """A peg in the centre of an arc has no normal, so that nothing is known of the place; what is around it stays."""
     problem = Problem.of(Query(rod(16, 6, 70, 3.25), Vise(pitch=20, columns=3, peg_radius=3)))
     found: list[Array] = []
     original, rows = deciding.decided, problem.rows
@@ -227,7 +227,7 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
     numbers, pegs = np.nonzero(np.isin(proven[:, FEATURES : FEATURES + 2], small))
     assert len(numbers)
     for row, peg in zip(proven[numbers[:20]], pegs[:20].tolist(), strict=True):
-        solution = told_from(row, peg, 20.0)
+        solution = solved_from(row, peg, 20.0)
         box = solution[None].copy()
         box[0, TAIL_X : TAIL_Y + 1] = rows[int(solution[FEATURES]), [X, Y]]
         box[0, REACH], box[0, LARGEST_RADIUS] = 1e-9, 0.3
@@ -237,7 +237,7 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
         assert len(left) or min(distances, default=1.0) < 1e-9
 
 
-def told_from(row: Array, peg: int, pitch: float) -> Array:
+def solved_from(row: Array, peg: int, pitch: float) -> Array:
     """A record with another standing peg as the first, of a square lattice."""
     out, standing = row.copy(), int(row[STANDING])
     column, line_of = row[COLUMNS + peg], row[ROWS + peg]

@@ -77,9 +77,9 @@ def test_a_row_that_just_grazes_an_arc_is_decided_in_balls() -> None:
         assert all(abs(v - 42.0) > 1e-9 for _, v in tops)
         assert not search.undecided
         laid, standing = search.laid(0), search.problem.standing
-        told = search.on_rows(0, laid, standing, search.rows_of(laid, standing))
-        top = told.point[:, 1] > 41.9
-        assert top.any() and (np.abs(told.normal[top, 0]) < 1e-12).all() and (told.reach < 1e-6).all()
+        places = search.on_rows(0, laid, standing, search.rows_of(laid, standing))
+        top = places.point[:, 1] > 41.9
+        assert top.any() and (np.abs(places.normal[top, 0]) < 1e-12).all() and (places.reach < 1e-6).all()
 
 
 def test_a_line_that_misses_an_arc_has_no_contact() -> None:

@@ -47,7 +47,7 @@ def test_of_two_solutions_in_a_box_the_one_that_clamps_is_found(rest: float) -> 
 
 @pytest.mark.parametrize("rest", [1e-2, 1e-4, 1e-6])
 def test_a_box_with_one_solution(rest: float) -> None:
-    """Each solution alone in its box: one is a fixture, told to the last digits, the other is not."""
+    """Each solution alone in its box: one is a fixture, found to the last digits, the other is not."""
     height = -2.5 + rest
     low, high = solutions(height)
     found = []
@@ -94,7 +94,7 @@ def test_a_rule_met_exactly_at_its_edge_is_undecided() -> None:
     assert len(solutions_in(large(tail + 1e-14), LIMITS).fixtures) == 1
 
 
-def test_what_takes_too_many_boxes_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_takes_too_many_boxes_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(settling, "MOST_BOXES", 1)
     outcome = solutions_in(box(-2.5 + 1e-6, 0.0, 1e-2), LIMITS)
     assert outcome.fixtures == ()
@@ -104,7 +104,7 @@ def test_what_takes_too_many_boxes_is_told(monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.mark.parametrize("rest", [1e-10, 1e-11])
 @pytest.mark.parametrize("turn", [-3e-3, 1e-3])
 def test_a_simple_solution_next_to_a_double_one_is_found_off_the_middle(rest: float, turn: float) -> None:
-    """Where the Jacobian at the middle of the box does not tell the directions at the solutions apart, that there does."""
+    """Where the Jacobian at the middle of the box does not separate the directions at the solutions, the one there does."""
     low, high = solutions(-2.5 + rest)
     outcome = solutions_in(box(-2.5 + rest, turn, 4e-3), LIMITS)
     assert outcome is not None and outcome.reason == ""

@@ -23,10 +23,10 @@ from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
 from workhold.model.notes import by_hand_note
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
-from workhold.seating import seating
+from workhold.seating import solver as solver_module
+from workhold.seating.equilibrium_check import is_equilibrium
 from workhold.seating.pattern import Pattern
-from workhold.seating.seating import NO_PASS, Solver
-from workhold.seating.settled import is_equilibrium
+from workhold.seating.solver import NO_PASS, Solver
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 VISE = Vise(pitch=20, columns=2, peg_radius=3)
@@ -42,7 +42,7 @@ def read_once() -> Iterator[None]:
     known: dict[Any, Any] = {}
 
     def read(self: Solver, fixture: Any, *asked: Any) -> Any:
-        key = fixture.pose, fixture.jaw_separation, self.workpiece, seating.is_equilibrium
+        key = fixture.pose, fixture.jaw_separation, self.workpiece, solver_module.is_equilibrium
         if key not in known:
             known[key] = READ(self, fixture, *asked)
         return known[key]
@@ -301,7 +301,7 @@ def test_an_opening_is_told_only_with_a_pass_that_is_one(monkeypatch: pytest.Mon
         still[SEPARATION] = 0.0
         assert not is_equilibrium(still, pulling)
         assert is_equilibrium(still, attrs.evolve(closing, pattern=attrs.evolve(pattern, pegs=there)))
-    monkeypatch.setattr("workhold.seating.seating.is_equilibrium", lambda *_: False)
+    monkeypatch.setattr("workhold.seating.solver.is_equilibrium", lambda *_: False)
     result = workhold.design(WEDGE, VISE, seating=2, best=2)
     for told in result.seating:
         assert (told.capture_opening, told.lowest_pass, told.cage, told.placing) == (0.0, None, None, None)

@@ -14,12 +14,12 @@ from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP, add_normal, s
 from workhold.kernels.seating.columns import CONFIG, SECOND, WorkSpace
 from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.places import OUTSIDE, STOP
-from workhold.seating.door import Door
+from workhold.seating.closing_frame import ClosingFrame
+from workhold.seating.descent_paths import descent_starts
 from workhold.seating.equilibria import equilibria
+from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
-from workhold.seating.seating import Solver
-from workhold.seating.tree import Tree
-from workhold.seating.ways_down import starts_off
+from workhold.seating.solver import Solver
 
 # In which a part is moved that is said not to get away.
 DIRECTIONS = 144
@@ -39,9 +39,9 @@ def ways():
     solver, pattern, out = Solver(NOTCH, VISE), Pattern.of(fixture, VISE), []
     for turned_over in (False, True):
         closing = solver.closing(pattern, turned_over)
-        found = equilibria(closing.locus, pattern, closing.size)
-        starts = starts_off(found.passes, closing.size)[0]
-        out.append((closing, starts, Tree.of(found, closing)))
+        found = equilibria(closing.boundary, pattern, closing.size)
+        starts = descent_starts(found.passes, closing.size)[0]
+        out.append((closing, starts, JoinTree.of(found, closing)))
     return out
 
 
@@ -66,8 +66,8 @@ def test_two_pegs_on_one_face_against_a_third_on_an_arc_make_a_seat(ways):
 
 def least_clearance(closing, configs):
     """Least distance in mm of pegs from the boundary in configurations (N, 4), below 0 in the part."""
-    (first, end), out = closing.locus.parts[0].tolist(), np.empty(4 * len(configs))
-    clearances(closing.pattern.at(configs).reshape(-1, 2), closing.locus.rows, first, end, out)
+    (first, end), out = closing.boundary.parts[0].tolist(), np.empty(4 * len(configs))
+    clearances(closing.pattern.at(configs).reshape(-1, 2), closing.boundary.rows, first, end, out)
     return out.min()
 
 
@@ -118,7 +118,7 @@ def test_no_peg_is_in_the_part_on_its_way(ways):
     for closing, starts, _ in ways:
         for level in np.linspace(starts[:, 3].min() - 20.0, starts[:, 3].max(), 12):
             above = starts[starts[:, 3] >= level]
-            assert least_clearance(closing, closing.run(above, 0.005, stop=level)[0]) > -2e-8
+            assert least_clearance(closing, closing.run(above, 0.005, level=level)[0]) > -2e-8
 
 
 def test_a_part_leaves_where_no_peg_meets_it_on_the_way(ways):
@@ -127,7 +127,7 @@ def test_a_part_leaves_where_no_peg_meets_it_on_the_way(ways):
     seen, every = set(), np.arange(DIRECTIONS) * tau / DIRECTIONS
     for closing, starts, _ in ways:
         configs = np.concatenate([closing.run(starts[::4], 0.005)[0], starts[1::12]])
-        for config, told in zip(configs, closing.ways_away(configs), strict=True):
+        for config, told in zip(configs, closing.directions_away(configs), strict=True):
             free = []
             for angle in every if np.isnan(told) else [told]:
                 # Pegs that move along a direction of the part's frame: the part moves the other way.
@@ -149,7 +149,7 @@ def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
     for closing, _, tree in ways:
         off_passes = np.flatnonzero(tree.passes[:, SECOND] < 0.0)
         rows, joined = tree.passes[off_passes], tree.joined[off_passes]
-        (every, lengths), how_far = starts_off(rows, closing.size), 0.005
+        (every, lengths), how_far = descent_starts(rows, closing.size), 0.005
         for side in (0, 1):
             starts = every[side::2]
             for k in np.flatnonzero(lengths[side::2, 0] == how_far).tolist():
@@ -169,12 +169,12 @@ def test_a_seat_joins_at_the_lowest_pass_that_leads_elsewhere(ways):
             assert tree.join_of(place) == (min(out, key=lambda join: join.separation) if out else None)
 
 
-def test_a_door_leads_back():
+def test_a_closing_frame_leads_back():
     for quarters in range(4):
-        for door in (Door(quarters, 1.0), Door(quarters, -1.0)):
+        for frame in (ClosingFrame(quarters, 1.0), ClosingFrame(quarters, -1.0)):
             config = np.array([0.3, 4.0, -5.0, 6.0])
-            assert door.leave(door.enter(config)) == pytest.approx(config, abs=1e-12)
-            assert np.array_equal(door.leave(config[None])[0], door.leave(config))
+            assert frame.leave(frame.enter(config)) == pytest.approx(config, abs=1e-12)
+            assert np.array_equal(frame.leave(config[None])[0], frame.leave(config))
 
 
 def test_pegs_that_a_part_does_not_fit_between_get_nowhere():

@@ -14,13 +14,13 @@ from workhold import Vise, Workpiece, load
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CLEAR, CONFIG, MOTION, PEG, PIECE, SECOND, SEPARATION
 from workhold.kernels.seating.concentric import about_one_center
-from workhold.seating.alone import in_balance
 from workhold.seating.equilibria import equilibria
 from workhold.seating.growing_rows import filled
-from workhold.seating.holdings import Holdings
+from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
-from workhold.seating.seating import Solver
-from workhold.seating.tree import Tree
+from workhold.seating.solver import Solver
+from workhold.seating.subset_equilibria import in_balance
+from workhold.seating.two_contact_curves import TwoContactCurves
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 # A plate with a rounded end, a round notch, a slanted side and a small hole.
@@ -52,7 +52,7 @@ def found():
         pegs = [("left" if k < 2 else "right", x + 100.0 * (k >= 2), y) for k, (x, y) in enumerate(places.tolist())]
         pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 100.0), VISE)
         closing = solver.closing(pattern, False)
-        given = Holdings.of(closing.locus, pattern).given
+        given = TwoContactCurves.of(closing.boundary, pattern).given
         rows = filled(CANDIDATE_LENGTH, 4, about_one_center, given, -1e3, 1e3)
         out.append((closing, given, rows, in_balance(rows.copy(), given, closing.size)))
     return out
@@ -85,12 +85,12 @@ def test_ways_down_end_nowhere_that_is_not_known(found):
     """Where a part comes to rest so, ways down end there: in a seat, and in none that is unsettled."""
     looked_at = 0
     for closing, _, _, balanced in found:
-        known = equilibria(closing.locus, closing.pattern, closing.size)
+        known = equilibria(closing.boundary, closing.pattern, closing.size)
         free = balanced[(balanced[:, SECOND] > 0.0) & (balanced[:, CLEAR] > 0.0)][:, 1:4]
         resting = [row for row in free if (np.abs(known.seats[:, 1:4] - row).max(axis=1) < 1e-6).any()]
         if resting:
             looked_at += 1
-            assert len(Tree.of(known, closing).doubtful) == 0
+            assert len(JoinTree.of(known, closing).doubtful) == 0
         if looked_at == 4:
             break
     assert looked_at == 4
@@ -102,7 +102,7 @@ def test_a_bracket_that_rests_on_its_rounded_end_is_seated():
     pegs = [("left", 10, 0), ("left", 10, 60), ("right", 65.09828112125015, 20), ("right", 65.09828112125015, 100)]
     fixture = held(pegs, (90.0, 62.098281121250174, 3.0), 55.09828112125016)
     closing = Solver(part, VISE).closing(Pattern.of(fixture, VISE), True)
-    tree = Tree.of(equilibria(closing.locus, closing.pattern, closing.size), closing)
+    tree = JoinTree.of(equilibria(closing.boundary, closing.pattern, closing.size), closing)
     assert len(tree.doubtful) == 0
     [seat] = [row for row in tree.seats if abs(row[SEPARATION] - 26.2451) < 1e-4]
     assert np.degrees(seat[0]) % 360.0 == pytest.approx(96.1725, abs=1e-4)

@@ -12,12 +12,12 @@ from workhold.kernels.seating.columns import BOTTOM, CANDIDATE_LENGTH, CELL_LENG
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.growing_rows import filled
-from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
-from workhold.seating.seating import Solver
+from workhold.seating.solver import Solver
+from workhold.seating.two_contact_curves import TwoContactCurves
 
 
-def told_by(holdings, locus, pattern, discs, stop):
+def told_by(holdings, boundary, pattern, discs, stop):
     """Candidates of three contacts above the stop, and of three with one jaw."""
     stack, work, three, third = np.empty((DEPTH, 2)), np.empty((5, len(discs))), [], []
     for side in holdings.jaws:
@@ -25,8 +25,8 @@ def told_by(holdings, locus, pattern, discs, stop):
         three.append(filled(ROOT_LENGTH, 4096, three_contacts, *given, stop, stack, work))
         third.append(filled(ROOT_LENGTH, 4096, third_of_jaw, *given, stack))
     three, third = np.concatenate(three), np.concatenate(third)
-    found = filled(CANDIDATE_LENGTH, len(three) + 1, complete_three, three, holdings.given, locus.pocket_pieces)
-    fixed = filled(CANDIDATE_LENGTH, len(third) + 1, complete_third, third, holdings.given, locus.pocket_pieces)
+    found = filled(CANDIDATE_LENGTH, len(three) + 1, complete_three, three, holdings.given, boundary.pocket_pieces)
+    fixed = filled(CANDIDATE_LENGTH, len(third) + 1, complete_third, third, holdings.given, boundary.pocket_pieces)
     return found[found[:, SEPARATION] > pattern.stop], fixed
 
 
@@ -35,18 +35,18 @@ def test_pieces_left_out_have_no_roots(number):
     """Discs as large as the table and no stop let every piece be looked at: no more balances are found."""
     solver, fixture, _ = solved(number)
     pattern = Pattern.of(fixture, solver.toolkit)
-    locus = solver.closing(pattern, False).locus
-    holdings = Holdings.of(locus, pattern)
-    everywhere = np.array(locus.discs)
+    boundary = solver.closing(pattern, False).boundary
+    holdings = TwoContactCurves.of(boundary, pattern)
+    everywhere = np.array(boundary.discs)
     everywhere[:, 2] += 1e4
-    few, fixed = told_by(holdings, locus, pattern, locus.discs, pattern.stop)
-    all_of_them, all_fixed = told_by(holdings, locus, pattern, everywhere, -1e4)
+    few, fixed = told_by(holdings, boundary, pattern, boundary.discs, pattern.stop)
+    all_of_them, all_fixed = told_by(holdings, boundary, pattern, everywhere, -1e4)
     assert len(few) > 20
     assert np.array_equal(few, all_of_them)
     assert np.array_equal(fixed, all_fixed)
     # Whatever the stop, what is just above it is found.
     for stop in few[:: len(few) // 8, SEPARATION] - 1e-6:
-        above, _ = told_by(holdings, locus, evolve(pattern, stop=stop), locus.discs, stop)
+        above, _ = told_by(holdings, boundary, evolve(pattern, stop=stop), boundary.discs, stop)
         assert np.array_equal(above, few[few[:, SEPARATION] > stop])
 
 
@@ -54,7 +54,7 @@ def test_holdings_meet_as_of_each_cell_by_itself():
     """Which cells of the other jaw reach into a cell does not depend on the cells before it."""
     solver, fixture, _ = solved(0)
     pattern = Pattern.of(fixture, solver.toolkit)
-    holdings = Holdings.of(solver.closing(pattern, False).locus, pattern)
+    holdings = TwoContactCurves.of(solver.closing(pattern, False).boundary, pattern)
     left, right = holdings.of_jaw(0), holdings.of_jaw(1)
     work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(right.cells), np.int64)
     every = filled(ROOT_LENGTH, 1024, two_holdings, left, right, holdings.sought, *work)

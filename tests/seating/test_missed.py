@@ -12,7 +12,7 @@ from attrs import evolve
 import workhold
 from workhold import Fence, Fixture, Result, Vise, Workpiece
 from workhold.kernels.seating.columns import THETA
-from workhold.seating import seating
+from workhold.seating import solver as solver_module
 from workhold.seating.equilibria import Equilibria
 from workhold.seating.missed import OTHERS_MAY_BE, WAS_NOT_FOUND
 from workhold.seating.pattern import Pattern
@@ -22,17 +22,17 @@ KITS = {
     "vise": Vise(pitch=20, columns=2, peg_radius=3),
     "fence": Fence(pitch=15, peg_radius=3, wall_offset=6, directions=["-x"]),
 }
-FIND = seating.equilibria
+FIND = solver_module.equilibria
 
 
 def missing(fixture: Fixture, toolkit: Any) -> Any:
     """What looks for seats, but on the pegs of a fixture finds none in its orientation."""
     own = Pattern.of(fixture, toolkit)
-    turn = own.door.enter(np.radians([fixture.pose.theta_deg, 0, 0, 0]))[0]
+    turn = own.frame.enter(np.radians([fixture.pose.theta_deg, 0, 0, 0]))[0]
 
-    def find(locus: Any, pattern: Pattern, size: float) -> Equilibria:
-        found = FIND(locus, pattern, size)
-        if locus.mirrored or pattern.key() != own.key():
+    def find(boundary: Any, pattern: Pattern, size: float) -> Equilibria:
+        found = FIND(boundary, pattern, size)
+        if boundary.mirrored or pattern.key() != own.key():
             return found
         away = np.abs(np.angle(np.exp(1j * (found.seats[:, THETA] - turn))))
         return evolve(found, seats=found.seats[away > 1e-6])
@@ -48,7 +48,7 @@ def result(request: pytest.FixtureRequest) -> Result:
 
 def test_it_is_named_and_tells_what_is_known(result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     first, other = result[:]
-    monkeypatch.setattr(seating, "equilibria", missing(first, result.toolkit))
+    monkeypatch.setattr(solver_module, "equilibria", missing(first, result.toolkit))
     made = workhold.design(WEDGE, result.toolkit, seating=2, best=2)
     assert len(made.seating) == 2 and made.complete
     told, kept = (made.seating[made[:].index(one)] for one in (first, other))
@@ -82,8 +82,8 @@ def test_others_on_the_same_pegs_say_so(monkeypatch: pytest.MonkeyPatch) -> None
         for pair in groups.values()
         if len(pair) > 1 and abs(pair[0].pose.theta_deg - pair[1].pose.theta_deg) > 1
     )
-    monkeypatch.setattr(seating, "equilibria", missing(other, every.toolkit))
-    here, there = seating.Solver(WEDGE, every.toolkit).of_all([one, other])
+    monkeypatch.setattr(solver_module, "equilibria", missing(other, every.toolkit))
+    here, there = solver_module.Solver(WEDGE, every.toolkit).of_all([one, other])
     assert OTHERS_MAY_BE in here.unsettled and here.capture_opening and WAS_NOT_FOUND in there.unsettled
     assert sum(seat.is_at(other.pose) for seat in there.seats) == 1
     assert len(here.seats) == len(there.seats)

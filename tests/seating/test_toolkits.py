@@ -17,14 +17,14 @@ from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
-from workhold.seating.balance import contact_normals
-from workhold.seating.door import Door
+from workhold.seating.closing_frame import ClosingFrame
+from workhold.seating.closing_simulation import simulate_closing
+from workhold.seating.contact_forces import contact_normals
 from workhold.seating.equilibria import equilibria
-from workhold.seating.fence import Fence as OnFence
+from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
-from workhold.seating.playing import play
-from workhold.seating.seating import Solver
-from workhold.seating.tree import Tree
+from workhold.seating.solver import Solver
+from workhold.seating.wall_equilibria import WallEquilibria
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 HOLED = Workpiece.from_loops(
@@ -81,7 +81,7 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
             told_faces = zip(faces, fixture.pegs, strict=True)
             assert all(face == peg.face for face, peg in told_faces if not peg.is_on_wall)
         # Those that hold by less than a micrometre of opening are fixtures all the same.
-        touches = solver.closing(pattern, False).locus.touches
+        touches = solver.closing(pattern, False).boundary.touches
         there = [
             row
             for row in solver.trees(pattern)[0].seats
@@ -223,7 +223,7 @@ def test_an_opening_vise_is_a_closing_one_seen_from_its_other_jaw():
         places = np.array([[peg.x, peg.y] for peg in fixture.pegs])
         right = np.array([int(peg.carrier == "right") for peg in fixture.pegs])
         places[:, 0] -= right * fixture.jaw_separation
-        closing = Pattern(places, 1 - right, opening.radii, opening.stop, opening.widest, Door(0, 1.0))
+        closing = Pattern(places, 1 - right, opening.radii, opening.stop, opening.widest, ClosingFrame(0, 1.0))
         for one, other in zip(solver.trees(opening), solver.trees(closing), strict=True):
             assert len(one.seats) > 0
             assert one.seats[:, 3] == pytest.approx(other.seats[:, 3], abs=1e-8)
@@ -285,19 +285,19 @@ def test_what_is_not_told_is_refused_in_a_sentence(toolkit, message):
 
 
 def test_a_part_put_above_a_fence_comes_home_and_none_is_put_into_it():
-    """Played from a little off its pose, the tip drawn back by half of what catches; never in the fence on the way."""
+    """Put in from a little off its pose, the tip drawn back by half of what catches; never in the fence on the way."""
     name = "onto a fence"
     (result, solver), told = listed(name), told_of(name, 0)
     fixture, at = result[0], result[0].pose
     off = min(0.3 * told.drop_room, 0.5)
-    played = play(solver, fixture, told.seats, evolve(at, y=at.y + off), 0.5 * told.capture_opening)
+    played = simulate_closing(solver, fixture, told.seats, evolve(at, y=at.y + off), 0.5 * told.capture_opening)
     assert played.ending == "right"
     obstacle = Obstacle.about(result.workpiece, fixture, result.toolkit)
     for pose, travelled in zip(played.poses, played.travels, strict=True):
         config = np.array([np.radians(pose.theta_deg), *pose.apply(*result.workpiece.center), travelled])
         assert obstacle.free(config) > -1e-6
     with pytest.raises(InputError, match="lies in the fence"):
-        play(solver, fixture, told.seats, evolve(at, y=at.y - 5.0), 0.5 * told.capture_opening)
+        simulate_closing(solver, fixture, told.seats, evolve(at, y=at.y - 5.0), 0.5 * told.capture_opening)
 
 
 def test_a_part_slides_along_a_fence_under_the_clamp():
@@ -308,8 +308,8 @@ def test_a_part_slides_along_a_fence_under_the_clamp():
     fixture = Fixture("edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
     pattern = Pattern.of(fixture, fence)
     closing = Solver(plate, fence).closing(pattern, False)
-    found = equilibria(closing.locus, pattern, closing.size)
-    tree = Tree.of(found, closing)
+    found = equilibria(closing.boundary, pattern, closing.size)
+    tree = JoinTree.of(found, closing)
     assert len(tree.seats) == 0
     flat = [row for row in (*tree.loose, *tree.slack) if row[CONTACTS] >= 3.0]
     # On each of its four sides, as high as the part; the tip goes from one end of the edge to the other.
@@ -361,9 +361,9 @@ def test_the_tip_stops_at_the_fence_and_touches_with_its_own_radius():
     for name in ("left", "along a fence"):
         result, solver = listed(name)
         pattern, outline = Pattern.of(result[0], result.toolkit), solver.outline
-        locus = solver.closing(pattern, False).locus
+        boundary = solver.closing(pattern, False).boundary
         for row in solver.trees(pattern)[0].seats:
-            places, _, _ = contact_normals(locus, pattern, row)
+            places, _, _ = contact_normals(boundary, pattern, row)
             c, s = np.cos(row[0]), np.sin(row[0])
             assert outline_distances(places @ np.array([[c, -s], [s, c]]), outline.rows).max() < 1e-7
 
@@ -371,10 +371,10 @@ def test_the_tip_stops_at_the_fence_and_touches_with_its_own_radius():
 def test_between_hull_edges_and_ends_of_arcs_a_part_stands_on_one_piece():
     result, solver = listed("onto a fence")
     pattern = Pattern.of(result[0], result.toolkit)
-    fence = OnFence(solver.closing(pattern, False).locus, pattern)
+    fence = WallEquilibria(solver.closing(pattern, False).boundary, pattern)
     for piece, low, high in fence.runs:
         # But for where runs overlap.
-        reach = fence.locus.hull.reach(fence.outward() - np.linspace(low + 3e-9, high - 3e-9, 9))
+        reach = fence.boundary.hull.reach(fence.outward() - np.linspace(low + 3e-9, high - 3e-9, 9))
         assert reach[:, piece] == pytest.approx(reach.max(axis=1), abs=1e-7)
     # All of a turn but next to nothing, and each piece's turn once.
     assert sum(high - low for _, low, high in fence.runs) == pytest.approx(2 * np.pi, abs=1e-6)

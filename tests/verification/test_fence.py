@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from attrs import evolve
+from flint import arb
 from numpy.typing import NDArray
 
 import workhold
@@ -22,6 +23,9 @@ from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.search.pin_contacts import PinContacts
 from workhold.search.wall_search import WallSearch
 from workhold.verification import Verification, verify, verify_fixture
+from workhold.verification.contacts import Pose as Balls
+from workhold.verification.outline import Outline
+from workhold.verification.rules.wall import flush_findings, wall_contacts
 from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
@@ -250,3 +254,18 @@ def test_a_foot_lower_than_the_two_that_the_part_is_said_to_lie_on_is_refuted() 
         ruling = verify_fixture(result[0], on_feet(low), fence)
         assert ruling.verdict == verdict, ruling.reason
     assert "enters the fence" in ruling.reason
+
+
+def test_a_foot_beyond_the_ends_that_are_told_is_found() -> None:
+    """Ends at the outer feet leave none beyond; with the right one at the middle foot the third is."""
+    feet = [[0, 0, 0], [8, 0, 0], [8, 4, 0], [24, 4, 0], [24, 0, 0], [32, 0, 0], [32, 4, 0], [48, 4, 0], [48, 0, 0]]
+    workpiece = part([*feet, [56, 0, 0], [50, 30, 0], [4, 34, 0]])
+    outline, pose = Outline.of(workpiece), Balls.of(arb(0), arb(0), arb(0), arb(0))
+    left, right = wall_contacts([outline.faces[0], outline.faces[8]], outline, pose)
+    inner = evolve(right, piece=evolve(right.piece, center=outline.faces[5].start), faces=(4,))
+    pegs = [workhold.Peg("wall", 0, 0, x, 0.0, face, 0.5) for x, face in ((0.0, 0), (56.0, 8), (32.0, 4))]
+    whole = [("left", pegs[0], left), ("right", pegs[1], right)]
+    assert list(flush_findings("fence", whole, pose, outline)) == []
+    short = [("left", pegs[0], left), ("right", pegs[2], inner)]
+    (found, *_) = flush_findings("fence", short, pose, outline)
+    assert "lies on the fence at face 7, beyond the ends that are told" in found.reason

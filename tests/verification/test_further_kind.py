@@ -23,9 +23,11 @@ from workhold.geometry.segment import Line
 from workhold.model.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
 from workhold.verification import Ruling, verify_fixture
 from workhold.verification.order import rank
+from workhold.verification.patterns import stance
 from workhold.verification.reading import fixtures_of
 from workhold.verification.repeats import Seen
 from workhold.verification.rules.hardware import Hardware
+from workhold.verification.seating_contacts import stop_of
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -277,6 +279,21 @@ def test_the_same_fixture_is_known_again(known: Known) -> None:
         fixture = known.read(item)
         turned = evolve(fixture, pose=evolve(fixture.pose, theta_deg=fixture.pose.theta_deg + 180.0))
         assert seen.find(turned) is None
+
+
+def test_its_seating_knows_where_it_stops_and_which_pegs_stand_alike(known: Known) -> None:
+    """The jaw stops at its smallest gap; fixtures on one pattern of pegs differ by its height and along the wall."""
+    alike: dict[Any, list[tuple[tuple[float, ...], float]]] = {}
+    for item in known.items:
+        fixture = known.read(item)
+        assert stop_of(fixture.pegs, known.toolkit, fixture.jaw_separation) == pytest.approx(3.0)
+        here = stance(fixture, known.toolkit)
+        assert here.anchor == (0.0, 0.0) and here.apart == pytest.approx(min((p["x"], p["y"]) for p in item["pegs"])[1])
+        (first, second) = ((peg["column"], peg["row"]) for peg in item["pegs"])
+        step = second[0] - first[0], second[1] - first[1]
+        alike.setdefault(here.key, []).append((step, here.apart))
+    assert all(len({step for step, _ in group}) == 1 for group in alike.values())
+    assert len(alike) == len({group[0][0] for group in alike.values()}) < len(known.items)
 
 
 def test_what_is_on_something_else_is_not_read(known: Known) -> None:

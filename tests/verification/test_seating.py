@@ -14,7 +14,7 @@ import workhold
 from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.completeness import first_other
 from workhold.model.fixture import WALL
-from workhold.seating.seating import Solver
+from workhold.seating.solver import Solver
 from workhold.verification.claims import claim_of
 from workhold.verification.listing import Listing, read_listing
 from workhold.verification.order import order_faults
@@ -22,8 +22,7 @@ from workhold.verification.outline import Outline
 from workhold.verification.part_in_floats import FloatOutline
 from workhold.verification.patterns import pattern_faults, stance
 from workhold.verification.seating import Judged, SeatingJudge
-from workhold.verification.seating_contacts import touching_wall
-from workhold.verification.seating_stop import stop_of
+from workhold.verification.seating_contacts import stop_of, touching_wall
 from workhold.verification.verify import not_shown
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])

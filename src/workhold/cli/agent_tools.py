@@ -190,7 +190,7 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
 
         shown["by_hand"] = by_hand(fixture, result.workpiece, result.toolkit).as_fields()
     elif asked.seating and fixture.seating is None:
-        from workhold.seating.seating import Solver
+        from workhold.seating.solver import Solver
 
         shown["seating"] = Solver(result.workpiece, result.toolkit).of(fixture).as_fields()
     return Answer({"fixture": shown, **told}, fixture.draw() if asked.picture else None)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from workhold.model.result import Result
     from workhold.model.seating import Seat, Seating
     from workhold.model.units import Unit
-    from workhold.seating.reading import Gauge
+    from workhold.seating.gauge import Gauge
 
 __all__ = ["by_hand_words", "seat", "seating_words"]
 
@@ -67,7 +67,7 @@ def seat(
     fixture = result[rank - 1]
 
     from workhold.cli.tables import print_tables
-    from workhold.seating.reading import Gauge
+    from workhold.seating.gauge import Gauge
 
     if not result.toolkit.closes_at_once:
         tell_by_hand(result, rank, picture, shown_unit, json_)
@@ -76,7 +76,7 @@ def seat(
     if told is None:
         from workhold.cli.warming import compile_seating
         from workhold.seating.pattern import refuse_unseated
-        from workhold.seating.seating import Solver
+        from workhold.seating.solver import Solver
 
         refuse_unseated(result.toolkit)
         compile_seating(Event())
@@ -148,7 +148,7 @@ def shown_seats(told: Seating, side: str, opened: float | None, result: Result) 
 
 def seating_words(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
     """What a result tells of the seating of a fixture: what to do, what to read, and what to beware of."""
-    from workhold.seating.reading import Gauge
+    from workhold.seating.gauge import Gauge
 
     told: Seating = fixture.seating
     gauge = Gauge(fixture, result.toolkit)

@@ -79,7 +79,7 @@ OF_CONTACTS: Mapping[ContactKind, tuple[tuple[Sign, str], ...]] = {
 
 def draw_legend(column: Column, toolkit: Toolkit, fill: str = GREY) -> None:
     """Explain the signs; ``fill`` is the colour of the words."""
-    first = toolkit.carriers[0]
+    first = toolkit.plates[0]
     named = f"{first.noun}, column, row" if first.letter else "column, row"
     signs: list[tuple[Sign, str]] = [
         (peg, f"{first.peg} to place, with its hole: {named}"),

@@ -131,16 +131,19 @@ def arrangement_words(arrangement: Arrangement, toolkit: Toolkit) -> str:
     >>> arrangement_words(plate.arrangements[0], plate)
     'Three locators, two clamps push to the left and downward'
     """
-    counts, carriers, name = arrangement.pegs, toolkit.carriers, arrangement.name
     clamps, noun = len(arrangement.directions), toolkit.moving.noun
     if clamps:
         pushing = f"the {noun} pushes" if clamps == 1 else f"{plural(clamps, noun, NUMBERS)} push"
         return f"{toolkit.setup_words.located_by}, {pushing} {arrangement.towards}"
-    if len(counts) > 1 and len(set(counts)) == 1:
-        return f"Type {name}: {plural(counts[0], 'peg', NUMBERS)} on each {carriers[0].noun}"
-    words = [f"{NUMBERS[count]} {carrier.name}" for count, carrier in zip(counts, carriers, strict=True)]
-    words[0] = f"{plural(counts[0], 'peg', NUMBERS)} {carriers[0].name}"
-    return f"Type {name}: {', '.join(words)}"
+    stands = zip(arrangement.pegs, toolkit.carriers, strict=True)
+    (count, first), *others = [(count, carrier) for count, carrier in stands if carrier.has_lattice]
+    pegs = plural(count, first.peg, NUMBERS)
+    if not others:
+        return f"Type {arrangement.name}: {pegs} on the {first.title}"
+    if all(other == count for other, _ in others):
+        return f"Type {arrangement.name}: {pegs} on each {first.noun}"
+    words = [f"{pegs} {first.name}", *(f"{NUMBERS[other]} {carrier.name}" for other, carrier in others)]
+    return f"Type {arrangement.name}: {', '.join(words)}"
 
 
 def fixture_words(fixture: Fixture, toolkit: Toolkit) -> str:
@@ -160,7 +163,7 @@ def plural(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
 
 def offset_words(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
     """How far the rows of the carrier that slides lie above or below those of the first one; None where they are level."""
-    offset = toolkit.moving.offset[1] - toolkit.carriers[0].offset[1]
+    offset = toolkit.moving.offset[1] - toolkit.plates[0].offset[1]
     return f"{lengths.words(abs(offset))} {'above' if offset > 0 else 'below'}" if offset else None
 
 
@@ -175,7 +178,7 @@ def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: 
 
 def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write what to set, with the travel first."""
-    first, settings, several = toolkit.carriers[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
+    first, settings, several = toolkit.plates[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
     # What moves in this fixture, which of several clamps the toolkit has need not be its first.
     moving = settings[0].carrier
     for setting in settings:
@@ -229,7 +232,7 @@ def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
 
 def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
     """Write the pegs: hole, face, place and force."""
-    first, rows = toolkit.carriers[0], []
+    first, rows = toolkit.plates[0], []
     for peg, name in zip(fixture.pegs, contact_names(fixture, toolkit), strict=True):
         carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
         named = name.removeprefix(f"{carrier.noun} ") if carrier.measure == "tip" else name

@@ -204,7 +204,8 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
     y = frame.y1 + 40
     verb = "closing" if bench.toolkit.clamping > 0 else "opening"
     captions = [
-        f"{'fixed' if shown.clamping is None else 'sliding'} {shown.carrier.noun} ({shown.carrier.letter})"
+        f"{'fixed' if shown.clamping is None else 'sliding'} {shown.carrier.noun}"
+        + (f" ({shown.carrier.letter})" if shown.carrier.letter else "")
         for shown in bench.shown.carriers
     ]
     widths = [text_width(caption, 14) for caption in captions]

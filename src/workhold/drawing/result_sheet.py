@@ -18,7 +18,7 @@ from workhold.model.result import Result
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.seating.by_hand import by_hand
-from workhold.seating.seating import Solver
+from workhold.seating.solver import Solver
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import measured_fixture
 from workhold.version import __version__

@@ -14,8 +14,8 @@ from workhold.model.fixture import Fixture
 from workhold.model.seating import CLOSE_READING, DRY_STEEL, Seat, Seating
 from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
-from workhold.seating.place import Silhouette
-from workhold.seating.reading import Gauge
+from workhold.seating.gauge import Gauge
+from workhold.seating.silhouette import Silhouette
 
 __all__ = ["SeatingWords", "down"]
 
@@ -176,7 +176,7 @@ class SeatingWords:
         return [*words, *told_in_sentences(told.unsettled)]
 
     def ended(self, ending: str, seat: Seat | None, travelled: float) -> str:
-        """What a closing ended in, one of ``seating.playing.ENDINGS``, with what is read then."""
+        """What a closing ended in, one of ``seating.closing_simulation.ENDINGS``, with what is read then."""
         read, stop = self.reads(self.gauge.at(travelled)), STOPPED[self.gauge.carrier.measure]
         if seat is not None and ending == "right":
             return f"It comes home: {read}."

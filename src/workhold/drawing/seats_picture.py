@@ -15,7 +15,7 @@ from workhold.model.seating import Seat
 from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
-from workhold.seating.reading import Gauge
+from workhold.seating.gauge import Gauge
 
 __all__ = ["ALIKE", "RIGHT", "Placed", "draw_lying", "draw_seats"]
 

@@ -9,6 +9,7 @@ from workhold.drawing.legend import draw_legend
 from workhold.drawing.panel import Column, fixture_words
 from workhold.drawing.scene import BLACK
 from workhold.drawing.sheet_clamp import CLAMPS
+from workhold.drawing.sheet_counting import write_counting
 from workhold.drawing.sheet_figures import write_loads, write_quality
 from workhold.drawing.sheet_opening import OPENING
 from workhold.drawing.sheet_pegs import write_pegs
@@ -39,7 +40,7 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
         others.append(write_seating)
     if sheet.details.loads:
         others.append(write_loads)
-    others += [write_quality, moving.counting, write_legend]
+    others += [write_quality, write_counting, write_legend]
     return [bound(writer, sheet) for writer in needed], [bound(writer, sheet) for writer in others]
 
 

@@ -48,14 +48,11 @@ def peg_size(sheet: Sheet, carrier: Carrier) -> str:
 
 def write_flush(column: Column, sheet: Sheet, wall: Carrier) -> None:
     """Write where the part lies flush on a wall, and how far the plate is from it."""
-    plate = sheet.toolkit.plates[0]
+    plate, edge = sheet.toolkit.plates[0], sheet.datum.edge
     ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.carrier == wall.name))
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
-    column.paragraph(
-        f"The part lies flush on the {wall.noun} {lies}. Row 1 of the {plate.noun} is "
-        f"{sheet.lengths.words(plate.offset[1])} from the {wall.noun}.",
-        NOTE,
-    )
+    row = "" if edge is None else f" Row 1 of the {plate.noun} is {sheet.lengths.words(edge)} from the {wall.noun}."
+    column.paragraph(f"The part lies flush on the {wall.noun} {lies}.{row}", NOTE)
 
 
 def put_words(sheet: Sheet) -> str:

@@ -112,12 +112,10 @@ class MovingBlocks:
     ----------
     settings : the blocks about the lengths to set.
     steps : what to do, one or two sentences each, up to the machine's zero.
-    counting : the block about how holes are counted.
     """
 
     settings: Callable[[Sheet], list[Writer]]
     steps: Callable[[Sheet], list[str]]
-    counting: Writer
 
 
 def height_of(block: Block, width: float) -> float:
@@ -171,7 +169,7 @@ def looks_words(peg: Peg) -> str:
 
 def write_flats(column: Column, sheet: Sheet) -> None:
     """Write what the flats of the pegs are and how they are turned, where they have some."""
-    flat = sheet.toolkit.carriers[0].flat
+    flat = sheet.toolkit.plates[0].flat
     if flat is not None:
         column.paragraph(
             "flat: which way it looks, counter-clockwise from +x; it is "
@@ -194,7 +192,7 @@ def inside_words(sheet: Sheet) -> str:
 
 def write_dowel(column: Column, sheet: Sheet) -> None:
     """Write what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
-    details, lengths, carrier = sheet.details, sheet.lengths, sheet.toolkit.carriers[0]
+    details, lengths, carrier = sheet.details, sheet.lengths, sheet.toolkit.plates[0]
     diameter = 2 * carrier.peg_radius
     fit = details.tolerance.fit
     column.y += 3
@@ -204,12 +202,7 @@ def write_dowel(column: Column, sheet: Sheet) -> None:
             f"{lengths.short_number(low)} to {lengths.short(high)}" for low, high in (fit.pin, fit.hole)
         )
         column.paragraph(f"Pin of {pin} in a hole of {hole_limits}.", NOTE)
-    sizes = (
-        (f"{carrier.peg} length", details.peg_length),
-        (
-            f"height above the {carrier.noun if carrier.name == carrier.noun else f'{carrier.noun}s'}",
-            details.peg_height,
-        ),
-    )
+    jaws = f"{carrier.noun}{'s' * (len(sheet.toolkit.plates) > 1)}"
+    sizes = ((f"{carrier.peg} length", details.peg_length), (f"height above the {jaws}", details.peg_height))
     for name, size in sizes:
         fact_or_field(column, name, None if size is None else lengths.words(size))

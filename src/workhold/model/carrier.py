@@ -84,7 +84,9 @@ class Carrier:
 
     @property
     def title(self) -> str:
-        """What it is called, such as "left jaw"."""
+        """What it is called, such as "left jaw"; the only lattice there is by its noun alone."""
+        if not self.letter:
+            return self.noun
         return self.name if self.noun in self.name else f"{self.name} {self.noun}"
 
     @property
@@ -158,8 +160,11 @@ class Carrier:
 
     @property
     def written_as(self) -> tuple[str, str]:
-        """How files name what stands on it: by its carrier where there are several lattices, else by its role."""
-        return (self.noun, self.name) if self.has_lattice and self.letter else ("role", self.contact.role)
+        """How files name what stands on it: by its carrier where there are several lattices, else by its role, which on
+        the only lattice is that of the jaw if it slides."""
+        if self.has_lattice and self.letter:
+            return self.noun, self.name
+        return "role", self.noun if self.has_lattice and self.travel is not None else self.contact.role
 
     def place_name(self, column: int, row: int) -> str:
         """The name of a hole for its peg, such as "L-B3"; of a clamp with its hole or, where only that is known, its line.

@@ -1,7 +1,8 @@
-"""Functions of layers above the model that methods of its classes end in: pictures, papers, tables and presets.
+"""Functions of higher layers that the model's methods end in: pictures, papers, tables and presets.
 
-The model imports none of those layers. The package hands their functions over when it is imported, before any module of it,
-so that a method works whatever was imported first. Each is handed over as what imports it, so that it costs nothing unused.
+The model imports none of those layers. The package hands their functions over when it is imported, before any
+module of it, so that a method works whatever was imported first. Each is handed over as what imports it, so
+that it costs nothing unused.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ IMPORTERS: dict[str, Callable[[], Callable[..., Any]]] = {}
 
 
 def hand_over(importers: Mapping[str, Callable[[], Callable[..., Any]]]) -> None:
-    """Take what imports functions, by the names that methods ask for."""
+    """Takes what imports functions, by the names that methods ask for."""
     IMPORTERS.update(importers)
 
 

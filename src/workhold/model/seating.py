@@ -1,4 +1,4 @@
-"""What is told of a fixture's seating: seats, the pass, the cage, and the figures that follow from them."""
+"""The seating of a fixture: seats, the pass, the cage, and the figures that follow from them."""
 
 from __future__ import annotations
 
@@ -18,34 +18,37 @@ __all__ = [
     "DRY_STEEL",
     "SMALL_CAPTURE",
     "Cage",
-    "Contact",
     "Pass",
     "Seat",
+    "SeatContact",
     "Seating",
 ]
 
 # Of lengths in mm, angles in degrees and forces in files.
 DECIMALS = 9
-# What is warned of (docs/quality.md, "With seating"). mm: jaws are opened by hand to about a millimetre, and a part is put
-# down with about the room that this gives at each peg.
+# Limits of warnings (docs/quality.md, "With seating"). mm: jaws are opened by hand to about a millimetre, and
+# a part is put down with about the room that this gives at each peg.
 SMALL_CAPTURE = 1.0
-# mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it as much.
+# mm: each of two readings of a caliper is off by up to 0.03, and tolerances of 0.01 at four contacts move it
+# as much.
 CLOSE_READING = 0.1
 # The coefficient of friction that dry steel reaches.
 DRY_STEEL = 0.2
 # mm: less is none as it is written.
 SAME_READING = 5e-4
-# What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a clamp.
+# What is done so that a part can be put in, of jaws that clamp by closing (1) and by opening (-1), and of a
+# clamp.
 JAWS = {1: "the jaws are opened", -1: "the jaws are closed"}
 CLAMP = "the clamp is drawn back"
-# By how much the extremes of a cage may fall short at most: in degrees of turns, of shifts this part of their range.
+# By how much the extremes of a cage may fall short at most: in degrees of turns, of shifts this part of their
+# range.
 CAGE_SHORT = {"theta_deg": 0.5, "share": 0.01}
 # A written seat is the fixture's own when pose, in degrees and mm, and separation agree to this.
 IS_OWN = 1e-5
 
 
 @frozen
-class Contact:
+class SeatContact:
     """A peg on a face or on a corner of the part.
 
     Parameters
@@ -69,8 +72,8 @@ class Contact:
         return {"peg": self.peg, "corner" if self.corner else "face": self.face}
 
     @classmethod
-    def of_fields(cls, fields: Mapping[str, int]) -> Contact:
-        """The contact that a file tells."""
+    def of_fields(cls, fields: Mapping[str, int]) -> SeatContact:
+        """The contact that a file has."""
         corner = "corner" in fields
         return cls(fields["peg"], fields["corner" if corner else "face"], corner)
 
@@ -85,9 +88,12 @@ class Seat:
     pose : of the part, turned over (x to -x in its own frame) where it is ``mirrored``.
     jaw_separation : S in mm, of a clamp its travel.
     difference : S less that of the fixture.
-    mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the same.
-    contacts, forces : what touches, and each force per unit of jaw force; none of what is loose or not settled.
-    depth : how far in mm the jaws open before the part can get elsewhere; None where it never can, or that was not asked.
+    mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the
+        same.
+    contacts, forces : what touches, and each force per unit of jaw force; there are none where it is loose or
+        not settled.
+    depth : how far in mm the jaws open before the part can get elsewhere; None where it never can, or that is
+        not known.
     is_own : whether it is the fixture's own.
     """
 
@@ -97,7 +103,7 @@ class Seat:
     difference: float
     mirrored: bool
     same_place: bool
-    contacts: tuple[Contact, ...]
+    contacts: tuple[SeatContact, ...]
     forces: tuple[float, ...]
     depth: float | None
     is_own: bool
@@ -123,7 +129,7 @@ class Seat:
 
     @classmethod
     def of_fields(cls, fields: Mapping[str, Any]) -> Seat:
-        """The seat that a file tells; whose own it is the file's fixture tells."""
+        """The seat that a file has; whether it is the fixture's own follows from the fixture."""
         return cls(
             fields["kind"],
             Pose(**fields["pose"]),
@@ -131,7 +137,7 @@ class Seat:
             fields["difference"],
             fields["mirrored"],
             fields["same_place"],
-            tuple(map(Contact.of_fields, fields["contacts"])),
+            tuple(map(SeatContact.of_fields, fields["contacts"])),
             tuple(fields["forces"]),
             fields["depth"],
             False,
@@ -155,7 +161,7 @@ class Pass:
 
     pose: Pose
     jaw_separation: float
-    contacts: tuple[Contact, ...]
+    contacts: tuple[SeatContact, ...]
 
 
 @frozen
@@ -164,8 +170,8 @@ class Cage:
 
     Parameters
     ----------
-    theta_deg, x, y : least and largest turn in degrees, and shift of the centre of its box in mm; never too large, too small
-        by no more than ``CAGE_SHORT``.
+    theta_deg, x, y : least and largest turn in degrees, and shift of the centre of its box in mm; never too
+        large, too small by no more than ``CAGE_SHORT``.
     """
 
     theta_deg: tuple[float, float]
@@ -175,21 +181,23 @@ class Cage:
 
 @frozen
 class Seating:
-    """What a fixture's pegs can do with its part besides holding it in its pose.
+    """The seats of a fixture's pegs and part, and from where closing leads into the fixture's own.
 
     Parameters
     ----------
-    capture_opening : in mm, how far the jaws may be open when the part is let go in the cage; None where it never gets out.
+    capture_opening : in mm, how far the jaws may be open when the part is let go in the cage; None where it
+        never gets out.
     room_factor : sum of the forces: opening by s gives s over this of room at every peg at once.
     lowest_pass : at which the cage ends; None where it does not.
     way_out : in mm, how far the jaws open before the part can leave all pegs; None where it never can.
     cage, placing : how far the part may be off; None where the cage has no end.
     sticking_friction : the coefficient below which it cannot stick near its seat.
-    stop : the separation in mm at which the vise is closed, or opened, without the part; None where nothing stops it.
+    stop : the separation in mm at which the vise is closed, or opened, without the part; None where nothing
+        stops it.
     seats : all, by their separations, the fixture's own among them.
-    unsettled : why what was not settled was not, one sentence each.
-    opening, most : seats count that are reached with the jaws opened by less than the one, and up to the other, the largest
-        separation; in mm, without end if None.
+    unsettled : what could not be settled and why, one sentence each.
+    opening, most : seats count that are reached with the jaws opened by less than the one, and up to the
+        other, the largest separation; in mm, without end if None.
     clamping : 1 where S gets less as it clamps, -1 where it gets more.
     opened : what is done so that the part can be put in, such as "the jaws are opened".
     """
@@ -210,7 +218,7 @@ class Seating:
     opened: str = JAWS[1]
 
     def in_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
-        """The same with what a toolkit tells, and an opening up to which seats count."""
+        """A copy with what follows from a toolkit, and an opening up to which seats count."""
         travel, sign = toolkit.moving.travel, toolkit.clamping
         most, opened = None if travel is None else travel.most, JAWS[sign] if toolkit.moving.on is None else CLAMP
         return evolve(self, opening=opening, most=most, clamping=sign, opened=opened)
@@ -239,7 +247,7 @@ class Seating:
         return [seat for seat in wrong if self.most is None or seat.jaw_separation <= self.most]
 
     def reading_of(self, opening: float | None = None) -> float | None:
-        """What a measurement of the opening must resolve to tell wrong seats, in mm; None where there are none."""
+        """The least difference in mm between the openings of the right and a wrong seat; None without any."""
         return min((abs(seat.difference) for seat in self.wrong_within(opening)), default=None)
 
     def catches(self, opening: float) -> bool:
@@ -248,7 +256,7 @@ class Seating:
 
     @property
     def is_foolproof(self) -> bool:
-        """Whether there is no wrong seat that counts, or a caliper tells each of them; what is unsettled counts as one."""
+        """Whether a caliper shows each wrong seat that counts; what is unsettled counts as one."""
         reading = self.reading_of()
         return reading is None or round(reading, DECIMALS) >= CLOSE_READING
 
@@ -259,7 +267,7 @@ class Seating:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What there is to beware of, one sentence each without a full stop; lengths in mm."""
+        """Warnings, one sentence each without a full stop; lengths in mm."""
         out, reading = list[str](), self.reading_of()
         if self.is_untold:
             out.append("from where on the part is caught is not known")
@@ -272,13 +280,15 @@ class Seating:
 
     @property
     def warning_count(self) -> int:
-        """As how many warnings of quality these count: a small capture opening as two, as what is let go in its cage needs
-        no reading."""
+        """The number of warnings of quality for which these count.
+
+        A small capture opening counts for two, because what is let go in its cage needs no reading.
+        """
         return len(self.warnings) + self.is_hardly_caught
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures that fixtures may be ranked by (``model.quality.SEATING_FIGURES``); what has no end is infinite."""
+        """The figures of ``model.quality.SEATING_FIGURES``; what has no end is infinite."""
         known = {
             "capture_opening": self.capture_opening,
             "drop_room": self.drop_room,
@@ -322,12 +332,14 @@ class Seating:
 
     @classmethod
     def of_fields(cls, fields: Mapping[str, Any], pose: Pose) -> Seating:
-        """The seating that a file tells of a fixture in a pose. What follows from other fields is not looked at."""
+        """The seating that a file has of a fixture in a pose. Fields that follow from others are not read."""
         top, cage = fields["pass"], fields["cage"]
         seats = [Seat.of_fields(seat) for seat in fields["seats"]]
         lowest = None
         if top is not None:
-            lowest = Pass(Pose(**top["pose"]), top["jaw_separation"], tuple(map(Contact.of_fields, top["contacts"])))
+            lowest = Pass(
+                Pose(**top["pose"]), top["jaw_separation"], tuple(map(SeatContact.of_fields, top["contacts"]))
+            )
         friction = fields["sticking_friction"]
         return cls(
             fields["capture_opening"],

@@ -23,18 +23,18 @@ class SetupWords:
     Parameters
     ----------
     standing : heading of the places of the pegs, such as "Locators".
-    located_by : what the part is pushed against, such as "Three locators".
     put : the first thing to do, a sentence.
-    against : where the part lies when it is put in; nothing where what moves brings it there.
     touching : how the part lies where it is held, in two words.
+    located_by : what a clamp pushes the part against, such as "Three locators".
+    against : where the part lies before a clamp pushes it.
     resting : the same of a seat that looks like a fixture.
     """
 
     standing: str
-    located_by: str
     put: str
-    against: str
     touching: str
+    located_by: str = ""
+    against: str = ""
     resting: str = "all four pegs on faces"
 
 
@@ -52,7 +52,7 @@ class Datum:
     lines : the column and the row, or what stands for a row, of the zero point.
     rows_from : where rows are counted from, such as "below".
     substitute : what takes the place of the datum where all of a set-up is moved.
-    edge : distance in mm from what stands for a row to the centres of row 1; None where the zero point is a hole.
+    edge : distance in mm from what stands for a row to the centres of row 1; None where nothing does, or the plate slides.
     """
 
     name: str
@@ -97,7 +97,7 @@ class Datum:
             lines=(f"column {letter}", line),
             rows_from=line,
             substitute=f"the column that takes the place of {letter}",
-            edge=plate.offset[1],
+            edge=plate.offset[1] if plate.travel is None else None,
         )
 
     @property

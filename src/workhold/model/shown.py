@@ -306,13 +306,13 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
 
 
 def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
-    """What shows, with a wall: a bar below the part as long as the plate, which goes on below it."""
+    """What shows, with a wall: a bar below the part as long as the plate, which goes on below it where it stands still."""
     (plate,), thick = seen.carriers, BAR * min(carrier.pitch)
     around = plate.plate.union(seen.part)
     bar = Box(around.x0, -thick, around.x1, 0.0)
-    below = evolve(plate.plate, y0=-thick)
     left, right = (peg.x for peg in fixture.pegs if peg.carrier == carrier.name)
-    plate = evolve(plate, plate=below, broken=plate.broken - {"bottom"})
+    if plate.clamping is None:
+        plate = evolve(plate, plate=evolve(plate.plate, y0=-thick), broken=plate.broken - {"bottom"})
     return evolve(seen, carriers=(plate,), walls=(ShownWall(carrier, bar, (left, right)),))
 
 
@@ -332,7 +332,7 @@ def measured_between(seen: Sequence[ShownCarrier], setting: Setting) -> Measured
             first, low = at
         return ((first, at[1]), (last, at[1])) if upright else ((at[0], low), (at[0], high))
 
-    return Measured(setting, (axis(setting.start, still), axis(setting.end, own or still)), upright)
+    return Measured(setting, (axis(setting.start, still or own), axis(setting.end, own or still)), upright)
 
 
 def held_box(part: Box, fixture: Fixture, clamps: Sequence[ShownClamp]) -> Box:

@@ -54,7 +54,7 @@ def order_words(fixture: Fixture) -> str:
 
     Examples
     --------
-    >>> from workhold.model.fixture import Peg, Pose
+    >>> from workhold.model.fixture import Pair, Peg, Pose
     >>> tips = [Peg(f"clamp {d}", 4, 1, 66.0, 20.0, 2, 0.5, f"clamp {hole}") for d, hole in (("-x", "E2"), ("-y", "C5"))]
     >>> def words(low, high):
     ...     pair = Pair((0, 0), (low, high), (), 1)

@@ -22,93 +22,20 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.fixels.directions import TOWARDS
 from workhold.fixels.fields import Table, ToolkitField
+from workhold.model.arrangement import Arrangement, Symmetry
 from workhold.model.carrier import Carrier, Travel
 from workhold.model.contact_kind import CLAMP_TIP, ContactKind
 from workhold.model.delegates import delegate
 from workhold.model.setup_words import Datum, SetupWords
 from workhold.model.units import Unit
 
-__all__ = ["NAMED", "Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
+__all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
 # The order in which a person would ask for limits to be lifted.
 LIFTED = ("bodies", "travel", "holes")
 # Contacts that fix the pose and the travel of what moves.
 MOST_OF_A_WAY = 4
-# The key of a toolkit in a file that names its kind.
-NAMED = "toolkit"
-
-
-@frozen
-class Arrangement:
-    """How many pegs stand on each carrier.
-
-    Parameters
-    ----------
-    name : the paper's, such as "I".
-    pegs : for each carrier, those that stand still first.
-    direction : in which the carrier that moves clamps, such as "-x", where a toolkit has several.
-    """
-
-    name: str
-    pegs: tuple[int, ...]
-    direction: str | None = None
-
-    @property
-    def directions(self) -> tuple[str, ...]:
-        """In which its clamps push, one for each; none where no clamp pushes."""
-        return tuple((self.direction or "").split())
-
-    @property
-    def title(self) -> str:
-        """Its name, and the direction where it has one."""
-        return " ".join((self.name, *self.directions))
-
-    @property
-    def short_title(self) -> str:
-        """What a fixture of it is called on a small picture, such as "Type I"."""
-        return self.title.replace("-", "\N{MINUS SIGN}") if self.directions else f"Type {self.name}"
-
-    @property
-    def heading(self) -> str:
-        """What a fixture of it is called in a line.
-
-        >>> Arrangement("II", (3, 1)).heading, Arrangement("clamp", (3, 1), "-x").heading
-        ('Type II', 'Clamp \u2212x')
-        """
-        if not self.directions:
-            return f"Type {self.title}"
-        clamps = " ".join(self.directions).replace("-", "\N{MINUS SIGN}")
-        return f"Clamp{'s' * (len(self.directions) > 1)} {clamps}"
-
-    @property
-    def towards(self) -> str:
-        """Its direction, or those of two clamps, in words, on a plan whose y runs up."""
-        return " and ".join(dict.fromkeys(TOWARDS[name] for name in self.directions))
-
-    @property
-    def carriers(self) -> tuple[int, ...]:
-        """The number of each peg's carrier, in the order in which pegs are listed.
-
-        >>> Arrangement("II", (3, 1)).carriers
-        (0, 0, 0, 1)
-        """
-        return tuple(number for number, count in enumerate(self.pegs) for _ in range(count))
-
-
-@frozen
-class Symmetry:
-    """A motion of the plane after which a toolkit is itself again, so that two fixtures are the same.
-
-    Parameters
-    ----------
-    half_turns : how often everything turns by 180 degrees.
-    carriers : for each carrier the number of the one whose place it takes.
-    """
-
-    half_turns: int
-    carriers: tuple[int, ...]
 
 
 @frozen
@@ -170,7 +97,6 @@ class Toolkit:
     ----------
     kind : the name of its kind in files.
     table : its fields.
-    file_key : the key that it has in files: one of its own, or the one under which its kind is named.
     noun : what it is called, such as "vise".
     locked : what it is with a screw that locks what moves, in words that "locked" follows.
     arrangements : what may stand on its carriers.
@@ -191,7 +117,6 @@ class Toolkit:
 
     kind: ClassVar[str]
     table: ClassVar[Table]
-    file_key: ClassVar[str] = NAMED
     noun: ClassVar[str]
     locked: ClassVar[str]
     arrangements: ClassVar[tuple[Arrangement, ...]]
@@ -218,7 +143,7 @@ class Toolkit:
     @property
     def datum(self) -> Datum:
         """Where zero lies, and what places are measured from: the first hole of the first plate."""
-        return Datum.at_hole(self.carriers[0])
+        return Datum.at_hole(self.plates[0])
 
     @property
     def plates(self) -> tuple[Carrier, ...]:

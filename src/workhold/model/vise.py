@@ -12,7 +12,7 @@ from workhold.model.flat import Flat
 from workhold.model.holes import Holes
 from workhold.model.making import made_from_table, settle
 from workhold.model.setup_words import SetupWords
-from workhold.model.toolkit import NAMED, Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
+from workhold.model.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.model.units import Unit
 
 __all__ = ["OpeningVise", "Vise"]
@@ -31,9 +31,7 @@ WORDING = Wording(
 )
 SETUP = SetupWords(
     standing="Pegs",
-    located_by="Pegs of the {plate}s",
     put="Put {peg}s in {holes}.",
-    against="",
     touching="four pegs",
 )
 
@@ -72,7 +70,6 @@ class Vise(Toolkit):
 
     kind: ClassVar[str] = "vise"
     table: ClassVar[Table] = TABLES["vise"]
-    file_key: ClassVar[str] = "vise"
     noun: ClassVar[str] = "vise"
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
@@ -153,6 +150,5 @@ class OpeningVise(Vise):
     """
 
     kind: ClassVar[str] = "opening-vise"
-    file_key: ClassVar[str] = NAMED
     clamping: ClassVar[int] = -1
     wording: ClassVar[Wording] = evolve(WORDING, backwards="the jaws close, not when they are pressed apart")

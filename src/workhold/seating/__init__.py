@@ -1,1 +1,1 @@
-"""Seating: what else the pegs of a fixture can do with the part, and from where closing the vise leads into its pose."""
+"""Seating: where else a part can rest on a fixture's pegs, and from where closing leads into its pose."""

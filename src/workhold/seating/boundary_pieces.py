@@ -1,6 +1,7 @@
-"""The pieces of the boundary of (part + disc of the peg radius): offset faces, arcs around convex corners, and pockets.
+"""The boundary of (part + disc of the peg radius): offset faces, arcs around convex corners, and pockets.
 
-Reference: T. Lozano-Perez, "Spatial planning: a configuration space approach", IEEE Transactions on Computers C-32 (1983).
+Reference: T. Lozano-Perez, "Spatial planning: a configuration space approach", IEEE Transactions on Computers
+C-32 (1983).
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ def touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[Touch, Seg
 
 
 def rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, Arc]]:
-    """The arcs on which a disc rolls around the convex corners of an outline, as far as nothing else is nearer."""
+    """The arcs on which a disc rolls around convex corners of an outline, where nothing else is nearer."""
     rows, out = segment_rows(segments), []
     raw = [piece for piece in (raw_offset(segment, radius) for segment in segments) if piece is not None]
     before = {segment.end: segment for segment in segments if not is_full(segment)}
@@ -90,7 +91,7 @@ def end_angle(segment: Segment, end: float) -> float:
 
 
 def pockets_of(pieces: list[Segment], rows: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Where two pieces end in one point with different normals: place about the centre, normals, and whose they are."""
+    """The pockets, in which two pieces end with different normals: places, normals and numbers of pieces."""
     ends = [(k, s) for k, piece in enumerate(pieces) if not is_full(piece) for s in (-1.0, 1.0)]
     if not ends:
         return np.zeros((0, 6)), np.zeros((0, 2), np.int64)

@@ -1,8 +1,9 @@
-"""How a part gets into its pose where two clamps hold it: it is pushed against its locators by hand, then clamped.
+"""How a part gets into two clamps: it is pushed against its locators by hand, then clamped.
 
-The locators alone fix the pose, and neither clamp holds the part alone, so from where one of them would bring it home cannot
-be told: no opening, no reading, no cage. What can be told are the order of tightening, which locators each clamp alone does
-not press the part on, and below which friction both together bring home a part that is a little off a locator.
+The locators alone fix the pose, and neither clamp holds the part alone. So it is not known from where one of
+them would bring it home: there is no opening, no reading, no cage. The order of tightening is known, and
+which locators each clamp alone does not press the part on. So is the friction below which both bring home a
+part that is a little off a locator.
 """
 
 from __future__ import annotations
@@ -30,21 +31,21 @@ WHY = (
     "hand. The locators alone fix that place."
 )
 LOCATORS = 3
-# Friction is told to so many decimals, rounded down.
+# Friction is given to so many decimals, rounded down.
 DECIMALS = 3
-# A ratio of forces below this is told to two digits, others to hundredths.
+# A ratio of forces below this is given to two digits, others to hundredths.
 SMALL = 0.1
 
 
 @frozen(repr=False)
 class ByHand:
-    """What there is to know, and to do, of a part in two clamps.
+    """How to put a part into two clamps, and what is known of it there.
 
     Parameters
     ----------
     fixture, toolkit : what holds it.
-    sticking_friction : the coefficient below which a part a little off a locator comes home in both clamps at their working
-        ratio; infinite where it always does, None for pegs with a flat.
+    sticking_friction : the coefficient below which a part a little off a locator comes home in both clamps at
+        their working ratio. It is infinite where the part always does, and None for pegs with a flat.
     """
 
     fixture: Fixture
@@ -63,12 +64,12 @@ class ByHand:
 
     @property
     def unpressed(self) -> tuple[tuple[Peg, ...], ...]:
-        """For each clamp the locators, or ends of the contact with a fence, that it alone does not press the part on."""
+        """The locators, and ends of the contact with a wall, without force under each clamp alone."""
         known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
         return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
 
     def as_fields(self, text: Callable[[float], str] = MILLIMETRE.text) -> dict[str, Any]:
-        """What there is to know and to do as JSON has it, clamps and locators by their names.
+        """What is known and what to do, as JSON has it, with clamps and locators by their names.
 
         Parameters
         ----------
@@ -91,14 +92,14 @@ class ByHand:
         Parameters
         ----------
         text : writes a length in mm with its unit.
-        with_order : whether the order of tightening is told, which stands elsewhere on some papers.
+        with_order : whether the order of tightening is among the steps; some papers have it elsewhere.
         """
         order = [order_words(self.fixture)] if with_order else []
         steps = [self.push_words(), self.touch_words(), " ".join([*order, self.hold_words()])]
         return [*steps, *self.friction_words(), self.after_words(text)]
 
     def push_words(self) -> str:
-        """How to put the part in."""
+        """How to put the part in, in one step."""
         locators = [peg.hole for peg in self.fixture.pegs[:LOCATORS] if not peg.is_on_wall]
         wall, noun = self.toolkit.wall, self.toolkit.carriers[0].peg
         against = f"all three {noun}s, {listed(locators)}"
@@ -111,7 +112,7 @@ class ByHand:
 
     @property
     def towards(self) -> str:
-        """Which way both clamps push, in words."""
+        """The direction in which both clamps push, in words."""
         return self.toolkit.arrangement(self.fixture.type, self.fixture.direction).towards
 
     def touch_words(self) -> str:
@@ -141,15 +142,15 @@ class ByHand:
             return [
                 f"Tightened together, {together}, both bring home a part a little off a locator, whatever the friction."
             ]
-        told = f"{floor(least * 10.0**DECIMALS) / 10.0**DECIMALS:.{DECIMALS}f}"
+        friction = f"{floor(least * 10.0**DECIMALS) / 10.0**DECIMALS:.{DECIMALS}f}"
         steel = "dry steel has 0.1 to 0.2"
         if least >= DRY_STEEL:
             return [
                 f"Tightened together, {together}, both bring home a part a little off a locator while friction is below "
-                f"{told}; {steel}."
+                f"{friction}; {steel}."
             ]
         return [
-            f"From a friction of {told} on the part can stay a little off a locator also under both clamps, {together}; "
+            f"From a friction of {friction} on the part can stay a little off a locator also under both clamps, {together}; "
             f"{steel}, so tap it home meanwhile."
         ]
 
@@ -162,7 +163,7 @@ class ByHand:
 
 
 def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
-    """What there is to know, and to do, of a part in the two clamps of a fixture."""
+    """How to put a part into the two clamps of a fixture, and what is known of it there."""
     from workhold.seating.sticking_friction import sticking_friction_of_two
 
     friction = None if toolkit.has_flats else sticking_friction_of_two(fixture, workpiece, toolkit)
@@ -170,14 +171,14 @@ def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
 
 
 def place_of(peg: Peg, toolkit: Toolkit) -> str:
-    """Where a locator is, or an end of the contact with a fence."""
+    """Where a locator is, or an end of the contact with a wall."""
     if not peg.is_on_wall or toolkit.wall is None:
         return peg.hole
     return f"the {toolkit.wall.noun} on the {peg.hole.rpartition(' ')[2]}"
 
 
 def places_of(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
-    """Where some are; both ends of the contact with a fence are the fence."""
+    """Where some locators are; both ends of the contact with a wall are the wall."""
     walls = sum(peg.is_on_wall for peg in pegs)
     if toolkit.wall is None or walls < 2:
         return [place_of(peg, toolkit) for peg in pegs]

@@ -12,7 +12,7 @@ __all__ = ["filled", "with_room"]
 
 
 def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -> NDArray[np.float64]:
-    """What a kernel writes into its last argument, an array of rows that is made larger until it has room."""
+    """The rows that a kernel writes into its last argument, which is made larger until it has room."""
     while True:
         out = np.empty((room, width))
         count = kernel(*arguments, out)
@@ -22,7 +22,7 @@ def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -
 
 
 def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
-    """An array of which some rows are taken, with room for more: itself, or one of twice the length that begins as it."""
+    """An array with room for more rows: itself, or a copy of twice the length."""
     if count + more <= len(rows):
         return rows
     out = np.empty((2 * (count + more), *rows.shape[1:]), rows.dtype)

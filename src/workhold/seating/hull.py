@@ -1,4 +1,4 @@
-"""What of a part may touch a straight wall: corners of its convex hull and convex arcs on it, and its hull edges."""
+"""The features of a part that may touch a straight wall: corners, arcs and edges of its convex hull."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Hull:
 
     @property
     def turned_over(self) -> Hull:
-        """That of the part turned over, x to -x."""
+        """The hull of the part turned over, x to -x."""
         return Hull(self.rows * np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 1.0]), self.touches)
 
     @property
@@ -76,7 +76,7 @@ class Hull:
         return np.concatenate([middle - half, middle + half]) % tau
 
     def reach(self, angles: Array) -> Array:
-        """How far (N, H) in mm the pieces reach in directions (N,) on the part, -inf where they do not support."""
+        """The reach (N, H) in mm of the pieces in directions (N,), -inf where they do not support."""
         normal = np.stack([np.cos(angles), np.sin(angles)], axis=1)
         there = normal @ self.rows[:, 3:5].T >= self.rows[:, 5] - SUPPORTS
         return np.asarray(np.where(there, normal @ self.rows[:, :2].T + self.rows[:, 2], -np.inf))

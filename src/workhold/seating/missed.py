@@ -1,6 +1,7 @@
-"""A fixture that was not found among the seats of its own pegs, as what it is: four contacts in balance, and so a seat.
+"""A fixture that was not found among the seats of its own pegs, as a candidate of four contacts.
 
-That fixtures are seats is proven. So one that is missing shows that what looks for seats missed it, and perhaps others.
+That fixtures are seats is proven. So one that is missing shows that what looks for seats missed it, and
+perhaps others.
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ from workhold.kernels.seating.columns import (
     PIECE,
 )
 from workhold.kernels.seating.pieces import clearances
-from workhold.seating.balance import forces_of
-from workhold.seating.fence import ON_WALL, Fence
-from workhold.seating.locus import Locus
+from workhold.seating.contact_forces import forces_of
+from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
+from workhold.seating.wall_equilibria import ON_WALL, WallEquilibria
 
 __all__ = ["OTHERS_MAY_BE", "WAS_NOT_FOUND", "as_candidate"]
 
@@ -36,7 +37,9 @@ OTHERS_MAY_BE = (
 )
 
 
-def as_candidate(locus: Locus, pattern: Pattern, config: Array, faces: Sequence[int], size: float) -> Array:
+def as_candidate(
+    boundary: ObstacleBoundary, pattern: Pattern, config: Array, faces: Sequence[int], size: float
+) -> Array:
     """The candidate (24,) of a fixture.
 
     Parameters
@@ -50,17 +53,17 @@ def as_candidate(locus: Locus, pattern: Pattern, config: Array, faces: Sequence[
     contacts = []
     for peg, (at, side) in enumerate(zip(pattern.at(config[None])[0], pattern.right.tolist(), strict=True)):
         off = {}
-        for number in range(*locus.parts[side].tolist()):
-            clearances(np.ascontiguousarray(at[None]), locus.rows, number, number + 1, away)
-            is_another = locus.touches[number].corner or locus.touches[number].face != faces[peg]
+        for number in range(*boundary.parts[side].tolist()):
+            clearances(np.ascontiguousarray(at[None]), boundary.rows, number, number + 1, away)
+            is_another = boundary.touches[number].corner or boundary.touches[number].face != faces[peg]
             off[number] = is_another, abs(float(away[0]))
         contacts.append((peg, min(off, key=off.__getitem__)))
-    if pattern.wall is not None:
-        fence = Fence(locus, pattern)
-        side = min(fence.sides, key=lambda one: 1.0 - np.cos(fence.outward() - one.angle - config[0]))
-        contacts += [fence.on(piece, at > 0) for at, piece in zip(range(len(ON_WALL)), side.pieces, strict=True)]
+    if pattern.half_plane is not None:
+        wall = WallEquilibria(boundary, pattern)
+        side = min(wall.sides, key=lambda one: 1.0 - np.cos(wall.outward() - one.angle - config[0]))
+        contacts += [wall.on(piece, at > 0) for at, piece in zip(range(len(ON_WALL)), side.pieces, strict=True)]
     row[CONTACTS] = len(contacts)
     for k, (peg, piece) in enumerate(contacts):
         row[PEG + k], row[PIECE + k] = peg, piece
-    row[FORCE : FORCE + 4] = forces_of(locus, pattern, row, size)[0]
+    row[FORCE : FORCE + 4] = forces_of(boundary, pattern, row, size)[0]
     return row

@@ -1,4 +1,9 @@
-"""Four pegs of which those that move slide along x: what is solved once for all fixtures on them."""
+"""Four pegs of which those that move slide along x: what is solved once for all fixtures on them.
+
+Glossary
+--------
+stop : the smallest separation, at which what moves is stopped without the part.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +18,7 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.toolkit import Toolkit
-from workhold.seating.door import Door
+from workhold.seating.closing_frame import ClosingFrame
 
 __all__ = ["Pattern", "refuse_unseated"]
 
@@ -22,13 +27,13 @@ Array = NDArray[np.float64]
 SAME_PATTERN = 1e-6
 # mm. A clamp's tip may be in a locator by this much: rounding.
 APART = 1e-6
-# mm. How much farther apart than both could touch the part pegs are at the end of a way that nothing stops.
+# mm. How much farther apart than both could touch the part pegs are at the end of a descent without a stop.
 BEYOND = 1.0
 
 
 @define(frozen=True, eq=False)
 class Pattern:
-    """Four pegs, in the frame of their door.
+    """Four pegs, in their closing frame.
 
     Parameters
     ----------
@@ -36,11 +41,11 @@ class Pattern:
     right : (4,) 1 for those that move, such as pegs of the right jaw, 0 for others.
     radii : in mm, of the pegs that stand still and of those that move.
     stop, widest : the smallest and the largest separation in mm, infinite where nothing stops what moves.
-    door : the way to the toolkit's frame.
+    frame : leads to the toolkit's frame and back.
     numbers : their places (4,) in the fixture's pegs.
-    wall : unit vector along which a wall presses the part, along x or y, and how far in mm along it the wall is; None
-        where there is none. Then there are two pegs.
-    gap : least distance in mm along x that pegs of both jaws keep, None where nothing is said of it.
+    half_plane : what a wall leaves free, with two pegs: the unit vector into it, along x or y, and how far in
+        mm along it the wall is. None without a wall.
+    gap : least distance in mm along x that pegs of both jaws keep, None where none is asked for.
     """
 
     pegs: Array
@@ -48,14 +53,14 @@ class Pattern:
     radii: tuple[float, float]
     stop: float
     widest: float
-    door: Door
+    frame: ClosingFrame
     numbers: tuple[int, ...] = (0, 1, 2, 3)
-    wall: tuple[float, float, float] | None = None
+    half_plane: tuple[float, float, float] | None = None
     gap: float | None = None
 
     @classmethod
     def of(cls, fixture: Fixture, toolkit: Toolkit) -> Pattern:
-        """The pegs of a fixture.
+        """The pattern of a fixture's pegs.
 
         Raises
         ------
@@ -67,38 +72,40 @@ class Pattern:
         carriers = [toolkit.carrier(fixture.pegs[k].carrier) for k in numbers]
         moving = next(carrier for carrier in carriers if carrier.travel is not None)
         standing = next(carrier for carrier in carriers if carrier.travel is None)
-        door = Door.of(toolkit, moving)
+        frame = ClosingFrame.of(toolkit, moving)
         right = np.array([int(carrier.travel is not None) for carrier in carriers], dtype=np.int64)
-        pegs = door.turned(np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in numbers], dtype=np.float64))
-        wall = None
+        pegs = frame.turned(np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in numbers], dtype=np.float64))
+        half_plane = None
         if toolkit.wall is not None:
             # It runs along x at y = 0, the part above it.
-            x, y = door.turned(np.array([0.0, 1.0])).tolist()
-            wall = x, y, 0.0
-        pegs[:, 0] -= right * (door.sign * fixture.jaw_separation)
+            x, y = frame.turned(np.array([0.0, 1.0])).tolist()
+            half_plane = x, y, 0.0
+        pegs[:, 0] -= right * (frame.sign * fixture.jaw_separation)
         pattern = cls(
-            pegs, right, (standing.peg_radius, moving.peg_radius), -inf, inf, door, numbers, wall, toolkit.gap
+            pegs, right, (standing.peg_radius, moving.peg_radius), -inf, inf, frame, numbers, half_plane, toolkit.gap
         )
-        stop, widest = pattern.free_of_locators(door.sign * fixture.jaw_separation)
+        stop, widest = pattern.free_of_locators(frame.sign * fixture.jaw_separation)
         if toolkit.gap is not None:
             stop, widest = pattern.gap_kept(toolkit.gap)
         assert moving.travel is not None
-        if door.sign < 0.0:
+        if frame.sign < 0.0:
             stop = stop if moving.travel.most is None else max(stop, -moving.travel.most)
         elif toolkit.gap is None:
             stop = max(stop, moving.travel.least)
         return evolve(pattern, stop=stop, widest=widest)
 
     def gap_kept(self, gap: float) -> tuple[float, float]:
-        """The separations at which pegs of both jaws are a gap apart: the stop as they close, the widest of those that
-        clamp by opening."""
+        """The stop and the widest separation that a gap between pegs of both jaws leaves.
+
+        Jaws that close have a stop, and jaws that clamp by opening a widest separation.
+        """
         left, right = self.pegs[self.right == 0, 0], self.pegs[self.right == 1, 0]
-        if self.door.sign > 0.0:
+        if self.frame.sign > 0.0:
             return float(gap + left.max() - right.min()), inf
         return -inf, float(left.min() - right.max() - gap)
 
     def free_of_locators(self, separation: float) -> tuple[float, float]:
-        """The separations at which a clamp's tip meets a locator before it and behind it, seen from one between."""
+        """The separations, about a given one, at which a clamp's tip meets a locator before or behind it."""
         stop, widest = -inf, inf
         for tip in self.pegs[self.right == 1]:
             for locator in self.pegs[self.right == 0]:
@@ -110,18 +117,20 @@ class Pattern:
                     stop = max(stop, min(ahead + sqrt(square), separation + APART))
                 else:
                     widest = min(widest, max(ahead - sqrt(square), separation - APART))
-            if self.wall is not None and self.wall[0] != 0.0:
+            if self.half_plane is not None and self.half_plane[0] != 0.0:
                 # The tip moves toward the wall, or away from it.
-                ahead = self.wall[0] * (self.wall[2] + self.radii[1]) - float(tip[0])
-                if self.wall[0] > 0.0:
+                ahead = self.half_plane[0] * (self.half_plane[2] + self.radii[1]) - float(tip[0])
+                if self.half_plane[0] > 0.0:
                     stop = max(stop, ahead)
                 else:
                     widest = min(widest, ahead)
         return stop, widest
 
     def end(self, diameter: float) -> float:
-        """The smallest separation in mm that a way leads to: the stop or, where there is none, one at which no peg that
-        moves touches a part of a diameter together with one that stands still."""
+        """The smallest separation in mm that a descent leads to: the stop, if there is one.
+
+        Without a stop no peg that moves touches a part of the diameter together with one that stands still.
+        """
         left, right = self.pegs[self.right == 0, 0], self.pegs[self.right == 1, 0]
         return max(self.stop, float(left.min() - right.max()) - diameter - sum(self.radii) - BEYOND)
 
@@ -131,18 +140,18 @@ class Pattern:
         return np.lexsort((self.pegs[:, 1], self.pegs[:, 0], self.right))
 
     def key(self) -> tuple[object, ...]:
-        """What patterns share that differ by a shift of all pegs and by their order."""
+        """A key that patterns share if they differ by a shift of all pegs and by their order."""
         moved = self.pegs[self.order] - self.pegs[self.order[0]]
         # Where separations are counted from is of no account.
         first = -int(self.right.sum())
         apart = moved[first, 0]
         moved[first:, 0] -= apart
         ends = [self.stop + apart, self.widest + apart]
-        if self.wall is not None:
-            ux, uy, off = self.wall
+        if self.half_plane is not None:
+            ux, uy, off = self.half_plane
             ends += [ux / SAME_PATTERN, uy / SAME_PATTERN, off - float(self.pegs[self.order[0]] @ [ux, uy])]
-        told = np.rint(np.array(ends + moved.ravel().tolist()) / SAME_PATTERN) + 0.0
-        return (*self.radii, *self.right[self.order].tolist(), *told.tolist())
+        steps = np.rint(np.array(ends + moved.ravel().tolist()) / SAME_PATTERN) + 0.0
+        return (*self.radii, *self.right[self.order].tolist(), *steps.tolist())
 
     def reaches(self, separation: Any, slack: float = 0.0) -> Any:
         """Whether separations, a number or many, are between the stop and the widest."""
@@ -159,17 +168,17 @@ class Pattern:
 
 
 def refuse_unseated(toolkit: Toolkit) -> None:
-    """Refuse toolkits of which no seat of closing is told.
+    """Refuses toolkits for which seats of closing are not sought.
 
     Raises
     ------
     InputError
         With two clamps, for pegs with a flat, and for pegs without a radius.
     """
-    asked = "what a part does while it is clamped is told"
+    words = "what a part does while it is clamped is told"
     if toolkit.needs_pairs:
-        raise InputError(f"{asked} of one clamp: with two the part is put against its locators by hand.")
+        raise InputError(f"{words} of one clamp: with two the part is put against its locators by hand.")
     if toolkit.has_flats:
-        raise InputError(f"{asked} of round pegs: those of this result have flats.")
+        raise InputError(f"{words} of round pegs: those of this result have flats.")
     if min(carrier.peg_radius for carrier in toolkit.carriers if not carrier.is_wall) <= 0.0:
         raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")

@@ -1,15 +1,17 @@
 """The friction below which a part cannot stick near its seat, in a vise, under one clamp or under two.
 
-In a vise, and under one clamp, that is where three of the four contacts balance the jaw inside their cones. Contact i
-presses with h (-n + s mu t), |s| <= 1. Three forces balance where the determinant of their wrenches is zero; with three
-unknown ratios, one of them up to scale, the least largest ratio has all three equal, or one of the contacts without force
-(V.-D. Nguyen, International Journal of Robotics Research 7, 1988). A determinant of signs is a cubic in mu. Where less
-friction does, the jaw's share of the forces vanishes at the least: the three lock whatever its force. Halving finds that.
+In a vise, and under one clamp, that is where three of the four contacts balance the jaw inside their cones.
+Contact i presses with h (-n + s mu t), |s| <= 1. Three forces balance where the determinant of their wrenches
+is zero. Of three unknown ratios the least largest has all three equal, or one of the contacts without force.
+A determinant of signs is a cubic in mu. Where less friction does, the jaw's share of the forces vanishes at
+the least: the three lock whatever its force. Halving finds that. Reference: V.-D. Nguyen, "Constructing
+force-closure grasps", International Journal of Robotics Research 7 (1988).
 
-Of two clamps the forces are given, in a ratio. Near the pose both tips touch, and a part that is not in it is off some
-locator. So what is sought is the least mu at which contacts without one of the three locators balance the clamps inside
-their cones. As cones grow with mu, halving finds it. Contacts of poses that come ever nearer to the fixture's end in its
-contacts, and forces of sum 1 have a limit; hence below that mu there is nothing to stick in near the pose.
+Of two clamps the forces are given, in a ratio. Near the pose both tips touch, and a part that is not in it is
+off some locator. So what is sought is the least mu at which contacts without one of the three locators
+balance the clamps inside their cones. As cones grow with mu, halving finds it. Contacts of poses that come
+ever nearer to the fixture's end in its contacts, and forces of sum 1 have a limit. So below that mu there is
+nothing to stick in near the pose.
 """
 
 from __future__ import annotations
@@ -40,7 +42,7 @@ PRECISION = 1e-9
 
 
 def sticking_friction(points: Array, normals: Array, right: Array) -> float:
-    """The least coefficient of friction at which three of four contacts (two included) balance the jaw, or infinity.
+    """The least friction at which three of four contacts, or two, balance the jaw; infinite if there is none.
 
     Parameters
     ----------
@@ -49,17 +51,19 @@ def sticking_friction(points: Array, normals: Array, right: Array) -> float:
     right : (4,) 1 for contacts of the right jaw's pegs, 0 for others.
     """
     size = max(float((points.max(axis=0) - points.min(axis=0)).max()), SMALLEST)
-    told = (
+    contacts = (
         (points - points.sum(axis=0) / len(points)) / size,
         np.ascontiguousarray(normals),
         np.asarray(right, dtype=np.int64),
     )
-    return float(least_friction(*told, np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 4)), np.empty((4, 4))))
+    return float(least_friction(*contacts, np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 4)), np.empty((4, 4))))
 
 
 def sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """The least coefficient of friction at which two clamps, in their working ratio, balance without one of the locators;
-    infinite where none that may be asked for does."""
+    """The least friction at which two clamps, in their working ratio, balance without one of the locators.
+
+    It is infinite where they balance at none up to ``MOST_FRICTION``.
+    """
     assert fixture.pair is not None
     ratio = fixture.pair.working_ratio
     touched = Touched.of(workpiece, toolkit)
@@ -79,14 +83,14 @@ def sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: To
 
 
 def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool:
-    """Whether forces that are not all zero balance, without one of three locators, while two clamps push in a ratio.
+    """Whether forces balance two clamps that push in a ratio, without one of three locators.
 
-    A solution that is not negative has, where there is any, no more entries above zero than there are equations (V. Chvatal,
-    *Linear Programming*, 1983, chapter 3), so that all choices of so many are tried.
+    If there is a solution that is not negative, one has no more entries above zero than there are equations
+    (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of so many entries are tried.
 
     Parameters
     ----------
-    edges, share : of five pegs, the clamps last, as ``statics.friction.cone_edges`` tells them.
+    edges, share : of five pegs, the clamps last: see ``statics.friction.cone_edges``.
     ratio : the second clamp's force over the first's.
     """
     count = len(edges) // 2

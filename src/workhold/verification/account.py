@@ -1,6 +1,6 @@
 """Whether the numbers that a result gives about itself agree with each other and with what it lists.
 
-The identities, for each type apart where a number is told for each:
+The identities, for each type apart where a number is given for each:
 
 - counts = fixtures listed; counts <= found; 0 < distinct where 0 < found; distinct <= found <= distinct * rotations, those
   of the part onto itself;
@@ -19,7 +19,7 @@ The identities, for each type apart where a number is told for each:
   are as many as are derived, once the search is complete; each seat and pair of directions needs two contacts of locators,
   or wall and locator, and a clamp, each pair of clamps two of its own;
 - where fixtures are ruled out by their seating, a note says how many of how many are listed, and each that is listed has
-  its seating told; without such rules as many have it as were asked for;
+  its seating stated; without such rules as many have it as were asked for;
 - the notes are those that follow from these numbers.
 
 What became of the candidates, and how much work that was, is otherwise known to the search alone.
@@ -100,9 +100,9 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
 
 
 def seating_faults(listing: Listing) -> Iterator[str]:
-    """Contradictions between how many fixtures have their seating told and how many should."""
+    """Contradictions between how many fixtures have their seating stated and how many should."""
     query, listed = listing.query, len(listing.fixtures)
-    # With two clamps there is none to be told.
+    # With two clamps there is none to state.
     first = listing.fixtures[: 0 if query.toolkit.needs_pairs else query.seating or 0]
     told = sum(fixture.seating is not None for fixture in first)
     if query.has_seating_rules and (told < listed or listed > len(first)):
@@ -132,7 +132,7 @@ def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
 
 
 def statistics_faults(listing: Listing) -> Iterator[str]:
-    """Contradictions in the numbers that tell how much work the search was."""
+    """Contradictions in the numbers that say how much work the search was."""
     numbers, proof = listing.statistics, listing.proof
     known = [SEARCH, ALGEBRA] if listing.query.toolkit.wall is None else [FENCE]
     if set(numbers) not in map(set, known) or min(numbers.values()) < 0:
@@ -231,7 +231,7 @@ def seated_notes(listing: Listing) -> Iterator[str]:
 
 
 def stopped_notes(note: str) -> Iterator[str]:
-    """The note of a search that was stopped after the seconds that a note tells."""
+    """The note of a search that was stopped after the seconds that a note says."""
     for word in note.split():
         try:
             yield stopped_note(float(word))

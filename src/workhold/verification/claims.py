@@ -23,7 +23,7 @@ class Claim:
     Parameters
     ----------
     fields : as they are written.
-    told : the same in the model, which works out again what follows from other fields.
+    told : their meaning in the model, which works out again what follows from other fields.
     """
 
     fields: Mapping[str, Any]
@@ -31,7 +31,7 @@ class Claim:
 
     @property
     def capture_opening(self) -> float | None:
-        """As told."""
+        """The capture opening that is claimed, in mm."""
         return self.told.capture_opening
 
 
@@ -48,7 +48,7 @@ def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: in
 
 
 def with_claims(fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result") -> list[Fixture]:
-    """Fixtures, whose seating is told by fields or is one of the model, with what is claimed of it.
+    """Fixtures, whose seating is given by fields or is one of the model, with what is claimed of it.
 
     Raises
     ------

@@ -15,7 +15,6 @@ from workhold.verification.balls import Point, cross, dot, least, turned
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.tolerances import LEAST_CLAMPING, LEAST_SHARE, LEAST_SPAN
-from workhold.verification.wrench_radius import radius_of_four
 
 __all__ = ["Balance", "closure_findings", "inverted", "minors", "span"]
 
@@ -98,10 +97,6 @@ class Balance:
         own = self.forces
         share = sum((a * b for a, b in zip(forces, own, strict=True)), arb(0)) / sum((a * a for a in own), arb(0))
         return [share * force for force in own]
-
-    def wrench_radius(self, center: Point, length: float) -> arb | None:
-        """The wrench radius, about a centre with L in mm."""
-        return radius_of_four(self.vector, center, length, self.points, self.normals)
 
 
 def inverted(rows: list[list[arb]]) -> list[list[arb]] | None:

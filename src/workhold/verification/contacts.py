@@ -16,6 +16,7 @@ from typing import ClassVar
 from attrs import field, frozen
 from flint import arb, arb_mat
 
+from workhold.model import fixture as model
 from workhold.model.flat import Flat
 from workhold.verification.balls import Point, cross, dot, turned
 from workhold.verification.sides import LineSide, Side
@@ -38,6 +39,11 @@ class Pose:
     def of(cls, theta: arb, x: arb, y: arb, *travels: arb) -> Pose:
         """The pose with its cosine and sine."""
         return cls(theta, x, y, travels, theta.cos(), theta.sin())
+
+    @classmethod
+    def written(cls, pose: model.Pose) -> Pose:
+        """The pose of a file as the numbers that it is, without any travel."""
+        return cls.of(arb(pose.theta_deg) * arb.pi() / 180, arb(pose.x), arb(pose.y), arb(0))
 
 
 @frozen(eq=False)

@@ -31,7 +31,7 @@ Barrier = tuple[arb, arb]
 def end_distance(side: Side, radius: arb, beside: Iterable[Barrier], center: Point) -> arb:
     """Distance in mm along its contact feature from a peg's centre to the nearer end.
 
-    A whole circle has no end; half its circumference is told. Nothing trims it: whatever else there is lies beyond the
+    A whole circle has no end; half its circumference counts. Nothing trims it: whatever else there is lies beyond the
     material behind it.
     """
     if isinstance(side, ArcSide) and side.whole:
@@ -46,7 +46,7 @@ def end_distance(side: Side, radius: arb, beside: Iterable[Barrier], center: Poi
 def edge_distances(
     side: Side, radius: arb, beside: Iterable[Barrier], center: Point, smooth: tuple[bool, bool]
 ) -> list[arb]:
-    """The same to every barrier and to the ends of the side that are no tangent joints, as ``smooth`` says of its two."""
+    """Distances to every barrier and to the ends of the side that are no tangent joints, as ``smooth`` says of its two."""
     if isinstance(side, ArcSide) and side.whole:
         return []
     slacks = side.slacks(center, radius)

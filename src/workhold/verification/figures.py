@@ -42,6 +42,7 @@ from workhold.verification.tolerances import (
     SAME_END,
     TANGENT,
 )
+from workhold.verification.wrench_radius import wrench_radius
 
 __all__ = ["Measure", "box_center", "figure_missing", "pair_numbers", "written_numbers"]
 
@@ -164,7 +165,7 @@ class Measure:
             if not contact.is_flush
         ]
         edges = [edge for peg in pegs if (edge := self.edge_distance(*peg)) is not None]
-        radius = balance.wrench_radius(self.center, self.wrench_length)
+        radius = wrench_radius(self.center, self.wrench_length, balance.points, balance.normals)
         if radius is not None:
             out["wrench_radius"] = radius
         out |= {
@@ -227,10 +228,14 @@ class Measure:
         most, rows = arb(0), [balance.of_all(row) for row in inverse[:3]]
         pairs = list(zip(map(balance.kept_by_closing, rows), rows, strict=True))
         for i, force in enumerate(balance.forces):
-            a, b, c = ((kept[i] - row[i]) / force for kept, row in pairs)
-            for load in self.loads:
-                for x, y in load.points:
-                    most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
+            most = self.under_loads(most, *((kept[i] - row[i]) / force for kept, row in pairs))
+        return most
+
+    def under_loads(self, most: arb, a: arb, b: arb, c: arb) -> arb:
+        """The largest a f_x + b f_y + c m under some load of force f and moment m, or more where that is known."""
+        for load in self.loads:
+            for x, y in load.points:
+                most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
         return most
 
     def location_error(self, inverse: Sequence[Sequence[arb]], faces: Sequence[int]) -> arb:
@@ -273,10 +278,7 @@ class Measure:
         most, rows = arb(0), [balance.of_all(row) for row in inverse[:3]]
         for i, j in permutations(range(len(balance.shares)), 2):
             ratio = balance.shares[j] / balance.shares[i]
-            a, b, c = (row[j] - ratio * row[i] for row in rows)
-            for load in self.loads:
-                for x, y in load.points:
-                    most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
+            most = self.under_loads(most, *(row[j] - ratio * row[i] for row in rows))
         return most
 
 

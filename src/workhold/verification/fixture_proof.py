@@ -104,7 +104,7 @@ class Judge:
         return Ruling("undecided", doubt, bits) if doubt else Ruling("proven", "", bits)
 
     def findings(self, fixture: Fixture, measure: Measure) -> Iterator[Finding]:
-        """Everything that speaks against a fixture, cheap rules first; nobody asks on after a definite finding."""
+        """Everything that speaks against a fixture, cheap rules first, which a definite finding ends."""
         outline, hardware = measure.outline, self.hardware
         yield from hardware.hole_findings(fixture)
         for name, peg in zip(hardware.names, fixture.pegs, strict=True):
@@ -135,7 +135,7 @@ class Judge:
     def force_findings(
         self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose, measure: Measure, is_proven: bool
     ) -> Iterator[Finding]:
-        """Whether the contacts of a fixture close at a pose, and its forces and figures are the derived ones."""
+        """Whether the contacts of a fixture close at a pose, with the forces and figures that are written."""
         hardware, pair = self.hardware, fixture.pair
         balance: Balance | SeatBalance
         if pair is None:
@@ -158,7 +158,7 @@ class Judge:
 
 
 def flat_findings(fixture: Fixture, names: Sequence[str], contacts: Sequence[Contact]) -> Iterator[Finding]:
-    """Whether flats look at the faces that they lie on, where it is told which way they look, and no others are told of."""
+    """Whether flats look at the faces that they lie on, where the file says which way, and no others do."""
     for name, peg, contact in zip(names, fixture.pegs, contacts, strict=True):
         lies = contact.body is not None and isinstance(contact.side, LineSide)
         if peg.flat_deg is None or not lies:

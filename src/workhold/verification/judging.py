@@ -37,7 +37,7 @@ __all__ = ["main_direction", "penalty", "tilt", "warnings"]
 def main_direction(faces: Sequence[Side]) -> arb:
     """Direction in degrees of the straight faces that, with those along or square to them, have the most length.
 
-    The longest of them tells it, the first of equally long ones. Which they are is asked in doubles. The drawing's own x
+    The longest of them counts, the first of equally long ones. Which they are is asked in doubles. The drawing's own x
     where there are none, or others have about as much.
     """
     lines = [side for side in faces if isinstance(side, LineSide)]

@@ -134,7 +134,7 @@ def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[A
 def taken_in(
     fixtures: list[Fixture] | Columns, seatings: Sequence[Any], hardware: Hardware, query: Query, path: Path
 ) -> Sequence[Fixture]:
-    """Fixtures as they are read, of a kind of toolkit, and the seating of the first where it is told apart from them.
+    """Fixtures as they are read, of a kind of toolkit, and the seating of the first where it stands apart from them.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def taken_in(
 
 def keys_missing(head: Head) -> list[str]:
     """A fault for every key of the form that is not there: what would be taken for it is claimed by nobody."""
-    # Of a vise and a toolkit one is enough, an account that is missing is told in any case, and a fit decides nothing; a
+    # Of a vise and a toolkit one is enough, an account that is missing is named in any case, and a fit decides nothing; a
     # departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
     spared |= {"workpiece.departure", "tolerance.departure", "vise.flat", "toolkit.flat"}

@@ -1,7 +1,7 @@
 """Whether fixtures are listed in the order that was asked for (docs/quality.md, "Which comes first").
 
 Fixtures that are none for a workshop come last. Every figure but the last counts to two significant digits, the last to nine
-decimals; what is equal stands in the order of types, holes, orientations and faces. Fixtures whose seating is told come
+decimals; what is equal stands in the order of types, holes, orientations and faces. Fixtures whose seating is known come
 first, its warnings counting as those of quality do; those of them that are equal stand as they would without it. A figure
 is written rounded, and that rounding may carry it over the edge between two counts, so each is looked at a little to either
 side. The order of ``listing`` is not used.
@@ -76,7 +76,7 @@ def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: Hardware) 
 
 
 def figures_told(fixture: Fixture) -> dict[str, float] | None:
-    """The figures of a fixture with those of its seating, whose warnings count as well; None where it is not told."""
+    """The figures of a fixture with those of its seating, whose warnings count as well; None where that is not stated."""
     claim: Claim | None = fixture.seating
     if claim is None:
         return None
@@ -131,8 +131,8 @@ def rank(fixture: Fixture, hardware: Hardware) -> Rank:
     if hardware.wall is not None or len(ways) > 1:
         pegs = list[Peg]()
         for carrier in hardware.carriers.values():
-            group = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
-            pegs += sorted(group, key=hole_and_face) if carrier in hardware.lattices else group
+            there = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
+            pegs += sorted(there, key=hole_and_face) if carrier in hardware.lattices else there
         holes = [[getattr(peg, noun) for peg in pegs if not peg.is_on_wall] for noun in ("column", "row")]
         return [*numbers, *holes[0], *holes[1]], (theta + SAME) % tau - SAME, [peg.face for peg in pegs]
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]

@@ -40,7 +40,7 @@ class FloatOutline:
 
     @classmethod
     def of(cls, segments: Sequence[Side], workpiece: Workpiece) -> FloatOutline:
-        """Those of a part's sides."""
+        """The segments of a part's sides."""
         lines, arcs, points, edges = [], [], list[Array](), list[Array]()
         for side in segments:
             if isinstance(side, LineSide):
@@ -81,7 +81,7 @@ class FloatOutline:
         return float(self.placed(np.concatenate([self.points, below]), pose, mirrored)[:, 1].min())
 
     def local(self, points: Array, pose: Mapping[str, float], mirrored: bool) -> Array:
-        """The way back."""
+        """Points (N, 2) of the toolkit's frame as the part in a pose sees them."""
         c, s = cos(radians(pose["theta_deg"])), sin(radians(pose["theta_deg"]))
         x, y = points[:, 0] - pose["x"], points[:, 1] - pose["y"]
         return np.stack([(c * x + s * y) * (-1.0 if mirrored else 1.0), c * y - s * x], axis=1)
@@ -108,7 +108,7 @@ class FloatOutline:
         return bool((self.distances(points) >= radii).all() and not self.holds(points).any())
 
     def holds(self, points: Array) -> NDArray[np.bool_]:
-        """Whether the part holds points (N,), as far as its polygon tells."""
+        """Whether the part holds points (N,), as far as its polygon shows."""
         ax, ay, bx, by = self.edges.T
         x, y = points[:, :1], points[:, 1:]
         crosses = (ay <= y) != (by <= y)

@@ -13,7 +13,7 @@ from workhold.model.toolkit import Toolkit
 
 __all__ = ["pattern_faults", "stance"]
 
-# Degrees and mm. A fixture is a seat told whose pose and separation agree to this.
+# Degrees and mm. A fixture is a stated seat whose pose and separation agree to this.
 SAME_SEAT = 1e-5
 
 
@@ -51,7 +51,7 @@ class Stance:
     Parameters
     ----------
     key : what fixtures share that differ by a shift and by the travel of what moves.
-    anchor : in mm, the peg that stands still and is first.
+    anchor : in mm, the first peg that stands still; where only a wall does, its point below the first peg.
     apart : how far in mm the first that moves is from it, along the way on which the travel grows.
     met : at how many mm of that a clamp's tip would be in one that stands still.
     """
@@ -63,32 +63,34 @@ class Stance:
 
 
 def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
-    """That of a fixture."""
+    """How the pegs of a fixture stand in a toolkit."""
     by_place = sorted((peg for peg in fixture.pegs if not peg.is_on_wall), key=lambda peg: (peg.x, peg.y))
     still = [peg for peg in by_place if toolkit.carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]
-    first, tip = still[0], moved[0]
+    tip = moved[0]
+    first_x, first_y = (still[0].x, still[0].y) if still else (tip.x, 0.0)
     carrier = toolkit.carrier(tip.carrier)
     assert carrier.travel is not None
     ux, uy = carrier.travel.unit
 
-    def along(peg: Peg, other: Peg) -> float:
-        return (peg.x - other.x) * ux + (peg.y - other.y) * uy
+    def along(peg: Peg) -> float:
+        return (peg.x - first_x) * ux + (peg.y - first_y) * uy
 
-    def across(peg: Peg, other: Peg) -> float:
-        return (peg.y - other.y) * ux - (peg.x - other.x) * uy
+    def across(peg: Peg) -> float:
+        return (peg.y - first_y) * ux - (peg.x - first_x) * uy
 
-    places = [(peg.x - first.x, peg.y - first.y) for peg in still] + [(peg.x - tip.x, peg.y - tip.y) for peg in moved]
-    numbers, met = [across(tip, first), *(part for place in places for part in place)], list[float]()
+    places = [(peg.x - first_x, peg.y - first_y) for peg in still]
+    places += [(peg.x - tip.x, peg.y - tip.y) for peg in moved]
+    numbers, met = [across(tip), *(part for place in places for part in place)], list[float]()
     if carrier.on is not None:
-        # A clamp's stroke is counted from its hole, and a fence stands where it is.
+        # A clamp's stroke is counted from its hole, and a wall stands where it is.
         x, y = carrier.place(tip.column, tip.row)
-        numbers += [x - first.x, y - first.y] if carrier.has_a_hole else []
-        numbers += [first.y] if toolkit.wall is not None else []
+        numbers += [x - first_x, y - first_y] if carrier.has_a_hole else []
+        numbers += [first_y] if toolkit.wall is not None else []
         reach = [carrier.peg_radius + toolkit.carrier(peg.carrier).peg_radius for peg in still]
-        met = [along(peg, first) for peg, near in zip(still, reach, strict=True) if abs(across(peg, tip)) < near]
+        met = [along(peg) for peg, near in zip(still, reach, strict=True) if abs(across(peg) - across(tip)) < near]
     key = (fixture.direction, len(still), *(round(part, 5) + 0.0 for part in numbers))
-    return Stance(key, (first.x, first.y), along(tip, first), tuple(met))
+    return Stance(key, (first_x, first_y), along(tip), tuple(met))
 
 
 def is_seat(seat: Mapping[str, Any], pose: Mapping[str, float], difference: float) -> bool:

@@ -1,7 +1,7 @@
 """Where a fixture lies: what its file writes, and the one place that is proven near it.
 
-Theorem (Krawczyk 1969): let f be continuously differentiable on a box X with midpoint m, J(X) an enclosure of its Jacobian
-on X and Y any matrix. If
+Theorem (Krawczyk 1969): let f be continuously differentiable on a box X with midpoint m, J(X) an enclosure of
+its Jacobian on X and Y any matrix. If
 
     K = m - Y f(m) + (I - Y J(X)) (X - m)
 
@@ -9,7 +9,8 @@ lies in the interior of X, then f has exactly one zero in X, and it lies in K.
 
 References
 ----------
-R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4 (1969) 187-201.
+R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4 (1969),
+pp. 187-201.
 S. M. Rump, "Verification methods", Acta Numerica 19 (2010), section 13.
 """
 
@@ -35,10 +36,10 @@ MOST_STEPS = 12
 
 
 def certified_zero(system: System, start: Sequence[float]) -> list[arb] | None:
-    """A proven enclosure of the one zero near a start, or None when there is no proof at the precision in force.
+    """A proven enclosure of the one zero near a start, or None without a proof at the precision in force.
 
-    Newton's method on midpoints finds a place; the proof does not depend on how it was found. The box around it has half
-    the digits of the precision as its radius.
+    Newton's method on midpoints finds a place; the proof does not depend on how it was found. The box around
+    it has half the digits of the precision as its radius.
     """
     size = len(start)
     middle = arb_mat(size, 1, list(start))
@@ -77,7 +78,7 @@ def written_pose(written: model.Pose, travels: Sequence[float]) -> Pose:
 def gap_findings(touching: Sequence[tuple[str, Contact, int]], around: Pose) -> Iterator[Finding]:
     """Whether any pose that agrees with the file's, and travels likewise, could touch all faces.
 
-    The gaps are enclosed over all of them at once; a gap that is certainly not the peg radius refutes the fixture.
+    The gaps are enclosed over all of them at once; one that certainly is not the peg radius refutes.
     """
     for name, contact, face in touching:
         off = contact.side.gap(contact.in_part(around)) - contact.radius
@@ -88,7 +89,7 @@ def gap_findings(touching: Sequence[tuple[str, Contact, int]], around: Pose) -> 
 def proven_pose(
     contacts: Sequence[Contact], written: model.Pose, travels: Mapping[str, float]
 ) -> tuple[Pose | None, list[Finding]]:
-    """The proven solution of the contact equations near the file's pose, if there is one, and what is wrong with that.
+    """The proven solution of the contact equations near the file's pose, if any, and what is wrong with it.
 
     ``travels`` in mm are those of the file, by what each is called.
     """

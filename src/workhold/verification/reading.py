@@ -1,10 +1,11 @@
 """Fixtures of a result file from their JSON objects, number for number as it writes them.
 
-Every function below ``fixtures_of`` raises an ``UnusableError`` that says what is missing or of the wrong kind.
+Every function below ``fixtures_of`` raises an ``UnusableError`` that says what is missing or of a wrong kind.
 
 Glossary
 --------
-role : what a peg is: a "locator" in a hole of a plate, a "clamp" bolted to it, a "jaw" peg; pegs without one name their jaw.
+role : what a peg is: a "locator" in a hole of a plate, a "clamp" bolted to it, a "jaw" peg; pegs without one
+    name their jaw.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ def with_flats(fixture: Fixture, flats: Any) -> Fixture:
 
 
 def with_working_forces(fixture: Fixture) -> Fixture:
-    """A fixture with two clamps whose pegs have their forces per unit of both clamps' at its working ratio."""
+    """A fixture with two clamps whose forces are per unit of both clamps' at its working ratio."""
     assert fixture.pair is not None
     ratio = fixture.pair.working_ratio
     forces = [(one + ratio * other) / (1 + ratio) for one, other in fixture.pair.reactions]
@@ -157,7 +158,7 @@ def wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
 
 
 def wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
-    """The two ends of the contact with a wall from their JSON object, for two clamps without forces of their own."""
+    """The two ends of the contact with a wall from a JSON object; with two clamps forces stand elsewhere."""
     if not isinstance(item, dict):
         raise UnusableError("its wall is not told by places, segments and forces")
     pairs = []

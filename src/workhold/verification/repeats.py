@@ -1,16 +1,18 @@
 """Fixtures that a list holds twice (model: "When two fixtures are the same").
 
-Two fixtures with the same pattern of holes, up to lattice steps, names of pegs and the half turn that leaves the toolkit as
-it is, and with the same place of the workpiece among them are one, whatever faces are named: the pose says what is touched.
+Two fixtures with the same pattern of holes, up to lattice steps, names of pegs and the half turn that leaves
+the toolkit as it is, and with the same place of the workpiece among them are one, whatever faces are named:
+the pose says what is touched.
 
-Which rotations carry a workpiece onto itself is derived from the marks of its faces alone. The rotations of order n carry
-the faces that are not about the kept point in cycles of n, so n divides their number; and the mean of the faces' middles is
-that point. Each such part of a turn is tried, the smallest first. What a drawing has to ``SAME`` is taken for symmetric, so
-of one that misses it by about as much it cannot be said.
+Which rotations carry a workpiece onto itself is derived from the marks of its faces alone. The rotations of
+order n carry the faces that are not about the kept point in cycles of n, so n divides their number; and the
+mean of the faces' middles is that point. Each such part of a turn is tried, the smallest first. What a
+drawing has to ``SAME`` is taken for symmetric, so of one that misses it by about as much it cannot be said.
 
 Glossary
 --------
-pattern : the holes of a fixture in a form in which equal fixtures have equal ones, with the place of the workpiece.
+pattern : the holes of a fixture in a form in which equal fixtures have equal ones, with the place of the
+    workpiece.
 """
 
 from __future__ import annotations
@@ -33,10 +35,12 @@ from workhold.verification.tolerances import SAME
 __all__ = ["Key", "Place", "Seen", "Turning"]
 
 Key = tuple[Any, ...]
-# Orientation, place in the workpiece's frame of the first peg, and how far from it each other group of pegs that moves is.
+# Orientation, place in the workpiece's frame of the first peg, and how far from it each other group of pegs
+# that moves is.
 Place = tuple[float, ...]
 
-# By how many times SAME faces may miss their images where it is certain, and at most, that they are meant to meet them.
+# By how many times SAME faces may miss their images where it is certain, and at most, that they are meant to
+# meet them.
 CERTAIN, PERHAPS = 0.25, 4.0
 
 
@@ -46,7 +50,7 @@ class Turning:
 
     Parameters
     ----------
-    order : how many there are at most, the identity included; 1 for concentric circles, which turn at every angle.
+    order : how many there are at most with the identity; 1 for concentric circles, which turn at every angle.
     center : the point in mm that they keep.
     is_certain : whether there certainly are as many.
     """
@@ -57,7 +61,7 @@ class Turning:
 
     @classmethod
     def of(cls, workpiece: Workpiece) -> Turning:
-        """Those of a workpiece."""
+        """The rotations of a workpiece."""
         marks = np.array([marks_of(face.segment) for face in workpiece.faces])
         center = marks[:, 0].mean()
         marks[:, :3] -= center
@@ -72,7 +76,7 @@ class Turning:
 
 
 def marks_of(face: Segment) -> list[complex]:
-    """Middle, start and end of a face, or three times the centre of a whole circle; and its radius, below 0 in a hollow."""
+    """Middle, start and end of a face, or thrice a whole circle's centre; and its radius, negative in a hollow."""
     radius = face.sign * face.radius if isinstance(face, Arc) else 0.0
     points = [face.center] * 3 if isinstance(face, Arc) and face.is_full else [face.at(0.0), face.start, face.end]
     return [*(complex(*point) for point in points), complex(radius)]
@@ -104,7 +108,8 @@ class Seen:
     hardware : what they stand on.
     rotations : angles in radians of the rotations of the workpiece onto itself, the identity left out.
     center : the point in mm that they keep.
-    sets : of each type, how many sets the fixtures form when those that a rotation carries into each other count once.
+    sets : of each type, how many sets the fixtures form when those that a rotation carries into each other
+        count once.
     """
 
     hardware: Hardware
@@ -119,7 +124,7 @@ class Seen:
         return cls(hardware, turning.angles, turning.center)
 
     def add(self, index: int, fixture: Fixture) -> int | None:
-        """Take in a fixture that is not refuted; return the index of an earlier one that is the same, if any."""
+        """Take in a fixture that is not refuted; return the index of an earlier one that is the same."""
         first, alone = self.find(fixture), True
         for key, place in patterns(fixture, self.hardware):
             known = self.known.setdefault(key, [])
@@ -145,8 +150,8 @@ class Seen:
 def patterns(fixture: Fixture, hardware: Hardware) -> Iterator[tuple[Key, Place]]:
     """Each pattern that names a fixture.
 
-    There are two where a half turn of the toolkit leaves the holes as they are, and none where the pegs are not those of a
-    fixture.
+    There are two where a half turn of the toolkit leaves the holes as they are, and none where the pegs are
+    not those of a fixture.
     """
     there = {peg.carrier for peg in fixture.pegs}
     clamps = [direction_of(peg) for peg in fixture.pegs if direction_of(peg)]
@@ -161,8 +166,9 @@ def patterns(fixture: Fixture, hardware: Hardware) -> Iterator[tuple[Key, Place]
 def pattern(fixture: Fixture, hardware: Hardware, sign: int) -> tuple[Key, Place]:
     """The pattern as it is (sign 1) or after half a turn of the toolkit (-1), which swaps two jaws.
 
-    Columns count from the first of each carrier, rows from the lowest; beside a wall that and what stands still keep theirs.
-    Clamps are their directions and lines, of which the lines do not count where one pair stands for all of its seat.
+    Columns count from the first of each carrier, rows from the lowest; beside a wall that and what stands
+    still keep theirs. Clamps are their directions and lines, of which the lines do not count where one pair
+    stands for all of its seat.
     """
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices][::sign]
     lowest = min(sign * peg.row for group in groups for peg in group)

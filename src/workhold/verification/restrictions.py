@@ -1,7 +1,7 @@
-"""Whether a fixture keeps the restrictions: faces to avoid, keep-out zones, angles, blocked holes and pegs' bodies.
+"""Whether a fixture keeps the restrictions: faces to avoid, keep-out zones, angles, blocked holes and bodies.
 
-They are no claims of existence, so the pose as it is written is enough: one is broken when it is missed by more than
-``tolerances.AGREEMENT``.
+They are no claims of existence, so the pose as it is written is enough: one is broken when it is missed by
+more than ``tolerances.AGREEMENT``.
 """
 
 from __future__ import annotations
@@ -79,7 +79,8 @@ def zone_distance(zone: Zone, point: Point) -> arb:
     """Distance in mm from a point to a zone, 0 inside."""
     sides = zone_sides(zone)
     nearest = least([side.distance(point) for side in sides])
-    # On the chord of an arc, as at a circle's centre, turns are not told. Nearer than any side all is inside, or none is.
+    # On the chord of an arc, as at a circle's centre, turns are not certain. Nearer than any side all is
+    # inside, or none is.
     reach = nearest.abs_lower()
     for across, along in ((0.0, 0.0), (0.5, 0.25), (-0.25, 0.5)):
         turns = turns_around(sides, (point[0] + across * reach, point[1] + along * reach))
@@ -93,7 +94,8 @@ def zone_distance(zone: Zone, point: Point) -> arb:
 def turns_around(sides: Sequence[Side], point: Point) -> arb:
     """Angle in radians that closed sides turn around a point off them: a whole turn inside, none outside.
 
-    A side turns as its chord does, and an arc by a whole turn more or less when the point lies between it and its chord.
+    A side turns as its chord does, and an arc by a whole turn more or less when the point lies between it and
+    its chord.
     """
     total = arb(0)
     for side in sides:

@@ -29,7 +29,6 @@ from workhold.verification.closure import inverted
 from workhold.verification.contacts import Contact, Pose
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.tolerances import LEAST_PUSH, LEAST_SEAT, LEAST_SHARE, MOST_FORCE, NO_REACTION
-from workhold.verification.wrench_radius import radius_of_five
 
 __all__ = ["CLAMPS", "LOCATORS", "Push", "Ratio", "Seat", "SeatBalance", "closure_margin", "ratio_of"]
 
@@ -288,7 +287,7 @@ class SeatBalance:
         return closure_margin(*self.pushes)
 
     def inverse(self, contacts: Sequence[Contact], pose: Pose) -> list[list[arb]] | None:
-        """The inverse of the locators' wrenches, which alone tell where the part is; None where there may be none."""
+        """The inverse of the locators' wrenches, which alone fix the part; None where there may be none."""
         return inverted([list(wrench) for wrench in self.seat.wrenches])
 
     def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
@@ -302,10 +301,6 @@ class SeatBalance:
         fa, fb, area = inner(forces, ones), inner(forces, others), aa * bb - ab * ab
         u, v = (fa * bb - fb * ab) / area, (fb * aa - fa * ab) / area
         return [u * a + v * b for a, b in self.reactions]
-
-    def wrench_radius(self, center: Point, length: float) -> arb | None:
-        """The wrench radius, about a centre with L in mm; None where all wrenches may lie in one line."""
-        return radius_of_five(center, length, self.points, self.normals)
 
 
 def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:

@@ -1,4 +1,4 @@
-"""Whether the seating that a result tells of a fixture is so, from the outline, the pegs and the numbers told alone.
+"""Whether the seating that a result states for a fixture is so, from the outline, the pegs and its numbers alone.
 
 Of a seat its pose, difference and contacts are given. Each contact must touch to ``AGREEMENT``, asked in balls, no peg
 may be in the part, and forces h >= 0 along the normals must balance on the part while those of the pegs that move add up to
@@ -32,8 +32,8 @@ from workhold.verification.contacts import Pose
 from workhold.verification.outline import Outline
 from workhold.verification.part_in_floats import FloatOutline
 from workhold.verification.rules.hardware import Hardware
-from workhold.verification.seating_contacts import Touching, touching_faults, touching_wall
-from workhold.verification.seating_stop import stop_of, travelled
+from workhold.verification.rules.stroke import travelled
+from workhold.verification.seating_contacts import Touching, stop_of, touching_faults, touching_wall
 from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
 __all__ = ["Judged", "SeatingJudge"]
@@ -43,7 +43,7 @@ Array = NDArray[np.float64]
 ROUNDED = 4e-9
 # No unit. Balance of forces per unit of clamping force; a force above minus the second presses.
 BALANCED, PRESSES = 1e-6, 1e-9
-# No unit. Friction at which the part can stick is told to this part of it; where it never can, not below the second.
+# No unit. Friction at which the part can stick is given to this part of it; where it never can, not below the second.
 FRICTION, MOST_FRICTION = 1e-5, 50.0
 STRICT = ("fixture", "corner", "pocket", "curved")
 
@@ -53,6 +53,11 @@ class SeatingJudge:
     """Judges the seating of the fixtures of a query."""
 
     query: Query
+
+    @cached_property
+    def hardware(self) -> Hardware:
+        """The rules of the toolkit."""
+        return Hardware(self.query.toolkit)
 
     @cached_property
     def outline(self) -> Outline:
@@ -65,7 +70,7 @@ class SeatingJudge:
         return FloatOutline.of(self.outline.segments, self.query.workpiece)
 
     def fault(self, fixture: Fixture) -> str:
-        """What is wrong with the seating told of a fixture, one sentence without a full stop; empty where all is so."""
+        """What is wrong with the seating of a fixture, one sentence without a full stop; empty where all is so."""
         claim: Claim | None = fixture.seating
         if claim is None:
             return ""
@@ -84,21 +89,18 @@ class Judged:
 
     @property
     def fields(self) -> Mapping[str, Any]:
-        """As written."""
+        """The fields of its seating as they are written."""
         return self.claim.fields
 
     @cached_property
     def moving(self) -> list[bool]:
         """Which pegs move."""
-        return [self.judge.query.toolkit.carrier(peg.carrier).travel is not None for peg in self.fixture.pegs]
+        return [any(self.judge.hardware.way(peg)) for peg in self.fixture.pegs]
 
     @cached_property
     def way(self) -> tuple[float, float]:
         """Along which they move as their travel grows."""
-        moving = next(peg for peg, moves in zip(self.fixture.pegs, self.moving, strict=True) if moves)
-        travel = self.judge.query.toolkit.carrier(moving.carrier).travel
-        assert travel is not None
-        return travel.unit
+        return self.judge.hardware.way(self.fixture.pegs[self.moving.index(True)])
 
     @cached_property
     def on_wall(self) -> list[int]:
@@ -106,11 +108,18 @@ class Judged:
         return [number for number, peg in enumerate(self.fixture.pegs) if peg.is_on_wall]
 
     @property
+    def wall(self) -> str:
+        """What the wall is called that the part lies on."""
+        wall = self.judge.hardware.wall
+        return "" if wall is None else wall.noun
+
+    @property
     def travel(self) -> float:
-        """How far in mm what moves has gone, of a clamp told by where its tip is."""
+        """How far in mm what moves has gone, of a clamp by where its tip is."""
         if self.fixture.direction is None:
             return self.fixture.jaw_separation
-        return travelled(self.fixture.pegs[self.moving.index(True)], self.judge.query.toolkit)
+        tip = self.fixture.pegs[self.moving.index(True)]
+        return travelled(tip, self.judge.hardware.carriers[tip.carrier])
 
     @property
     def clamping(self) -> int:
@@ -155,7 +164,7 @@ class Judged:
             return
         yield from self.freedom_faults(seat["pose"], seat["mirrored"], apart)
         contacts = [self.touching(contact, seat["pose"], seat["mirrored"], apart) for contact in seat["contacts"]]
-        yield from touching_faults(contacts, self.on_wall)
+        yield from touching_faults(contacts, self.on_wall, self.wall)
         if self.kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
             yield f"is called {seat['kind']}, which its contacts are not"
         if seat["kind"] in STRICT and len(seat["forces"]) != len(contacts):
@@ -175,11 +184,9 @@ class Judged:
 
     @cached_property
     def ends(self) -> list[Point]:
-        """Where each peg of the fixture, or an end of its wall, touches; not every form of a file tells it of a wall."""
-        theta = arb(self.fixture.pose.theta_deg) * arb.pi() / 180
-        pose = Pose.of(theta, arb(self.fixture.pose.x), arb(self.fixture.pose.y), arb(0))
-        contacts = Hardware(self.judge.query.toolkit).contacts(self.fixture, self.judge.outline)
-        return [contact.place(pose) for contact in contacts]
+        """Where each peg of the fixture, or an end of its wall, touches; not every form of a file says it of a wall."""
+        contacts = self.judge.hardware.contacts(self.fixture, self.judge.outline)
+        return [contact.place(Pose.written(self.fixture.pose)) for contact in contacts]
 
     def kind_of(self, seat: Mapping[str, Any]) -> str:
         """What a seat is called with its contacts."""
@@ -245,7 +252,7 @@ class Judged:
         contacts = [self.touching(contact, top["pose"], False, rise) for contact in top["contacts"]]
         if not 2 <= len(contacts) <= 3:
             yield "the pass does not have two or three contacts"
-        yield from (f"the pass {words}" for words in touching_faults(contacts, self.on_wall))
+        yield from (f"the pass {words}" for words in touching_faults(contacts, self.on_wall, self.wall))
         yield from (f"the pass {words}" for words in self.freedom_faults(top["pose"], False, rise))
         if not self.can_balance(contacts, top["pose"], False):
             yield "the pass is no equilibrium of its contacts"
@@ -261,7 +268,7 @@ class Judged:
                 yield f"the cage leaves out the seat or its pass in {name}"
 
     def friction_faults(self, told: float, own: Mapping[str, Any]) -> Iterator[str]:
-        """Whether the part can stick below the friction told, or cannot just above."""
+        """Whether the part can stick below a friction, or cannot just above."""
         contacts = [self.touching(contact, own["pose"], False, 0.0) for contact in own["contacts"]]
         low, high = told * (1.0 - FRICTION), told * (1.0 + FRICTION) + ROUNDED
         if min(low, MOST_FRICTION) > ROUNDED and self.sticks(contacts, own["pose"], min(low, MOST_FRICTION)):
@@ -291,12 +298,12 @@ class Judged:
     def freedom_faults(self, pose: Mapping[str, float], mirrored: bool, apart: float) -> Iterator[str]:
         """A peg in the part, or the part in a wall."""
         numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
-        pegs, toolkit = np.array([self.peg(number, apart) for number in numbers]), self.judge.query.toolkit
-        radii = np.array([toolkit.carrier(self.fixture.pegs[number].carrier).peg_radius for number in numbers])
+        pegs, carriers = np.array([self.peg(number, apart) for number in numbers]), self.judge.hardware.carriers
+        radii = np.array([carriers[self.fixture.pegs[number].carrier].peg_radius for number in numbers])
         if not self.judge.rough.is_free(pegs, radii - AGREEMENT, pose, mirrored):
             yield "has a peg in the part"
-        if toolkit.wall is not None and self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
-            yield "has the part in the fence"
+        if self.wall and self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
+            yield f"has the part in the {self.wall}"
 
     def covers(self, seat: Mapping[str, Any]) -> bool | None:
         """Whether the part in a seat covers the place of its fixture; None where that is nearly so."""
@@ -313,7 +320,7 @@ class Judged:
         local = turned(exact_point(x - pose["x"], y - pose["y"]), cosine, -sine)
         local = (-local[0], local[1]) if mirrored else local
         outline = self.judge.outline
-        radius = self.judge.query.toolkit.carrier(self.fixture.pegs[number].carrier).peg_radius
+        radius = self.judge.hardware.carriers[self.fixture.pegs[number].carrier].peg_radius
         face = contact.get("face")
         side = outline.faces.get(contact["corner"] if face is None else face)
         if side is None:
@@ -348,7 +355,7 @@ class Judged:
     def balance(
         self, contacts: Sequence[Touching], pose: Mapping[str, float], mirrored: bool, forces: Sequence[float]
     ) -> bool:
-        """Whether the forces told balance, those of the pegs that move adding up to one."""
+        """Whether forces balance, those of the pegs that move adding up to one."""
         left = self.wrenches(contacts, pose, mirrored) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
         return bool(np.abs(left).max() < BALANCED * (1.0 + sum(forces)) and min(forces) > -PRESSES)
 
@@ -376,7 +383,7 @@ def balances(wrenches: Array, spare: float = 1e-9) -> bool:
     """
     target = np.array([0.0, 0.0, 0.0, 1.0])
     if not np.isfinite(wrenches).all():
-        # A peg told to stand in the centre of an arc has no normal.
+        # A peg that is said to stand in the centre of an arc has no normal.
         return False
     for size in range(1, min(wrenches.shape[1], 4) + 1):
         for chosen in combinations(range(wrenches.shape[1]), size):

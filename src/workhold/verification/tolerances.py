@@ -12,49 +12,6 @@ hair : a length of 1e-9 mm by which the edge of a rule stands off a natural coin
 
 from __future__ import annotations
 
-__all__ = [
-    "AGREEMENT",
-    "BODY_SLACK",
-    "CLOSE_READING",
-    "FIGURE_AGREEMENT",
-    "FLAT",
-    "FLUSH",
-    "GENTLE_PEG",
-    "HAIR",
-    "LARGE_LOCATION_ERROR",
-    "FILLED",
-    "LEAST_CLAMPING",
-    "LEAST_FLUSH",
-    "LEAST_PUSH",
-    "LEAST_SEAT",
-    "LEAST_SHARE",
-    "LEAST_SPAN",
-    "MAIN_DIRECTION",
-    "MOST_FORCE",
-    "NEAR_EDGE",
-    "NO_REACTION",
-    "POINTS_PER_DECADE",
-    "ROUNDING",
-    "SAME",
-    "SAME_END",
-    "SAME_FREEDOM",
-    "SAME_PLACE",
-    "SAME_PLACE_SPARE",
-    "SMALL_FACE",
-    "SMALL_FACE_POINTS",
-    "SQUARE_TILT",
-    "STRAIGHT",
-    "SMALL_CAPTURE",
-    "STRONG_PEG",
-    "STRONG_POINTS",
-    "TANGENT",
-    "TILTED_POINTS",
-    "UNFIT_CLOSURE",
-    "UNFIT_LOCATION_ERROR",
-    "WEAK_CLOSURE",
-    "WHOLE",
-]
-
 # mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at most this; a
 # contact may lie so far past a tangent joint, and lies more than this inside any other end.
 HAIR = 1e-9
@@ -63,7 +20,7 @@ BODY_SLACK = 1e-7
 # No unit. Sides whose normals at their joint agree to this in both components meet tangentially: the angle in radians by
 # which the rounded coordinates and bulges of a drawing may turn them.
 TANGENT = 1e-5
-# mm. An edge or none may be told at a joint that is tangent, or nearly so, where the ends of contact features are farther
+# mm. An edge or none may be counted at a joint that is tangent, or nearly so, where the ends of contact features are farther
 # apart; so it may beside a hollow whose contact feature is about as long as ``HAIR``.
 SAME_END = 9e-7
 # mm. A peg fills a hollow whose radius exceeds its own by no more than this: no place there is a contact.
@@ -113,7 +70,7 @@ ROUNDING = 1e-13
 NEAR_EDGE, WEAK_CLOSURE, STRONG_PEG, LARGE_LOCATION_ERROR = 1.0, 0.02, 3.0, 5.0
 UNFIT_LOCATION_ERROR, UNFIT_CLOSURE = 50.0, 0.0025
 SMALL_CAPTURE, CLOSE_READING = 1.0, 0.1
-# mm. Silhouettes that agree to this cover the same place; within this factor of it either may be told.
+# mm. Silhouettes that agree to this cover the same place; within this factor of it either may be said.
 SAME_PLACE, SAME_PLACE_SPARE = 1e-3, 2.0
 SQUARE_TILT, MAIN_DIRECTION, SMALL_FACE, GENTLE_PEG = 0.01, 0.99, 0.1, 1.5
 POINTS_PER_DECADE, TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 20, 9, 4, 2

@@ -1,6 +1,6 @@
 """Whether an undecided entry of a proof is a real place: four contacts, or two chords, that there may be.
 
-The entry tells faces, holes and a range of orientations. At these orientations the centres of pegs of one jaw are known from
+The entry names faces, holes and a range of orientations. At these orientations the centres of pegs of one jaw are known from
 two of them: in the workpiece's frame each moves on the line or circle of its face moved out by the peg radius, and the first
 on that of any other one moved back by the step between their holes; where the two cross is found in balls. Every other peg
 must then touch its face, inside the ends; pegs of two jaws must stand in rows as far apart as the entry says, and the
@@ -83,7 +83,7 @@ def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, 
         query.toolkit.arrangements if len(directions) > 1 else [a for w in query.toolkit.ways for a in w.arrangements]
     )
     if entry.type not in [one.title for one in asked] or len(entry.faces) - LOCATORS != len(directions):
-        # Of a kind that is not asked for, which is told of it.
+        # Of a kind that is not asked for, which is the fault.
         yield evolve(entry, type=f"{entry.type} with {len(entry.faces)} pegs"), query
         return
     for number, direction in enumerate(directions, LOCATORS):
@@ -126,7 +126,7 @@ def along_x(entry: Undecided, query: Query) -> tuple[Undecided, list[Carrier]]:
 
 
 def groups_of(entry: Undecided, query: Query) -> list[list[int]]:
-    """The numbers of pegs whose steps from the first of them are told."""
+    """The numbers of pegs whose steps from the first of them are given."""
     first = 2 if is_of_chords(entry) else arrangement_of(entry, query).pegs[0]
     return [list(range(first)), list(range(first, 4))]
 

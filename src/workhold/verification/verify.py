@@ -93,7 +93,7 @@ def not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
 
 
 def no_progress(fraction: float, unproven: int) -> None:
-    """Tell nobody."""
+    """Report nothing."""
 
 
 def verify(result: Result, progress: Progress = no_progress) -> Verification:

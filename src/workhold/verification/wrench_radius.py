@@ -10,53 +10,31 @@ from itertools import combinations
 
 from flint import arb
 
-from workhold.verification.balls import Point, cross, least, root
+from workhold.verification.balls import Point, cross, root
 from workhold.verification.tolerances import FLAT
 
-__all__ = ["radius_of_five", "radius_of_four"]
+__all__ = ["wrench_radius"]
 
 Wrench = tuple[arb, arb, arb]
 
 
-def wrenches_about(center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]) -> list[Wrench]:
-    """Wrenches of contacts about a centre, moments in parts of a length in mm."""
-    return [
-        (*normal, cross((x - center[0], y - center[1]), normal) / length)
-        for (x, y), normal in zip(points, normals, strict=True)
-    ]
+def wrench_radius(center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]) -> arb | None:
+    """The wrench radius of contacts, about a centre with L in mm; None where all wrenches may lie in one line.
 
-
-def radius_of_four(
-    minors: Sequence[arb], center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]
-) -> arb:
-    """Of four wrenches, with their minors in mm.
-
-    The volume of a facet's tetrahedron with the origin is a minor of the wrenches, so its height is that minor, in parts
-    of L, over the size of w_a x w_b + w_b x w_c + w_c x w_a, which is twice the facet's area.
+    The nearest plane through three wrenches counts that has all others on one side. Several may lie in one plane, or two be
+    equal, to ``FLAT``; where that is in doubt the ball holds both cases.
     """
-    wrenches = wrenches_about(center, length, points, normals)
-    products = {(i, k): vector_product(wrenches[i], wrenches[k]) for i, k in combinations(range(4), 2)}
-    heights = []
-    for left_out, minor in enumerate(minors):
-        a, b, c = (k for k in range(4) if k != left_out)
-        sides = zip(products[a, b], products[b, c], products[a, c], strict=True)
-        heights.append(abs(minor) / size_of([ab + bc - ac for ab, bc, ac in sides]))
-    return least(heights) / length
-
-
-def radius_of_five(center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]) -> arb | None:
-    """Of five wrenches: the nearest plane through three of them that has both others on one side.
-
-    Several may lie in one plane, or two be equal, to ``FLAT``; where that is in doubt the ball holds both cases.
-    """
-    wrenches, nearest = wrenches_about(center, length, points, normals), None
-    for corners in combinations(range(5), 3):
+    (x, y), nearest = center, None
+    arms = [(px - x, py - y) for px, py in points]
+    wrenches = [(*normal, cross(arm, normal) / length) for arm, normal in zip(arms, normals, strict=True)]
+    for corners in combinations(range(len(wrenches)), 3):
         a, b, c = (wrenches[k] for k in corners)
         across = vector_product(difference(b, a), difference(c, a))
-        size = size_of(across)
+        size = root(scalar(across, across))
         if size < FLAT or not size > 0:
             continue
-        sides = [scalar(across, difference(wrenches[k], a)) / size for k in range(5) if k not in corners]
+        others = (wrench for k, wrench in enumerate(wrenches) if k not in corners)
+        sides = [scalar(across, difference(wrench, a)) / size for wrench in others]
         if any(side > FLAT for side in sides) and any(side < -FLAT for side in sides):
             continue
         height = abs(scalar(across, a)) / size
@@ -66,7 +44,7 @@ def radius_of_five(center: Point, length: float, points: Sequence[Point], normal
     return nearest
 
 
-def vector_product(a: Sequence[arb], b: Sequence[arb]) -> Wrench:
+def vector_product(a: Wrench, b: Wrench) -> Wrench:
     """Vector product in space."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
@@ -79,8 +57,3 @@ def difference(a: Wrench, b: Wrench) -> Wrench:
 def scalar(a: Wrench, b: Wrench) -> arb:
     """Scalar product in space."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def size_of(vector: Sequence[arb]) -> arb:
-    """Length of a vector in space."""
-    return root(sum((entry * entry for entry in vector), arb(0)))

@@ -68,7 +68,7 @@ def lengths_of(held: Held, unit: str) -> LengthUnit:
 
 def find_seating(held: Held, order: Order) -> Seating | ByHand:
     """The seating of a fixture, worked out where the result has none; with two clamps how the part is put in."""
-    from workhold.seating.seating import Solver
+    from workhold.seating.solver import Solver
 
     fixture, workpiece, toolkit = held
     if not toolkit.closes_at_once:
@@ -109,21 +109,21 @@ def seating_answer(held: Held, told: Seating | ByHand, unit: str) -> dict[str, A
 
 def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
     """The way of a closing, what it ends in and what is read then; None once nobody wants to know any more."""
-    from workhold.seating.playing import play
-    from workhold.seating.seating import Solver
+    from workhold.seating.closing_simulation import simulate_closing
+    from workhold.seating.solver import Solver
 
     form, told = payload.form, payload.told
     fixture, workpiece, toolkit = payload.held
     pose = Pose(form.theta_deg, form.x, form.y)
-    played = play(
+    closed = simulate_closing(
         Solver(workpiece, toolkit), fixture, told.seats, pose, form.opening, form.turned_over, order.cancel.is_set
     )
     if order.cancel.is_set():
         return None
-    opened = [told.clamping * (travelled - fixture.jaw_separation) for travelled in played.travels]
+    opened = [told.clamping * (travelled - fixture.jaw_separation) for travelled in closed.travels]
     return {
-        "way": [[one.theta_deg, one.x, one.y, more] for one, more in zip(played.poses, opened, strict=True)],
-        "ending": played.ending,
-        "seat": None if played.seat is None else told.seats.index(played.seat),
-        "words": words_of(payload.held, told, form.unit).ended(played.ending, played.seat, played.travels[-1]),
+        "way": [[one.theta_deg, one.x, one.y, more] for one, more in zip(closed.poses, opened, strict=True)],
+        "ending": closed.ending,
+        "seat": None if closed.seat is None else told.seats.index(closed.seat),
+        "words": words_of(payload.held, told, form.unit).ended(closed.ending, closed.seat, closed.travels[-1]),
     }

@@ -173,7 +173,7 @@ def test_block_entities_on_layer_0_take_the_inserts_layer(tmp_path: Path) -> Non
 
 
 def test_geometry_errors_inside_blocks_name_both(tmp_path: Path) -> None:
-    """A crossing is told by the entity's handle and the INSERT's."""
+    """A crossing is named by the entity's handle and the INSERT's."""
     document, space = new_dxf()
     document.blocks.new("BAD").add_lwpolyline([(0, 0), (20, 20), (20, 0), (0, 30)], close=True)
     space.add_blockref("BAD", (0, 0))

@@ -52,7 +52,7 @@ def test_loops_that_cross_name_their_layers(tmp_path: Path) -> None:
 
 
 def test_a_fault_within_one_layer_names_none(tmp_path: Path) -> None:
-    """What another choice of layers does not mend is told as before."""
+    """What another choice of layers does not mend is said as before."""
 
     def draw(space: Any) -> None:
         rectangle(space, layer="Outline")

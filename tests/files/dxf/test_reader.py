@@ -198,7 +198,7 @@ def test_zero_length_entities_and_doubled_vertices_are_dropped(tmp_path: Path) -
 
 
 def test_geometry_errors_name_the_entity(tmp_path: Path) -> None:
-    """An outline that crosses itself is told by its entity's handle and segment."""
+    """An outline that crosses itself is named by its entity's handle and segment."""
 
     def draw(space: Any) -> None:
         space.add_lwpolyline([(0, 0), (20, 20), (20, 0), (0, 30)], close=True)
@@ -336,7 +336,7 @@ def test_damaged_files_give_one_sentence(tmp_path: Path) -> None:
             assert "\n" not in str(error)
 
 
-def test_other_formats_are_told(tmp_path: Path) -> None:
+def test_other_formats_are_named(tmp_path: Path) -> None:
     """A DWG file under a wrong name is called what it is."""
     (tmp_path / "part.dxf").write_bytes(b"AC1032\0\0\0" + bytes(1000))
     with pytest.raises(InputError, match="DWG drawing"):
@@ -362,7 +362,7 @@ def test_part_keeps_the_files_stem_as_name(tmp_path: Path) -> None:
 
 
 def test_a_file_without_a_header_says_no_unit(tmp_path: Path) -> None:
-    """Entities alone are a valid DXF file; nothing in it tells a unit, so none is assumed."""
+    """Entities alone are a valid DXF file; nothing in it says a unit, so none is assumed."""
     corners = [(0, 0), (40, 0), (40, 30), (0, 30)]
     lines = ["0", "SECTION", "2", "ENTITIES"]
     for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):

@@ -98,7 +98,7 @@ def test_moving_an_arcs_ends_moves_centre_and_radius_no_more(bulge: float, moves
     assert before.sign == after.sign
 
 
-def test_a_gap_is_closed_at_its_middle_and_told(tmp_path: Any) -> None:
+def test_a_gap_is_closed_at_its_middle_and_reported(tmp_path: Any) -> None:
     """A 0.0008 mm gap closes with the default tolerance; both ends move to the mean point."""
 
     def draw(space: Any) -> None:
@@ -194,7 +194,7 @@ def test_a_grid_of_lines_is_refused_at_once(tmp_path: Any) -> None:
 
 
 def test_what_is_drawn_twice_counts_once(tmp_path: Any) -> None:
-    """Repeated lines (either way round), arcs, circles, polylines and lines over a polyline are dropped and told."""
+    """Repeated lines (either way round), arcs, circles, polylines and lines over a polyline are dropped and reported."""
 
     def draw(space: Any) -> None:
         rectangle(space)
@@ -252,7 +252,7 @@ def test_a_hole_is_never_taken_for_a_part_whose_outline_is_open(tmp_path: Any) -
 def test_a_hole_is_never_taken_for_a_part_whose_outline_has_several_gaps(
     gap: float, rest: float, tmp_path: Any
 ) -> None:
-    """Lines that each stop short, and an arc around the hole: the gap that the sentence tells closes them all."""
+    """Lines that each stop short, and an arc around the hole: the gap that the sentence names closes them all."""
 
     def draw(space: Any) -> None:
         space.add_line((0, 0), (60 - gap, 0))
@@ -262,9 +262,9 @@ def test_a_hole_is_never_taken_for_a_part_whose_outline_has_several_gaps(
         space.add_circle((65, 20), 12)
         space.add_line((-30, 20), (120, 20))
 
-    with pytest.raises(InputError, match=r"the outline around part 1 .*is not closed: .*part_number 1\.") as told:
+    with pytest.raises(InputError, match=r"the outline around part 1 .*is not closed: .*part_number 1\.") as refused:
         read_dxf(tmp_path, draw)
-    enough = float(re.findall(r"above ([\d.]+) mm", str(told.value))[0])
+    enough = float(re.findall(r"above ([\d.]+) mm", str(refused.value))[0])
     assert gap <= enough < 1.1 * gap
     assert area(read_dxf(tmp_path, draw, join_tolerance=enough).workpiece) == pytest.approx(
         2400 + 200 * pi - 144 * pi, abs=60 * gap

@@ -53,7 +53,7 @@ def several(space: Any) -> None:
     rectangle(space, 100, 0, 9, 9)
 
 
-def test_the_largest_part_is_used_and_told(tmp_path: Path) -> None:
+def test_the_largest_part_is_used_and_named(tmp_path: Path) -> None:
     """Parts are numbered by decreasing area; the remark lists them all with size and place."""
     loaded = read_dxf(tmp_path, several)
     assert area(loaded.workpiece) == pytest.approx(2400 - 225 * pi)

@@ -128,7 +128,7 @@ def nested_rings(chance: random.Random, x: float, y: float, radius: float) -> st
 
 @pytest.mark.parametrize("rule", ["nonzero", "evenodd"])
 def test_a_hole_is_what_is_not_painted(rule: str) -> None:
-    """Circles in circles, run either way: loops told apart by how many are around them give the picture of the fill rule."""
+    """Circles in circles, run either way: loops sorted by how many are around them give the picture of the fill rule."""
     chance = random.Random(7)
     for _ in range(60):
         data = nested_rings(chance, 50.0, 50.0, 48.0)

@@ -125,7 +125,7 @@ def test_holes_loose_lines_and_subpaths(tmp_path: Path) -> None:
     assert len(part.loops) == 3
 
 
-def test_a_loop_that_is_painted_over_is_told(tmp_path: Path) -> None:
+def test_a_loop_that_is_painted_over_is_reported(tmp_path: Path) -> None:
     """Two squares of one path, run the same way: by the nonzero rule the inner one is not seen; else it is a hole."""
     data = 'd="M0 0 H60 V40 H0 Z M10 10 H20 V20 H10 Z"'
     over = read_svg(tmp_path, f"<path {data}/>", MM)

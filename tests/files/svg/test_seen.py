@@ -229,7 +229,7 @@ def test_the_root_is_an_element_too() -> None:
             read_svg(svg(SEEN, f"{MM} {root}"), unit=None)
 
 
-def test_markers_and_texts_are_told() -> None:
+def test_markers_and_texts_are_reported() -> None:
     """They draw no outline."""
     body = '<g marker-end="url(#m)"><path d="M0 0h9v9z"/></g><text display="none">a</text><text>b</text><script/>'
     remarks = read_svg(svg(body), unit=None).remarks

@@ -38,6 +38,7 @@ def copy(tmp_path: Path) -> Path:
     package = tmp_path / "source" / "workhold"
     room = package / "kernels" / "base"
     room.mkdir(parents=True)
+    (package / "model").mkdir()
     for name in (
         "__init__.py",
         "version.py",
@@ -45,6 +46,8 @@ def copy(tmp_path: Path) -> Path:
         "errors.py",
         "limits.py",
         "plain.py",
+        "model/__init__.py",
+        "model/delegates.py",
         *(f"kernels/{name}.py" for name in ("__init__", *(f"base/{base}" for base in BASE))),
     ):
         shutil.copy(source / name, package / name)

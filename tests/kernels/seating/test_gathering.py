@@ -30,10 +30,10 @@ from workhold.kernels.seating.columns import (
     THETA,
 )
 from workhold.kernels.seating.gathering import GATHERED_LENGTH, GROUP, gathered
-from workhold.seating.groups import groups_of
 from workhold.seating.growing_rows import filled
-from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
+from workhold.seating.peg_subsets import subsets_of
+from workhold.seating.two_contact_curves import TwoContactCurves
 
 STOP, WIDEST = -20.0, 60.0
 
@@ -43,7 +43,7 @@ def given():
     """What kernels are given of a pattern, and its groups."""
     solver, fixture, _ = solved(0)
     pattern = Pattern.of(fixture, solver.toolkit)
-    return Holdings.of(solver.closing(pattern, False).locus, pattern).given, groups_of(pattern)
+    return TwoContactCurves.of(solver.closing(pattern, False).boundary, pattern).given, subsets_of(pattern)
 
 
 def rows_of(random, count, pegs):
@@ -84,7 +84,7 @@ def test_all_are_told_in_order_from_where_they_are(given):
         rows, first = rows_of(random, 9 + number % 3, len(group.sides)), sum(map(len, kept))
         if group.is_of_a_jaw:
             rows[:, THETA], rows[:, PLACE_X : PLACE_Y + 1] = random.uniform(0.0, 6.0, len(rows)), 3.0
-        told.append((first, first + len(rows), 1000 + first, *group.told))
+        told.append((first, first + len(rows), 1000 + first, *group.numbers_and_shift))
         kept.append(rows)
         own = as_of_pattern(group, rows)
         if group.is_of_a_jaw:

@@ -25,8 +25,8 @@ from workhold.kernels.seating.three_contacts import (
     three_contacts,
 )
 from workhold.seating.growing_rows import filled
-from workhold.seating.holdings import Holdings
 from workhold.seating.pattern import Pattern
+from workhold.seating.two_contact_curves import TwoContactCurves
 
 # mm, and a share. Rounding of an instant centre, which may be a kilometre off.
 ROUNDING, SHARE = 1e-6, 1e-6
@@ -37,8 +37,8 @@ def cells_of(number):
     """An example's part and holdings, and every cell over which its ray is known, with its middle."""
     solver, fixture, _ = solved(number)
     pattern = Pattern.of(fixture, solver.toolkit)
-    locus = solver.closing(pattern, False).locus
-    holdings = Holdings.of(locus, pattern)
+    boundary = solver.closing(pattern, False).boundary
+    holdings = TwoContactCurves.of(boundary, pattern)
     kinds = holdings.given.holdings[:, KIND]
     kept = [
         (cell, middle)
@@ -47,7 +47,7 @@ def cells_of(number):
         if cell[VAGUE] == 0.0 and kinds[int(cell[HOLDING])] == 0.0 and ray_in(middle)[0] > 0.0
     ]
     assert len(kept) > 200
-    return locus, holdings, kept
+    return boundary, holdings, kept
 
 
 @pytest.mark.parametrize("number", range(3))
@@ -69,9 +69,9 @@ def test_instant_centers_are_on_their_ray(number):
 @pytest.mark.parametrize("number", range(3))
 def test_where_a_third_peg_balances_it_is_found(number):
     """Pegs of the other jaw are put level with the foot of P at an orientation in a cell, if the three forces balance."""
-    locus, holdings, kept = cells_of(number)
+    boundary, holdings, kept = cells_of(number)
     given, random, count = holdings.sought, np.random.default_rng(number), 0
-    work = np.empty((DEPTH, 2)), np.empty((5, len(locus.discs)))
+    work = np.empty((DEPTH, 2)), np.empty((5, len(boundary.discs)))
     for cell, middle in kept:
         holding, psi = given.holdings[int(cell[HOLDING])], random.uniform(cell[LOW], cell[HIGH])
         tail, curve, s = int(holding[FIRST_PEG]), int(holding[SOURCE]), held(holding, given, psi)
@@ -87,7 +87,7 @@ def test_where_a_third_peg_balances_it_is_found(number):
                 continue
             pegs = np.array(given.pegs)
             pegs[others, 1] = pegs[tail, 1] + x * (fy - s[1]) - y * (fx - s[0])
-            one = cell[None, :], middle[None, :], given._replace(pegs=pegs), locus.discs, -1e4
+            one = cell[None, :], middle[None, :], given._replace(pegs=pegs), boundary.discs, -1e4
             roots = filled(ROOT_LENGTH, 64, three_contacts, *one, *work)
             here = (
                 (roots[:, ROOT_PIECE] == piece) & (roots[:, ROOT_SIDE] == side) & (abs(roots[:, ROOT_PSI] - psi) < 1e-7)

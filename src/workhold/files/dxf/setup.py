@@ -110,7 +110,7 @@ def layer_of(carrier: Carrier) -> str:
     >>> [layer_of(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
     ['JAW_LEFT', 'JAW_RIGHT']
     """
-    if not carrier.has_lattice or carrier.name == carrier.noun:
+    if not (carrier.has_lattice and carrier.letter):
         return carrier.noun.upper()
     return f"{carrier.noun}_{carrier.name}".upper()
 

@@ -20,6 +20,7 @@ from attrs import asdict
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_lines import fixture_lines
 from workhold.files.result.rounding import rounded_degrees
+from workhold.fixels.fields import USUAL
 from workhold.model.flat import Flat
 from workhold.model.holes import Holes
 from workhold.model.load import Load
@@ -28,7 +29,7 @@ from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import NAMED, Toolkit
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -46,6 +47,8 @@ __all__ = [
 ]
 
 FORMAT = "workhold-result/1"
+# The key of kinds that have one of their own; others stand under "toolkit", with their kind.
+OWN_KEYS = {USUAL: "vise"}
 
 
 def write_result(result: Result, path: str | Path) -> None:
@@ -143,8 +146,9 @@ def tolerance_entry(tolerance: Tolerance) -> dict[str, Any]:
 
 def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
     """The key of a toolkit in a file, and what it holds: its fields, with its kind where it has no key of its own."""
-    named = {"kind": toolkit.kind} if toolkit.file_key == NAMED else {}
-    return {toolkit.file_key: {**named, **toolkit_fields(toolkit)}}
+    fields = toolkit_fields(toolkit)
+    key = OWN_KEYS.get(toolkit.kind)
+    return {"toolkit": {"kind": toolkit.kind, **fields}} if key is None else {key: fields}
 
 
 def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:

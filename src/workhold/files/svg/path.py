@@ -1,22 +1,28 @@
-"""Paths of lines, arcs and Bézier curves: path data as chains. svgelements resolves relative and shortened commands."""
+"""Paths of lines, arcs and Bézier curves: path data as chains. svgelements resolves relative and shortened commands.
+
+Glossary
+--------
+shape : what one SVG element draws, as a chain in its own user units (y down).
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import asin, cos, hypot, isfinite, pi, sin
 from typing import Any
+
+from attrs import field, frozen
 
 from workhold.conventions import CIRCULAR, HALF_CIRCLE
 from workhold.errors import InputError
 from workhold.files.outline.chain import arc_bulges
 from workhold.files.svg.document import short
 from workhold.files.svg.lengths import NUMBER, ShapeElement
-from workhold.files.svg.shape import Shape, near
 from workhold.geometry.rational import Pieces, ellipse_pieces, polynomial_pieces
 from workhold.geometry.segment import Point
 
-__all__ = ["path"]
+__all__ = ["Shape", "near", "path"]
 
 COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
 SEPARATOR = r"\s*(?:,\s*(?=[-+.\d]))?"
@@ -24,6 +30,28 @@ COMMAND = re.compile(r"\s*([MmZzLlHhVvCcSsQqTtAa])\s*")
 ARGUMENT = re.compile(rf"({NUMBER}){SEPARATOR}")
 FLAG = re.compile(rf"([01]){SEPARATOR}")
 CSS_PATH = re.compile(r"""path\(\s*(?:(?:nonzero|evenodd)\s*,\s*)?(?:"([^"]*)"|'([^']*)')\s*\)$""")
+
+
+@frozen
+class Shape:
+    """N + 1 points in user units, N bulges, N labels, and the segments that are curves, by their numbers."""
+
+    points: tuple[Point, ...]
+    bulges: tuple[float, ...]
+    labels: tuple[str, ...]
+    curved: Mapping[int, Pieces] = field(factory=dict)
+
+    def closed(self) -> Shape:
+        """The shape with a line from its end to its start, unless it ends there."""
+        if near(self.points[0], self.points[-1]):
+            return self
+        label = f"{self.labels[0].rpartition(' segment ')[0] or self.labels[0]} segment {len(self.labels) + 1}"
+        return Shape((*self.points, self.points[0]), (*self.bulges, 0.0), (*self.labels, label), self.curved)
+
+
+def near(p: Point, q: Point) -> bool:
+    """Whether two points are equal but for rounding."""
+    return hypot(p[0] - q[0], p[1] - q[1]) <= 1e-12 * (1 + abs(p[0]) + abs(p[1]))
 
 
 def path(figure: ShapeElement) -> Iterator[Shape]:

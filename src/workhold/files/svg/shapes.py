@@ -10,8 +10,7 @@ import numpy as np
 from workhold.conventions import CIRCULAR
 from workhold.errors import InputError
 from workhold.files.svg.lengths import ShapeElement, numbers
-from workhold.files.svg.path import path
-from workhold.files.svg.shape import Shape, near
+from workhold.files.svg.path import Shape, near, path
 from workhold.geometry.rational import Pieces, ellipse_pieces
 
 __all__ = ["SHAPES"]

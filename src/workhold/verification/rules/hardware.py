@@ -1,7 +1,8 @@
 """The rules of a toolkit, put together as its carriers say, and those about its holes.
 
-A carrier is asked what it is: whether it stands still or slides, has holes of its own or is bolted in one, or is a wall. Of
-two clamps, where one pair stands for all of its seat, fixtures of one seat and pair of directions are the same.
+A carrier is asked what it is: whether it stands still or slides, has holes of its own or is bolted in one, or
+is a wall. Of two clamps, where one pair stands for all of its seat, fixtures of one seat and pair of
+directions are the same.
 """
 
 from __future__ import annotations
@@ -101,7 +102,7 @@ class Hardware:
 
     @cached_property
     def from_lowest(self) -> tuple[str, ...]:
-        """Of columns and rows, those that count from the lowest that is used: rows beside a wall count from there."""
+        """Of columns and rows, those that count from the lowest in use: rows beside a wall count from there."""
         if self.wall is not None:
             return ("column",)
         return ("column", "row") if self.tips else ()
@@ -216,14 +217,12 @@ class Hardware:
         return Contact(self.place(peg), exact_point(*self.way(peg)), side, radius, body=body)
 
     def contacts(self, fixture: Fixture, outline: Outline) -> list[Contact]:
-        """The contacts of all pegs of a fixture, in their order; each of two clamps has a travel of its own."""
+        """The contacts of all pegs of a fixture, in their order; each of two clamps has its own travel."""
         sides = [outline.faces[peg.face] for peg in fixture.pegs]
         ends: Iterator[WallContact] = iter(())
         if self.wall is not None:
-            theta = arb(fixture.pose.theta_deg) * arb.pi() / 180
-            pose = Pose.of(theta, arb(fixture.pose.x), arb(fixture.pose.y), arb(0))
             on_wall = [side for peg, side in zip(fixture.pegs, sides, strict=True) if peg.is_on_wall]
-            ends = iter(wall_contacts(on_wall, outline, pose))
+            ends = iter(wall_contacts(on_wall, outline, Pose.written(fixture.pose)))
         out: list[Contact] = []
         for peg, side in zip(fixture.pegs, sides, strict=True):
             out.append(next(ends) if peg.is_on_wall else self.contact(peg, side))
@@ -261,7 +260,7 @@ class Hardware:
                     yield from rule(AGREEMENT - off, words, words)
 
     def asked_findings(self, fixture: Fixture) -> Iterator[Finding]:
-        """Whether a fixture has the pegs of its type, in different holes, and directions that are asked for, in order."""
+        """Whether a fixture has the pegs of its type in different holes, and directions as asked for."""
         directions, pegs = directions_of(fixture), fixture.pegs
         if not self.has_its_pegs(fixture) and len(self.lattices) > 1:
             first = self.lattices[0]
@@ -301,11 +300,11 @@ class Hardware:
                 yield Finding(True, f"its lowest {noun} is {min(numbers)}, and not 0")
 
     def is_counted(self, peg: Peg, noun: str) -> bool:
-        """Whether a column or a row of a peg is one of the lattice: of a clamp without a hole that of its line alone."""
+        """Whether a peg's column or row is one of the lattice: without a hole a clamp has its line alone."""
         return not direction_of(peg) or self.stroke.span is not None or is_along_x(peg) == (noun == "row")
 
     def clamp_place_findings(self, name: str, clamp: Peg) -> Iterator[Finding]:
-        """Whether a clamp is told by its hole, or by its line where it is in none."""
+        """Whether a clamp is named by its hole, or by its line where it is in none."""
         is_bolted = self.stroke.span is not None
         place = clamp_place(self.lattices[0].name, direction_of(clamp), clamp.column, clamp.row, is_bolted)
         if clamp.place != place:
@@ -347,7 +346,7 @@ class Hardware:
         return min(numbers) >= lowest and (count is None or max(numbers) - lowest < count)
 
     def crowding(self, fixture: Fixture) -> str:
-        """What stands in a blocked hole or overlaps, as it is written, in one sentence without a full stop."""
+        """What stands in a blocked hole or overlaps as it is written, in one sentence without a full stop."""
         pegs = [(peg, self.carriers[peg.carrier]) for peg in fixture.pegs]
         for name, (peg, carrier) in zip(self.names, pegs, strict=True):
             blocked = [holes for holes in carrier.blocked if holes.column == peg.column]

@@ -1,7 +1,7 @@
-"""Jaws: carriers with holes of their own that slide, and how far they may stand from what they press the part against.
+"""Jaws: carriers with holes of their own that slide, and how far they may open and close.
 
-The separation is counted from the column of the other jaw that is next to the opening, or from a wall, so that no peg is
-nearer to what stands still.
+The separation is counted from the column of the other jaw that is next to the opening, or from a wall, so
+that no peg is nearer to what stands still.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ def opening_findings(jaw: Carrier, separation: arb) -> Iterator[Finding]:
 
 
 def nearest_row_findings(jaw: Carrier, lowest: int, separation: arb) -> Iterator[Finding]:
-    """Whether a jaw that slides along its rows has its pegs in the nearest ones from which the opening is allowed.
+    """Whether a jaw that slides along its rows has its pegs in the nearest ones that the opening allows.
 
-    ``lowest`` is the first row that a peg stands in. One row nearer, the jaw is one pitch farther from the wall.
+    ``lowest`` is the first row in use. One row nearer, the jaw is one pitch farther from the wall.
     """
     assert jaw.travel is not None
     if lowest > 0:

@@ -1,11 +1,13 @@
-"""Clamps that are bolted in a hole and travel along a line of holes: their stroke, and what their bodies keep clear of.
+"""Clamps that are bolted in a hole and travel along a line of holes: their stroke and their bodies.
 
-A clamp with a stroke is bolted in the nearest hole behind its tip that fits everything. Its body, all that is within its
-radius of the piece from hole to tip, contains that of the same clamp in a nearer hole: where it clears locators and part, it
-would from there as well, and a nearer hole is left out only because it is off the plate or too near.
+A clamp with a stroke is bolted in the nearest hole behind its tip that fits everything. Its body, all that is
+within its radius of the piece from hole to tip, contains that of the same clamp in a nearer hole: where it
+clears locators and part, it would from there as well, and a nearer hole is left out only because it is off
+the plate or too near.
 
-The distance of a piece from a side is least at an end of either, where they cross, or, from an arc's outside, at the foot of
-the perpendicular from its centre. From inside a circle it has no minimum between the ends of a piece.
+The distance of a piece from a side is least at an end of either, where they cross, or, from an arc's outside,
+at the foot of the perpendicular from its centre. From inside a circle it has no minimum between the ends of a
+piece.
 """
 
 from __future__ import annotations
@@ -40,8 +42,8 @@ __all__ = [
     "travelled",
 ]
 
-# The directions in which a clamp may move when it clamps, in the order of a list, each with the way of its travel, which
-# grows as it opens.
+# The directions in which a clamp may move when it clamps, in the order of a list, each with the way of its
+# travel, which grows as it opens.
 WAYS = {"-x": (1, 0), "+x": (-1, 0), "-y": (0, 1), "+y": (0, -1)}
 OPPOSITE = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
@@ -97,7 +99,7 @@ class Stroke:
 
     Parameters
     ----------
-    span : least and most in mm from the hole that it is bolted in to its tip; None of one that is its tip alone.
+    span : least and most in mm from its hole to its tip; None of one that is its tip alone.
     wall : what the wall is called that it keeps clear of; None where there is none.
     """
 
@@ -107,7 +109,7 @@ class Stroke:
     def findings(
         self, name: str, locators: Sequence[tuple[str, Contact]], clamp: Contact, pose: Pose, outline: Outline
     ) -> Iterator[Finding]:
-        """Whether a clamp of a name, bolted in its hole, reaches its place and clears wall, locators and part."""
+        """Whether a clamp, bolted in its hole, reaches its place and clears wall, locators and part."""
         tip, stroke = clamp.place(pose), -pose.travels[clamp.travel]
         if self.wall is not None:
             above = tip[1] - clamp.radius
@@ -174,8 +176,10 @@ def pieces_apart(one: tuple[Point, Point], other: tuple[Point, Point]) -> arb:
 
 
 def clearance(start: Point, end: Point, radius: arb, sides: Iterable[Side], enough: float) -> arb:
-    """Distance in mm between a capsule and the nearest of some sides, negative where it enters one; ``enough`` where none is
-    nearer than that. The ends of its middle line are apart."""
+    """Distance in mm from a capsule to the nearest of some sides, negative inside, at most ``enough``.
+
+    The ends of the capsule's middle line are apart.
+    """
     piece = line_side(start, end)
     middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
     nearest = arb(enough)
@@ -199,7 +203,7 @@ def piece_distance(piece: LineSide, side: Side) -> arb:
 
 
 def between(piece: LineSide, side: Side) -> Iterator[tuple[arb, arb]]:
-    """Places along a piece's line, in mm from its start, where it may be nearest to a side, with the distance there."""
+    """Places in mm along a piece's line where it may be nearest to a side, with the distance there."""
     if isinstance(side, ArcSide):
         ray = side.from_center(piece.start)
         foot, off = -dot(ray, piece.tangent), cross(ray, piece.tangent)

@@ -1,8 +1,8 @@
 """A straight wall that the part lies flush on, as two contacts at the ends of a hull edge.
 
-What touches the wall, which runs along x at y = 0 with the part above it, is derived from the outline at the written pose:
-the lowest joints and convex arcs. Then its two ends are contacts like any other, each with an equation of its own: its
-lowest point is at y = 0.
+What touches the wall, which runs along x at y = 0 with the part above it, is derived from the outline at the
+written pose: the lowest joints and convex arcs. Then its two ends are contacts like any other, each with an
+equation of its own: its lowest point is at y = 0.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class WallContact(Contact):
         return self.length
 
     def outward(self, pose: Pose) -> Point:
-        """Down, as the workpiece sees it."""
+        """The direction down, as the workpiece sees it."""
         return -pose.sine, -pose.cosine
 
     def in_part(self, pose: Pose) -> Point:
@@ -87,7 +87,7 @@ class WallContact(Contact):
 
 
 def wall_contacts(sides: Sequence[Side], outline: Outline, pose: Pose) -> list[WallContact]:
-    """The two ends of the contact with a wall at a pose, from left to right, on sides that are told."""
+    """The two ends of the contact with a wall at a pose, from left to right, each on a side."""
     lows = [
         (float(y.mid()), float(x.mid()), piece) for piece in pieces(outline, pose) for x, y in (piece.lowest(pose),)
     ]
@@ -138,7 +138,7 @@ def along_wall(end: Piece, outline: Outline, pose: Pose) -> tuple[int, ...]:
 def flush_findings(
     noun: str, ends: Sequence[tuple[str, Peg, WallContact]], pose: Pose, outline: Outline
 ) -> Iterator[Finding]:
-    """Whether the part lies flush on a wall called ``noun``, where its two ends, each with its name, are written to be."""
+    """Whether the part lies flush on a wall called ``noun``, with its two named ends where they are written."""
     (left, _), (right, _) = places = [contact.place(pose) for _, _, contact in ends]
     words = f"the part does not lie flush on the {noun}"
     yield from rule(right - left - LEAST_FLUSH, words, words)

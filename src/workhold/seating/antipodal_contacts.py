@@ -1,0 +1,229 @@
+"""Two pegs that press a part along one line, on a common normal of two pieces or in pockets, in closed form.
+
+With both pegs on one line and at a fixed height above each other, the jaw separation grows with their
+distance d on the part. It is counted along the outward normal of what moves, and is below 0 where both press
+from between, as in a hole. So equilibria are the critical points of d over the places on both pieces. With
+curvatures kappa (of convex pieces above 0) the second derivatives of d are 1 / d - kappa along each piece,
+and -1 / d across.
+
+Glossary
+--------
+antipodal contacts : two places with opposite normals, each on the other's: I.-M. Chen and J. W. Burdick,
+    "Finding antipodal point grasps on irregularly shaped objects", IEEE Transactions on Robotics and
+    Automation 9 (1993).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import product
+from math import asin, atan2, cos, hypot, nan, sin
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONTACTS,
+    MOTION,
+    PEG,
+    PIECE,
+    PLACE_X,
+    PLACE_Y,
+    SECOND,
+    SEPARATION,
+    THETA,
+)
+from workhold.seating.obstacle_boundary import ObstacleBoundary, contains
+from workhold.seating.pattern import Pattern
+
+__all__ = ["AntipodalContacts", "antipodal_contacts", "antipodal_candidates"]
+
+Array = NDArray[np.float64]
+# mm. Shorter distances are none.
+SHORTEST = 1e-6
+# No unit. A force's share below this is none; normals with a smaller cross product make no cone.
+LEAST_SHARE = 1e-9
+# No unit. Second derivatives below this, times d, are flat.
+FLAT = 1e-9
+
+
+@frozen(slots=False)
+class AntipodalContacts:
+    """Two places on the boundary with opposite normals, each on the other's.
+
+    Parameters
+    ----------
+    pieces : of each place what a peg there touches: one piece, or the two of a pocket.
+    one, two : places about the centre, in mm.
+    length : their distance along the outward normal of the second, below 0 where the normals point at each
+        other.
+    curvatures : of the pieces, in 1 / mm; None of a pocket.
+    """
+
+    pieces: tuple[tuple[int, ...], tuple[int, ...]]
+    one: tuple[float, float]
+    two: tuple[float, float]
+    length: float
+    curvatures: tuple[float | None, float | None]
+
+    @cached_property
+    def descent_direction(self) -> tuple[float, float, float]:
+        """The least second derivative of d in 1 / mm, and the direction along both pieces that has it.
+
+        The derivative is NaN where both principal ones are below 0.
+        """
+        d, (one, two) = self.length, self.curvatures
+        if one is None or two is None:
+            if one is None and two is None:
+                return 0.0, 0.0, 0.0
+            return 1.0 / d - (one or 0.0) - (two or 0.0), float(one is not None), float(two is not None)
+        values, ways = np.linalg.eigh([[1.0 / d - one, -1.0 / d], [-1.0 / d, 1.0 / d - two]])
+        return (float(values[0]) if values[1] * abs(d) > FLAT else nan), float(ways[0, 0]), float(ways[1, 0])
+
+    @property
+    def turned(self) -> AntipodalContacts:
+        """The contacts with the places exchanged."""
+        return AntipodalContacts(self.pieces[::-1], self.two, self.one, self.length, self.curvatures[::-1])
+
+
+def antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
+    """All antipodal contacts of a part, from pegs that stand still to pegs that move.
+
+    Those on parallel lines and on concentric arcs, which are whole families, are left out.
+    """
+    standing, moving = range(*boundary.parts[0]), range(*boundary.parts[1])
+    found = [normal for a, b in product(standing, moving) for normal in of_pieces(boundary.rows, a, b)]
+    for v, (piece, _) in enumerate(boundary.pocket_pieces.tolist()):
+        if piece in standing:
+            found += [normal for b in moving for normal in of_pocket(boundary, v, b)]
+        if piece in moving:
+            found += [normal.turned for a in standing for normal in of_pocket(boundary, v, a)]
+    for v, w in product(range(len(boundary.pockets)), repeat=2):
+        if boundary.pocket_pieces[v, 0] not in standing or boundary.pocket_pieces[w, 0] not in moving:
+            continue
+        (vx, vy), (wx, wy) = boundary.pockets[v, :2], boundary.pockets[w, :2]
+        d = hypot(wx - vx, wy - vy)
+        for signed in (d, -d) if d > SHORTEST else ():
+            ux, uy = (wx - vx) / signed, (wy - vy) / signed
+            if holds(boundary.pockets[v], -ux, -uy) and holds(boundary.pockets[w], ux, uy):
+                pieces = pocket_pieces(boundary, v), pocket_pieces(boundary, w)
+                found.append(AntipodalContacts(pieces, (vx, vy), (wx, wy), signed, (None, None)))
+    return found
+
+
+def pocket_pieces(boundary: ObstacleBoundary, pocket: int) -> tuple[int, ...]:
+    """The two pieces of a pocket."""
+    return tuple(boundary.pocket_pieces[pocket].tolist())
+
+
+def holds(pocket: Array, x: float, y: float) -> bool:
+    """Whether a direction lies between the two normals of a pocket."""
+    ax, ay, bx, by = pocket[2:6].tolist()
+    cross = ax * by - ay * bx
+    if abs(cross) < LEAST_SHARE:
+        return False
+    return bool((x * by - y * bx) / cross > LEAST_SHARE and (ax * y - ay * x) / cross > LEAST_SHARE)
+
+
+def bend(row: Array) -> float:
+    """Curvature of a piece in 1 / mm, above 0 where it is convex."""
+    return 0.0 if row[IS_ARC] == 0.0 else float(row[SIGN] / row[RADIUS])
+
+
+def reached(row: Array, ux: float, uy: float, x: float, y: float) -> tuple[float, float]:
+    """The place of a piece's carrier with normal u; on a line it is the foot of a point."""
+    if row[IS_ARC] != 0.0:
+        return row[X] + row[SIGN] * row[RADIUS] * ux, row[Y] + row[SIGN] * row[RADIUS] * uy
+    d = (row[X] - x) * ux + (row[Y] - y) * uy
+    return x + d * ux, y + d * uy
+
+
+def of_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts]:
+    """The antipodal contacts from piece a to piece b."""
+    one, two = rows[a], rows[b]
+    if one[IS_ARC] == 0.0 and two[IS_ARC] == 0.0:
+        return []
+    if one[IS_ARC] == 0.0:
+        ways = [(-one[AXIS_Y], one[AXIS_X])]
+    elif two[IS_ARC] == 0.0:
+        ways = [(two[AXIS_Y], -two[AXIS_X])]
+    else:
+        ways = between(two[X] - one[X], two[Y] - one[Y])
+    found = []
+    for ux, uy in ways:
+        if one[IS_ARC] != 0.0:
+            p = reached(one, -ux, -uy, 0.0, 0.0)
+            q = reached(two, ux, uy, *p)
+        else:
+            q = reached(two, ux, uy, 0.0, 0.0)
+            p = reached(one, ux, uy, *q)
+        d = (q[0] - p[0]) * ux + (q[1] - p[1]) * uy
+        if abs(d) > SHORTEST and contains(one, *p) and contains(two, *q):
+            found.append(AntipodalContacts(((a,), (b,)), p, q, d, (bend(one), bend(two))))
+    return found
+
+
+def of_pocket(boundary: ObstacleBoundary, pocket: int, b: int) -> list[AntipodalContacts]:
+    """The antipodal contacts of a pocket and piece b: normals of b that press a peg into the pocket."""
+    row, (x, y) = boundary.rows[b], boundary.pockets[pocket, :2].tolist()
+    ways = [(row[AXIS_Y], -row[AXIS_X])] if row[IS_ARC] == 0.0 else between(row[X] - x, row[Y] - y)
+    found = []
+    for ux, uy in ways:
+        q = reached(row, ux, uy, x, y)
+        d = (q[0] - x) * ux + (q[1] - y) * uy
+        if abs(d) > SHORTEST and contains(row, *q) and holds(boundary.pockets[pocket], -ux, -uy):
+            found.append(AntipodalContacts((pocket_pieces(boundary, pocket), (b,)), (x, y), q, d, (None, bend(row))))
+    return found
+
+
+def between(x: float, y: float) -> list[tuple[float, float]]:
+    """Both directions of a line between two points, none of one point."""
+    size = hypot(x, y)
+    return [] if size < SHORTEST / 10.0 else [(x / size, y / size), (-x / size, -y / size)]
+
+
+def antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
+    """Candidates (N, 24) of a peg of each jaw on antipodal contacts, with the direction in which S falls.
+
+    Where it falls in two directions, the second derivative is NaN.
+    """
+    out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
+    for i, j in product(range(len(pegs)), repeat=2):
+        if not right[i] < right[j]:
+            continue
+        run, rise = pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]
+        least = abs(rise) * (1.0 + 1e-12)
+        for normal in boundary.once(antipodal_contacts):
+            if abs(normal.length) <= least:
+                continue
+            omega = asin(rise / normal.length)
+            separation = normal.length * cos(omega) - run
+            if pattern.reaches(separation):
+                out.append(pressed(pattern, normal, i, j, omega, separation))
+    return np.array(out).reshape(-1, CANDIDATE_LENGTH)
+
+
+def pressed(pattern: Pattern, normal: AntipodalContacts, i: int, j: int, omega: float, separation: float) -> Array:
+    """The candidate of antipodal contacts, pressed by peg i and peg j in direction omega."""
+    (px, py), (qx, qy), d = normal.one, normal.two, normal.length
+    theta = omega - atan2((qy - py) / d, (qx - px) / d)
+    c, s = cos(theta), sin(theta)
+    rx, ry = c * px - s * py, s * px + c * py
+    row = np.zeros(CANDIDATE_LENGTH)
+    row[THETA], row[PLACE_X], row[PLACE_Y] = theta, pattern.pegs[i, 0] - rx, pattern.pegs[i, 1] - ry
+    row[SEPARATION] = separation
+    contacts = [(peg, piece) for peg, pieces in zip((i, j), normal.pieces, strict=True) for piece in pieces]
+    row[CONTACTS] = len(contacts)
+    row[PEG : PEG + 4], row[PIECE : PIECE + 4] = -1.0, -1.0
+    for at, (peg, piece) in enumerate(contacts):
+        row[PEG + at], row[PIECE + at] = peg, piece
+    second, along_one, along_two = normal.descent_direction
+    row[SECOND] = second
+    # Both places go along the same way, square to the line; the part turns against the chord.
+    turn = -(along_two - along_one) / d
+    wx, wy = -sin(omega) * along_one, cos(omega) * along_one
+    row[MOTION], row[MOTION + 1], row[MOTION + 2] = turn, turn * ry - wx, -turn * rx - wy
+    return row

@@ -1,0 +1,229 @@
+"""Closing the jaws from where a part was put: the path that it takes, to be watched, and what it ends in.
+
+The path is followed without friction by ``seating.closing``, from one level of S to the next. Levels are
+evenly spaced, as a vise is closed, and there are more of them where the part moves far between two.
+
+Glossary
+--------
+closing simulation : the motion of a part between jaws that close on it: R. C. Brost, "Automatic grasp
+    planning in the presence of uncertainty", International Journal of Robotics Research 7 (1988).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import cos, degrees, inf, radians, sin, tau
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
+from workhold.kernels.seating.places import AT_SEAT, SAME_LEVEL
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.seating import Seat
+from workhold.seating.closing import Closing
+from workhold.seating.closing_frame import ClosingFrame
+from workhold.seating.join_tree import distances
+from workhold.seating.pattern import Pattern
+from workhold.seating.solver import Solver
+
+__all__ = ["ENDINGS", "ClosingSimulation", "simulate_closing"]
+
+Array = NDArray[np.float64]
+# The fixture's own seat; one that covers the same place; another; rest in none of them; the stop with the
+# part loose beside the pegs, or gone from them; and a path that could not be followed to its end.
+ENDINGS = "right", "same place", "wrong", "elsewhere", "stop", "outside", "lost"
+# A part that is put by hand may enter a peg by this part of the peg's radius: it is pushed out again.
+ENTERS = 0.5
+# mm. Steps of closing at first; a peg is pushed out of the part from as deep as so many of them.
+FIRST_STEP, STEPS_DEEP = 0.05, 8.0
+# mm. Ends whose S differs by less are one.
+LEVEL = 1e-6
+# Levels of S; of the part's size how far it moves between two of them; how often a stretch is halved, and how
+# many configurations there are at most.
+LEVELS, FAR, HALVINGS, MOST = 60, 0.02, 6, 400
+
+
+@frozen(eq=False)
+class ClosingSimulation:
+    """The course of a closing and its end.
+
+    Parameters
+    ----------
+    poses, travels : of the part, turned over where that was asked for, and of what moves in mm, such as the
+        jaw separation, one after the other.
+    ending : one of :data:`ENDINGS`.
+    seat : what it ended in, of the seats that were given; None where it ended in none of them.
+    """
+
+    poses: tuple[Pose, ...]
+    travels: tuple[float, ...]
+    ending: str
+    seat: Seat | None
+
+
+def simulate_closing(
+    solver: Solver,
+    fixture: Fixture,
+    seats: Sequence[Seat],
+    pose: Pose,
+    opening: float,
+    turned_over: bool = False,
+    is_cancelled: Callable[[], bool] = lambda: False,
+) -> ClosingSimulation:
+    """Closes the jaws of a fixture from where the part was put.
+
+    Parameters
+    ----------
+    seats : the fixture's, see :class:`workhold.model.seating.Seating`.
+    pose : of the part, of the part turned over (x to -x in its own frame) where that is asked for.
+    opening : how much farther than in the fixture the jaws stand open, or the clamp is drawn back, in mm.
+    is_cancelled : asked between steps; when it is true, the path ends where it is.
+
+    Raises
+    ------
+    InputError
+        As ``Pattern.of``; for jaws that meet their stop or are opened beyond their end, and a part that a peg
+        stands in.
+    """
+    pattern = Pattern.of(fixture, solver.toolkit)
+    closing = solver.closing(pattern, turned_over)
+    center = Center(solver.workpiece.center, turned_over, pattern.frame)
+    start = center.config(pose, fixture.jaw_separation + solver.toolkit.clamping * opening)
+    travel = solver.toolkit.moving.travel
+    assert travel is not None
+    if pattern.frame.sign > 0.0 and travel.most is not None and start[3] > travel.most + LEVEL:
+        raise InputError("what moves does not go so far: open it by less.")
+    if not pattern.stop <= start[3] <= pattern.widest:
+        raise InputError("pegs meet before what moves stands there: open it more, or less.")
+    into = entered(solver, fixture, pattern, start, turned_over)
+    # What is pushed out of a peg may be let go in a tighter place than it was put in; the jaws stand as they
+    # stood.
+    first = max(FIRST_STEP, into / STEPS_DEEP)
+    configs, how = closing.run(start[None], first, level=start[3])
+    if how[0] == GAVE_UP:
+        raise InputError("a peg stands in the part there, and there is no room beside it: put the part elsewhere.")
+    path = follow(closing, configs[0], is_cancelled)
+    end, how = closing.run(path[-1][None], FIRST_STEP)
+    path.append(end[0])
+    ending, seat = ended(solver, closing, center, end[0], int(how[0]), seats)
+    poses = tuple(center.pose(config) for config in path)
+    return ClosingSimulation(poses, tuple(pattern.frame.sign * float(config[3]) for config in path), ending, seat)
+
+
+@frozen
+class Center:
+    """The change between poses of a part and configurations of the middle of its box in a closing frame.
+
+    Parameters
+    ----------
+    middle : of the box in the part's own coordinates, in mm.
+    turned_over : whether the part is turned over.
+    frame : leads to the toolkit's frame and back.
+    """
+
+    middle: tuple[float, float]
+    turned_over: bool
+    frame: ClosingFrame
+
+    @property
+    def own(self) -> tuple[float, float]:
+        """The middle of the box of the part as it lies."""
+        x, y = self.middle
+        return (-x, y) if self.turned_over else (x, y)
+
+    def config(self, pose: Pose, travelled: float) -> Array:
+        """(4,) theta in radians, x and y of the middle, and S."""
+        return self.frame.enter(np.array([radians(pose.theta_deg), *pose.apply(*self.own), travelled]))
+
+    def pose(self, config: Array) -> Pose:
+        """The pose of a configuration, turned by 0 to 360 degrees."""
+        left, (x, y) = self.frame.leave(config), self.own
+        theta = float(left[0]) % tau
+        c, s = cos(theta), sin(theta)
+        return Pose(degrees(theta), float(left[1]) - (c * x - s * y), float(left[2]) - (s * x + c * y))
+
+
+def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool) -> float:
+    """The depth in mm to which a peg, or a wall, stands in the part in a configuration; 0 where none does.
+
+    Raises
+    ------
+    InputError
+        When it is deeper than a part that is put by hand may go.
+    """
+    rows = solver.outline.rows
+    points = pattern.at(config[None])[0] * ([-1.0, 1.0] if turned_over else [1.0, 1.0])
+    away = outline_distances(np.ascontiguousarray(points), rows)
+    deepest = 0.0
+    if pattern.half_plane is not None:
+        hull = solver.closing(pattern, turned_over).boundary.hull
+        deepest = max(-float(hull.clearance(config[None], pattern.half_plane)[0]), 0.0)
+        if deepest > ENTERS * min(pattern.radii):
+            raise InputError("the part lies in the fence there: put it clear of the fence.")
+    pegs = [fixture.pegs[number] for number in pattern.numbers]
+    for (x, y), off, peg in zip(points.tolist(), away.tolist(), pegs, strict=True):
+        radius = solver.toolkit.carrier(peg.carrier).peg_radius
+        depth = radius + off if is_inside(x, y, rows) else radius - off
+        if depth > ENTERS * radius:
+            raise InputError(
+                f"the peg in {peg.hole} stands in the part there: put the part elsewhere, or open farther."
+            )
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def follow(closing: Closing, config: Array, is_cancelled: Callable[[], bool]) -> list[Array]:
+    """The descent path from a configuration, at levels of S."""
+    path = [config]
+    while not is_cancelled() and len(path) < MOST:
+        before = float(path[-1][3])
+        low = float(closing.run(path[-1][None], FIRST_STEP)[0][0, 3])
+        # A path from level to level may take another turn than one without levels, and end lower.
+        if before - low < LEVEL:
+            break
+        for level in np.linspace(before, low, LEVELS + 1)[1:]:
+            if is_cancelled() or len(path) >= MOST:
+                break
+            go_down(closing, path, float(level), HALVINGS)
+        if before - path[-1][3] < LEVEL:
+            break
+    return path
+
+
+def go_down(closing: Closing, path: list[Array], level: float, halvings: int) -> None:
+    """Follows a path on to a level, with levels between where the part moves far."""
+    before = path[-1]
+    if level >= before[3]:
+        return
+    after = closing.run(before[None], FIRST_STEP, level=level)[0][0]
+    if halvings and len(path) < MOST and distances(after[None], before, closing.size)[0] > FAR * closing.size:
+        go_down(closing, path, (before[3] + float(after[3])) / 2.0, halvings - 1)
+        go_down(closing, path, level, halvings - 1)
+    else:
+        path.append(after)
+
+
+def ended(
+    solver: Solver, closing: Closing, center: Center, config: Array, how: int, seats: Sequence[Seat]
+) -> tuple[str, Seat | None]:
+    """What a path ended in: one of :data:`ENDINGS`, and the seat if it is one of those given."""
+    if how == GAVE_UP:
+        return "lost", None
+    if how == AT_THE_STOP:
+        return ("outside" if closing.escape(config[None])[0] else "stop"), None
+    best, found = inf, None
+    for seat in seats:
+        there = center.config(seat.pose, seat.jaw_separation)
+        if seat.mirrored != center.turned_over or abs(there[3] - config[3]) > SAME_LEVEL:
+            continue
+        away = float(distances(there[None], config, closing.size)[0])
+        # Where nothing locates the part, it may lie anywhere along what the seat is the middle of.
+        if away < best and (away < AT_SEAT or seat.kind in ("loose", "unsettled")):
+            best, found = away, seat
+    if found is None:
+        return "elsewhere", None
+    return ("right" if found.is_own else "same place" if found.same_place else "wrong"), found

@@ -1,0 +1,198 @@
+"""The join tree of the separation: which cages join at which pass, and from where a part gets out.
+
+From a pass both descent paths are followed to what they end in. While the jaws are opened, cages grow, and
+join where the lowest pass between them is reached. So passes are taken in the order of their separation.
+
+Glossary
+--------
+join tree : which components of sublevel sets of a function join at which saddle: H. Carr, J. Snoeyink and U.
+    Axen, "Computing contour trees in all dimensions", Computational Geometry 24 (2003).
+place : what a descent path ends in: a seat, a loose set, something not settled, the outside or the stop.
+loose set : an equilibrium manifold, along which nothing locates the part.
+join : a pass, with the places that both of its descent paths end in.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from math import inf, pi, tau
+
+import numpy as np
+from attrs import define, field, frozen
+from numpy.typing import NDArray
+
+from workhold.kernels.seating.closing import AT_THE_STOP
+from workhold.kernels.seating.columns import CONFIG, CONTACTS, SEPARATION, Families
+from workhold.kernels.seating.following import BESIDE
+from workhold.kernels.seating.loose import first_sets, write_beyond
+from workhold.kernels.seating.places import FALLS, leads_out, write_places
+from workhold.seating.closing import Closing
+from workhold.seating.equilibria import Equilibria
+from workhold.seating.pass_descents import pass_descents
+
+__all__ = ["Join", "JoinTree", "distances"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+# mm. How long the first steps of a descent path off a loose set are.
+FIRST_STEP = BESIDE / 2.0
+
+
+@frozen
+class Join:
+    """A pass, and the places whose cages join there.
+
+    Parameters
+    ----------
+    separation : there, in mm.
+    candidate : (24,) row of the pass.
+    places : what its two descent paths end in.
+    """
+
+    separation: float
+    candidate: Array = field(eq=False)
+    places: tuple[int, int]
+
+
+@define(frozen=True, eq=False, slots=False)
+class JoinTree:
+    """The places in which closing ends, and the passes at which their cages join.
+
+    Parameters
+    ----------
+    seats : (N, 24) rows of strict seats.
+    loose : (L, 24) rows of loose sets off which no path leads down: their places follow those of the seats.
+    slack : (K, 24) rows of loose sets of three contacts or more off which paths lead down: no rest there is
+        certain.
+    doubtful : (M, 4) configurations of what is not settled, whose places follow.
+    passes, joined : (J, 24) rows in the order of their separations, and what their descent paths end in: (J,
+        2).
+    own : (N + L,) each place; for a seat that lies on a loose set it is the place of the set.
+    """
+
+    seats: Array
+    loose: Array
+    slack: Array
+    doubtful: Array
+    passes: Array
+    joined: IntArray
+    own: IntArray
+
+    @classmethod
+    def of(cls, found: Equilibria, closing: Closing) -> JoinTree:
+        """Follows the descent paths off all passes and off the ends of all loose sets."""
+        loose, size, configs = found.loose, closing.size, np.ascontiguousarray(found.seats[:, CONFIG])
+        # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing
+        # leads on.
+        strict = np.flatnonzero(sets_at(configs, loose, np.arange(len(loose.rows)), size) < 0)
+        strict = strict[np.argsort(configs[strict, 3], kind="stable")]
+        seats, off = configs[strict], ManifoldDescents.of(loose, closing, configs[strict])
+        first = len(configs) + len(off.lying)
+        parts = off.both, pass_descents(found, closing, seats), off.one
+        starts, ends, how = (np.concatenate([part[k] for part in parts]) for k in range(3))
+        leaves = closing.leaves(starts, ends, how == AT_THE_STOP).astype(np.int8)
+        doubtful, count = np.empty((len(found.doubtful) + len(ends), 4)), len(found.doubtful)
+        doubtful[:count] = found.doubtful[:, CONFIG]
+        places = np.empty(len(ends) - len(off.falling), np.int64)
+        known = ends, how, leaves, loose, off.lying, off.falling, seats, strict, first, size
+        count = write_places(*known, doubtful, count, np.empty(len(off.falling), np.int64), places)
+        passes = np.concatenate([loose.rows[off.dividing], found.passes])
+        order, own = np.argsort(passes[:, SEPARATION], kind="stable"), np.arange(first)
+        beside = sets_at(configs, loose, off.lying, size)
+        own[: len(configs)][beside >= 0] = len(configs) + beside[beside >= 0]
+        rows = found.seats, loose.rows[off.lying], loose.rows[off.slack]
+        return cls(*rows, doubtful[:count], passes[order], places.reshape(-1, 2)[order], own)
+
+    @cached_property
+    def first_joins(self) -> IntArray:
+        """The number (P + 2,) of the first pass at which each place's cage joins another, -1 where it never does.
+
+        The outside and the stop come last.
+        """
+        out = np.full(len(self.own) + len(self.doubtful) + 2, -1)
+        leading = np.flatnonzero(self.joined[:, 0] != self.joined[:, 1])[::-1]
+        out[self.joined[leading]] = leading[:, None]
+        return out
+
+    def join(self, number: int) -> Join:
+        """A pass by its number."""
+        one, two = self.joined[number].tolist()
+        return Join(float(self.passes[number, SEPARATION]), self.passes[number], (one, two))
+
+    def join_of(self, place: int) -> Join | None:
+        """The first pass at which the cage of a place joins another; None where it never does."""
+        number = int(self.first_joins[self.own[place]])
+        return None if number < 0 else self.join(number)
+
+    @property
+    def tops(self) -> Array:
+        """The separations (N + L,) of the first passes of seats and loose sets; infinite where there is none."""
+        return np.append(self.passes[:, SEPARATION], inf)[self.first_joins[self.own]]
+
+    def way_out(self, place: int) -> float | None:
+        """The separation at which a part can get from a place to the outside; None where it never can."""
+        number = leads_out(self.joined, int(self.own[place]), np.empty(len(self.first_joins), np.int64))
+        return None if number < 0 else float(self.passes[number, SEPARATION])
+
+
+@frozen(eq=False)
+class ManifoldDescents:
+    """The descent paths off loose sets.
+
+    Parameters
+    ----------
+    lying : (L,) numbers of sets off which no path leads.
+    falling : (G,) numbers of the others.
+    slack : numbers of falling sets on which a part lies a while.
+    dividing : numbers of sets off which paths lead down to both sides.
+    both : where paths off dividing sets begin, (2 D, 4), and end, and how.
+    one : where the first path off each falling set begins, (G, 4), and ends, and how.
+    """
+
+    lying: IntArray
+    falling: IntArray
+    slack: IntArray
+    dividing: IntArray
+    both: tuple[Array, Array, NDArray[np.int8]]
+    one: tuple[Array, Array, NDArray[np.int8]]
+
+    @classmethod
+    def of(cls, loose: Families, closing: Closing, seats: Array) -> ManifoldDescents:
+        """Follows the descent paths off some sets; ``seats`` (M, 4) are those of ``Closing.run``."""
+        if not len(loose.rows):
+            return NOTHING
+        starts, whose = np.empty((2 * len(loose.rows), 4)), np.empty(2 * len(loose.rows), np.int64)
+        count = write_beyond(loose, closing.size, BESIDE, starts, whose)
+        starts, whose = starts[:count], whose[:count]
+        ends, how = closing.run(starts, FIRST_STEP, seats)
+        falls = np.flatnonzero(ends[:, 3] < loose.rows[whose, SEPARATION] - FALLS)
+        paths = np.bincount(whose[falls], minlength=len(loose.rows))
+        falling, first = np.flatnonzero(paths), falls[np.searchsorted(whose[falls], np.flatnonzero(paths))]
+        both = paths[whose] == 2
+        # A part on two pegs that slides off is no rest at all; on three or more it lies there a while.
+        rests = (loose.rows[falling, CONTACTS] >= 3.0) & np.isnan(loose.across[falling, 0])
+        return cls(
+            np.flatnonzero(paths == 0),
+            falling,
+            falling[rests],
+            np.flatnonzero(paths == 2),
+            (starts[both], ends[both], how[both]),
+            (starts[first], ends[first], how[first]),
+        )
+
+
+NUMBERS, PATHS = np.zeros(0, np.int64), (np.zeros((0, 4)), np.zeros((0, 4)), np.zeros(0, np.int8))
+NOTHING = ManifoldDescents(NUMBERS, NUMBERS, NUMBERS, NUMBERS, PATHS, PATHS)
+
+
+def sets_at(configs: Array, loose: Families, asked: IntArray, size: float) -> IntArray:
+    """The place among the asked of the first loose set in which each configuration (N, 4) lies, or -1."""
+    out = np.empty(len(configs), np.int64)
+    first_sets(configs, loose, asked, size, FALLS, out)
+    return out
+
+
+def distances(configs: Array, others: Array, size: float) -> Array:
+    """The distances in mm of configurations (..., 4) from others, where turns count by the size."""
+    turn = np.abs((configs[..., 0] - others[..., 0] + pi) % tau - pi)
+    return np.asarray(turn * size + np.hypot(configs[..., 1] - others[..., 1], configs[..., 2] - others[..., 2]))

@@ -1,0 +1,286 @@
+"""The boundary on which a peg's centre lies while it touches a part, and where it has inner corners.
+
+Glossary
+--------
+obstacle boundary : the boundary of the C-obstacle that a part is to the centre of a peg: T. Lozano-Perez,
+    "Spatial planning: a configuration space approach", IEEE Transactions on Computers C-32 (1983).
+piece : a straight or circular part of the boundary; a peg's centre on it touches one face, or one corner of
+    the part.
+pocket : a corner of the boundary in which a peg touches two pieces at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from math import atan2, pi
+from typing import Any, TypeVar
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.contact.curves import CurveTable, LatticeSteps, center_numbers, curve_table, loosened
+from workhold.contact.problem import centered
+from workhold.conventions import END_SLACK, SAME_CENTER
+from workhold.geometry.segment import segment_rows
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
+from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.seating.columns import Obstacles
+from workhold.model.seating import SeatContact
+from workhold.model.workpiece import Workpiece
+from workhold.seating.boundary_pieces import Touch, pockets_of, touched_pieces
+from workhold.seating.hull import Hull
+from workhold.seating.pattern import Pattern
+
+__all__ = ["ObstacleBoundary", "contains"]
+
+Array = NDArray[np.float64]
+Found = TypeVar("Found")
+# mm. How far past a pocket a piece still counts for a peg beside it.
+PAST_POCKET = 0.05
+
+
+@define(frozen=True, eq=False, slots=False)
+class ObstacleBoundary:
+    """The boundary on which the centres of pegs lie while they touch a part.
+
+    Where pegs that move have another radius than those that stand still, it is both boundaries, one after the
+    other.
+
+    Parameters
+    ----------
+    rows : (N, 10) pieces about the centre of the part's bounding box, in mm.
+    parts : (2, 2) first and past-the-last number of the pieces of pegs that stand still, and of those that
+        move.
+    touches : what a peg on each piece touches.
+    pockets : (V, 6) place of each pocket and the outward normals of its two pieces.
+    pocket_pieces : (V, 2) their numbers.
+    hull : what of the part may touch a wall.
+    mirrored : whether the part is turned over.
+    """
+
+    rows: Array
+    parts: NDArray[np.int64]
+    touches: tuple[Touch, ...]
+    pockets: Array
+    pocket_pieces: NDArray[np.int64]
+    hull: Hull
+    mirrored: bool = False
+
+    @classmethod
+    def of(cls, workpiece: Workpiece, radii: tuple[float, float]) -> ObstacleBoundary:
+        """The boundary for pegs that stand still and for those that move, of radii in mm above 0."""
+        rows, touches, pockets, whose, starts = list[Array](), list[Touch](), list[Array](), list[Any](), [0]
+        for radius in dict.fromkeys(radii):
+            touched = touched_pieces(workpiece, radius)
+            pieces = [piece for _, piece in touched]
+            rows.append(centered(segment_rows(pieces), workpiece.center))
+            touches += [touch for touch, _ in touched]
+            places, numbers = pockets_of(pieces, rows[-1])
+            pockets.append(places)
+            whose.append(numbers + starts[-1])
+            starts.append(starts[-1] + len(pieces))
+        every = np.concatenate(rows)
+        every.setflags(write=False)
+        parts = np.array([starts[:2], starts[-2:]], dtype=np.int64)
+        return cls(every, parts, tuple(touches), np.concatenate(pockets), np.concatenate(whose), Hull.of(workpiece))
+
+    def fits(self, side: int, piece: int) -> bool:
+        """Whether pegs that stand still (0), or that move (1), can touch a piece."""
+        return bool(self.parts[side, 0] <= piece < self.parts[side, 1])
+
+    def obstacles(self, pattern: Pattern, size: float, stop: float) -> Obstacles:
+        """The pieces about the pegs of a pattern, as kernels take them.
+
+        Parameters
+        ----------
+        size : of the part in mm, by which turns are counted.
+        stop : S in mm at which what moves is stopped.
+        """
+        pegs = np.array(pattern.pegs), pattern.right, self.parts
+        hull, half_plane = np.zeros((0, 6)), np.zeros(3)
+        if pattern.half_plane is not None:
+            hull, half_plane = np.array(self.hull.rows), np.array(pattern.half_plane)
+        return Obstacles(self.pieces, self.spans, self.wide_discs, *pegs, size, stop, hull, half_plane)
+
+    @cached_property
+    def pieces(self) -> Array:
+        """The rows as a writable copy: numba compiles kernels once more for read-only arrays."""
+        return np.array(self.rows)
+
+    @cached_property
+    def loose(self) -> Array:
+        """The pieces with their ends moved out by a hair, as chord curves want them."""
+        return loosened(self.rows)
+
+    @cached_property
+    def discs(self) -> Array:
+        """Discs (N, 3) in which the pieces lie: middle and radius in mm."""
+        rows, whole = self.loose, self.loose[:, HALF_EXTENT] >= pi / 2.0
+        is_arc = rows[:, IS_ARC] != 0.0
+        out = np.array(rows[:, [X, Y, HALF_EXTENT]], order="C")
+        out[is_arc, 2] = rows[is_arc, RADIUS]
+        # Shorter arcs about their own middle, from which the ends are farthest.
+        short = is_arc & ~whole
+        out[short, :2] += rows[short, RADIUS, None] * rows[short][:, [AXIS_X, AXIS_Y]]
+        out[short, 2] = 2.0 * rows[short, RADIUS] * np.sin(rows[short, HALF_EXTENT] / 2.0)
+        return out
+
+    @cached_property
+    def wide_discs(self) -> Array:
+        """The discs, widened by what of the pieces counts past pockets."""
+        return np.asarray(self.discs + np.array([0.0, 0.0, PAST_POCKET]))
+
+    @cached_property
+    def spans(self) -> Array:
+        """Lowest and highest parameter of the pieces, a little past pockets, and the cosines of both: (N, 4).
+
+        Past a pocket the other piece is nearer, so that both keep a peg off there whichever side of the end
+        it is.
+        """
+        rows = self.rows
+        hair = np.where(rows[:, IS_ARC] != 0.0, END_SLACK / np.maximum(rows[:, RADIUS], END_SLACK), END_SLACK)
+        out = np.stack([-rows[:, HALF_EXTENT] - hair, rows[:, HALF_EXTENT] + hair], axis=1)
+        for (x, y, *_), pieces in zip(self.pockets, self.pocket_pieces, strict=True):
+            for k in pieces:
+                unit = rows[k, RADIUS] if rows[k, IS_ARC] != 0.0 else 1.0
+                end = 1 if along(rows[k], x, y) > 0.0 else 0
+                out[k, end] += (2 * end - 1) * PAST_POCKET / unit
+        return np.concatenate([out, np.cos(np.clip(out, -pi, pi))], axis=1)
+
+    @cached_property
+    def concentric(self) -> list[list[int]]:
+        """Numbers of the arcs, by their centres."""
+        groups: list[list[int]] = []
+        for k in np.flatnonzero(self.rows[:, IS_ARC] != 0.0).tolist():
+            center = self.rows[k, [X, Y]]
+            group = next((g for g in groups if np.hypot(*(self.rows[g[0], [X, Y]] - center)) <= SAME_CENTER), None)
+            groups.append([k]) if group is None else group.append(k)
+        return groups
+
+    @cached_property
+    def all_touches(self) -> tuple[Touch, ...]:
+        """What a peg on each piece touches and, after that, what may touch a wall."""
+        return self.touches + self.hull.touches
+
+    @cached_property
+    def corners(self) -> NDArray[np.bool_]:
+        """Whether each of ``all_touches`` is a corner."""
+        return np.array([touch.corner for touch in self.all_touches])
+
+    @cached_property
+    def rings(self) -> list[tuple[list[tuple[int, float]], list[tuple[int, float]]]]:
+        """The arcs about each centre that pegs that stand still and pegs that move both can touch.
+
+        Each arc is its number and its radius in mm, which is below 0 where the arc bends in.
+        """
+        signed = (self.rows[:, SIGN] * self.rows[:, RADIUS]).tolist()
+        both = (
+            tuple([(k, signed[k]) for k in group if first <= k < end] for first, end in self.parts.tolist())
+            for group in self.concentric
+        )
+        return [(standing, moving) for standing, moving in both if standing and moving]
+
+    @cached_property
+    def contacts(self) -> dict[int, tuple[SeatContact, ...]]:
+        """The contacts that have been asked for, see ``contacts_of``."""
+        return {}
+
+    def contacts_of(self, pegs: NDArray[np.int64], pieces: NDArray[np.int64]) -> list[tuple[SeatContact, ...]]:
+        """What pegs of a fixture touch, made once for all seats that have it.
+
+        Parameters
+        ----------
+        pegs, pieces : (N, 4) numbers of the pegs, -1 for no peg, and of what each touches in ``all_touches``.
+        """
+        count = len(self.all_touches)
+        codes = np.where(pegs < 0, 0, 1 + pegs * count + pieces)
+        keys: list[int] = (codes @ (1 + 4 * count) ** np.arange(4)).tolist()
+        for k, key in enumerate(keys):
+            if key not in self.contacts:
+                touching = (
+                    (peg, self.all_touches[at])
+                    for peg, at in zip(pegs[k].tolist(), pieces[k].tolist(), strict=True)
+                    if peg >= 0
+                )
+                self.contacts[key] = tuple([SeatContact(peg, touch.face, touch.corner) for peg, touch in touching])
+        return [self.contacts[key] for key in keys]
+
+    @cached_property
+    def tables(self) -> dict[tuple[float, int], CurveTable]:
+        """Chord curves by the length of the chord and the first piece, as far as they have been asked for."""
+        return {}
+
+    @cached_property
+    def centers(self) -> dict[int, NDArray[np.int64]]:
+        """The centres (N,) of pieces, numbered as in ``contact.curves``, by the first piece of each jaw."""
+        return {first: center_numbers(self.loose[first:end]) for first, end in self.parts.tolist()}
+
+    @cached_property
+    def found(self) -> dict[Callable[[ObstacleBoundary], Any], Any]:
+        """What functions found on this boundary, see ``once``."""
+        return {}
+
+    def once(self, find: Callable[[ObstacleBoundary], Found], anew: bool = False) -> Found:
+        """What a function finds on this boundary, which is kept from its first call on, or from one anew."""
+        if anew or find not in self.found:
+            self.found[find] = find(self)
+        kept: Found = self.found[find]
+        return kept
+
+    def curves(self, length: float, side: int) -> CurveTable:
+        """The curves of chords of a length in mm between pegs that stand still (0), or that move (1).
+
+        Tails are on the piece of the lower number, and a chord's direction is its angle.
+        """
+        first, end = self.parts[side].tolist()
+        key = round(length, 9), first
+        if key not in self.tables:
+            # Rounded, so that whoever asks first gets the curves that all others get.
+            steps = LatticeSteps(
+                np.array([round(length, 12)]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0])
+            )
+            table = curve_table(self.loose[first:end], steps, centers=self.centers[first])
+            for integers in (table.curves.integers, table.sliding_pairs.integers):
+                integers[:, [TAIL, HEAD]] += first
+            self.tables[key] = table
+        return self.tables[key]
+
+    def normal(self, number: int, x: float, y: float) -> tuple[float, float]:
+        """Outward unit normal of a piece at a point on it."""
+        row = self.rows[number].tolist()
+        if row[IS_ARC] == 0.0:
+            return row[AXIS_Y], -row[AXIS_X]
+        dx, dy = row[SIGN] * (x - row[X]) / row[RADIUS], row[SIGN] * (y - row[Y]) / row[RADIUS]
+        return float(dx), float(dy)
+
+    @cached_property
+    def turned_over(self) -> ObstacleBoundary:
+        """The boundary of the part turned over, x to -x in its own frame about the centre."""
+        rows = np.array(self.rows)
+        is_arc = rows[:, IS_ARC] != 0.0
+        rows[:, X] *= -1.0
+        rows[:, REST_X] *= -1.0
+        rows[is_arc, AXIS_X] *= -1.0
+        rows[~is_arc, AXIS_Y] *= -1.0
+        rows.setflags(write=False)
+        pockets = self.pockets * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0])
+        return ObstacleBoundary(
+            rows, self.parts, self.touches, pockets, self.pocket_pieces, self.hull.turned_over, not self.mirrored
+        )
+
+
+def contains(row: Array, x: float, y: float) -> bool:
+    """Whether a point of a piece's carrier lies on the piece, up to rounding."""
+    unit = row[RADIUS] if row[IS_ARC] != 0.0 else 1.0
+    whole = row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi
+    return bool(whole or abs(along(row, x, y)) <= row[HALF_EXTENT] + END_SLACK / unit)
+
+
+def along(row: Array, x: float, y: float) -> float:
+    """Parameter of a point on a piece."""
+    dx, dy = x - row[X], y - row[Y]
+    if row[IS_ARC] == 0.0:
+        return float(dx * row[AXIS_X] + dy * row[AXIS_Y])
+    return atan2(row[AXIS_X] * dy - row[AXIS_Y] * dx, row[AXIS_X] * dx + row[AXIS_Y] * dy)

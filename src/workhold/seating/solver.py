@@ -1,0 +1,389 @@
+"""The seating of a fixture: from how wide open it catches the part, and where else the part can rest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import cached_property
+from itertools import product
+from math import inf, isfinite, pi, radians, tau
+from threading import Event
+from typing import Any
+
+import numpy as np
+from attrs import define, evolve, field
+from numpy.typing import NDArray
+
+from workhold.kernels.seating.columns import CONFIG, CONTACTS, FORCE, PEG, PIECE, SEPARATION
+from workhold.limits import thread_count
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.result import Result
+from workhold.model.seating import Cage, Pass, Seat, SeatContact, Seating
+from workhold.model.toolkit import Toolkit
+from workhold.model.workpiece import Workpiece
+from workhold.seating.by_hand import by_hand
+from workhold.seating.caging_set import CagingSet
+from workhold.seating.closing import Closing
+from workhold.seating.contact_forces import contact_normals
+from workhold.seating.equilibria import equilibria
+from workhold.seating.equilibrium_check import is_equilibrium
+from workhold.seating.join_tree import Join, JoinTree, distances
+from workhold.seating.missed import OTHERS_MAY_BE, WAS_NOT_FOUND, as_candidate
+from workhold.seating.obstacle_boundary import ObstacleBoundary
+from workhold.seating.pattern import Pattern
+from workhold.seating.rest_poses import KINDS, LOOSE, UNSETTLED, RestPoses
+from workhold.seating.silhouette import Silhouette
+from workhold.seating.sticking_friction import sticking_friction
+
+__all__ = ["Solver", "seatings"]
+
+Array = NDArray[np.float64]
+# mm. A fixture is found among the seats of its pegs when both pose and separation agree to this.
+AGREES = 1e-5
+# A share of the opening, by which less than the capture opening is less.
+LESS = 1e-6
+NO_PASS = "The pass at which its cage opens could not be settled: from where on the part is caught is not known."
+
+
+@define(eq=False)
+class Solver:
+    """Solves patterns of pegs on a part, each once, for one fixture (:meth:`of`) or many (:meth:`of_all`).
+
+    Parameters
+    ----------
+    workpiece, toolkit : what is held in what.
+    """
+
+    workpiece: Workpiece
+    toolkit: Toolkit
+    boundaries: dict[tuple[float, float], ObstacleBoundary] = field(factory=dict)
+    solved: dict[tuple[object, ...], tuple[Pattern, tuple[JoinTree, JoinTree], tuple[Array, ...]]] = field(factory=dict)
+    outline: Silhouette = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.outline = Silhouette.of(self.workpiece)
+
+    def closing(self, pattern: Pattern, turned_over: bool) -> Closing:
+        """The jaws of a pattern about the part, also turned over."""
+        if pattern.radii not in self.boundaries:
+            self.boundaries[pattern.radii] = ObstacleBoundary.of(self.workpiece, pattern.radii)
+        boundary = self.boundaries[pattern.radii]
+        return Closing(boundary.turned_over if turned_over else boundary, pattern, self.outline.arm)
+
+    def trees(self, pattern: Pattern, missed: Sequence[Array] = ()) -> tuple[JoinTree, JoinTree]:
+        """The join trees of the part as drawn, with further seats (24,), and of the part turned over."""
+        out = list[JoinTree]()
+        for closing in (self.closing(pattern, turned_over) for turned_over in (False, True)):
+            found = equilibria(closing.boundary, pattern, closing.size)
+            if missed and not out:
+                found = evolve(found, seats=np.vstack([found.seats, *missed]))
+            out.append(JoinTree.of(found, closing))
+        return out[0], out[1]
+
+    def of(self, fixture: Fixture, with_cage: bool = True) -> Seating:
+        """The seating of a fixture.
+
+        Parameters
+        ----------
+        with_cage : whether cage and placing are computed, which takes about as long as all else.
+
+        Raises
+        ------
+        InputError
+            As ``Pattern.of``.
+        """
+        return self.read(fixture, Pattern.of(fixture, self.toolkit), with_cage)
+
+    def read(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
+        """The seating of a fixture of a pattern."""
+        return self.in_pattern(fixture, pattern).seating(with_cage)
+
+    def in_pattern(self, fixture: Fixture, pattern: Pattern) -> FixtureInPattern:
+        """A fixture in its pattern, which is solved once and has the fixture among its seats from then on."""
+        key = pattern.key()
+        if key not in self.solved:
+            self.solved[key] = pattern, self.trees(pattern), ()
+        found = FixtureInPattern(self, fixture, pattern, *self.solved[key])
+        if found.place is not None:
+            return found
+        missed = (*found.missed, found.as_candidate())
+        self.solved[key] = found.known, self.trees(found.known, missed), missed
+        return FixtureInPattern(self, fixture, pattern, *self.solved[key])
+
+    def of_all(self, fixtures: Iterable[Fixture], with_cage: bool = True, threads: int | None = None) -> list[Seating]:
+        """The seatings of many fixtures, in their order; patterns are shared out among threads.
+
+        Parameters
+        ----------
+        with_cage : see :meth:`of`.
+        threads : how many; None for one on each processor. The seatings do not depend on it.
+
+        Raises
+        ------
+        InputError
+            As ``Pattern.of``, and for a number of threads that is too large.
+        """
+        made = self.as_many(fixtures, with_cage, thread_count(threads))
+        return [seating for seating in made if seating is not None]
+
+    def as_many(
+        self,
+        fixtures: Iterable[Fixture],
+        with_cage: bool = True,
+        threads: int = 1,
+        progress: Callable[[float], None] | None = None,
+        cancel: Event | None = None,
+    ) -> list[Seating | None]:
+        """The seatings of fixtures until somebody cancels, in their order; None for fixtures that were left.
+
+        Parameters
+        ----------
+        progress : called from this thread with the fraction done.
+        cancel : when set, no further pattern is begun.
+
+        Raises
+        ------
+        InputError
+            As :meth:`of`.
+        """
+        given = [(fixture, Pattern.of(fixture, self.toolkit)) for fixture in fixtures]
+        groups: dict[tuple[object, ...], list[int]] = {}
+        for number, (_, pattern) in enumerate(given):
+            groups.setdefault(pattern.key(), []).append(number)
+
+        made: list[Seating | None] = [None] * len(given)
+
+        def make(numbers: list[int]) -> int:
+            if cancel is not None and cancel.is_set():
+                return 0
+            # All fixtures that stand on the pegs are known before the seating of any is made.
+            for number in numbers[1:]:
+                self.in_pattern(*given[number])
+            for number, one in [(number, self.read(*given[number], with_cage)) for number in numbers]:
+                made[number] = one
+            return len(numbers)
+
+        done = 0
+        with ThreadPoolExecutor(max_workers=max(min(threads, len(groups)), 1)) as pool:
+            running = [pool.submit(make, numbers) for numbers in groups.values()]
+            try:
+                for one in as_completed(running):
+                    done += one.result()
+                    if progress is not None:
+                        progress(done / len(given))
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+        return made
+
+
+@define(frozen=True, eq=False)
+class FixtureInPattern:
+    """A fixture in a solved pattern, whose pegs may stand elsewhere and in another order.
+
+    Parameters
+    ----------
+    pattern, known : the fixture's, and the one that was solved.
+    trees : the join trees of the part as drawn and turned over.
+    missed : (24,) candidates of fixtures that were not found among the seats, and so were added to them.
+    """
+
+    solver: Solver
+    fixture: Fixture
+    pattern: Pattern
+    known: Pattern
+    trees: tuple[JoinTree, JoinTree]
+    missed: tuple[Array, ...] = ()
+
+    @cached_property
+    def shift(self) -> Array:
+        """The shift (4,) by which configurations of the solved pattern become the fixture's."""
+        # Of the pegs that stand still, and of those that move, the first.
+        (still, moving), (there, then) = (p.pegs[p.order[[0, -int(p.right.sum())]]] for p in (self.pattern, self.known))
+        dx, dy = still - there
+        return np.array([0.0, dx, dy, dx - (moving[0] - then[0])])
+
+    @cached_property
+    def order(self) -> NDArray[np.int64]:
+        """The number (K,) of each solved peg among the fixture's."""
+        out = np.empty(len(self.known.pegs), np.int64)
+        out[self.known.order] = np.array(self.pattern.numbers)[self.pattern.order]
+        return out
+
+    @cached_property
+    def own(self) -> Array:
+        """The configuration (4,) of the fixture."""
+        pose = self.fixture.pose
+        x, y = pose.apply(*self.solver.workpiece.center)
+        return self.pattern.frame.enter(np.array([radians(pose.theta_deg), x, y, self.fixture.jaw_separation]))
+
+    @cached_property
+    def place(self) -> int | None:
+        """The number of the strict seat that is the fixture; None if none is."""
+        return self.nearest(self.trees[0].seats)
+
+    def nearest(self, rows: Array) -> int | None:
+        """The number of the candidate (N, 24) that is the fixture; None if none is."""
+        configs = rows[:, CONFIG] + self.shift
+        away = distances(configs, self.own, self.solver.outline.arm) + np.abs(configs[:, 3] - self.own[3])
+        return int(np.argmin(away)) if len(away) and away.min() <= AGREES else None
+
+    def as_candidate(self) -> Array:
+        """The fixture as a candidate of the solved pattern."""
+        closing, faces = self.solver.closing(self.known, False), [peg.face for peg in self.fixture.pegs]
+        touched = [faces[number] for number in self.order]
+        return as_candidate(closing.boundary, self.known, self.own - self.shift, touched, closing.size)
+
+    def poses(self, configs: Array, turned_over: NDArray[np.bool_]) -> tuple[Array, Array, Array]:
+        """The poses of configurations (N, 4) in the toolkit's frame: theta in degrees, x and y.
+
+        Where a part is turned over (N,) the pose is that of the part turned over.
+        """
+        x, y = self.solver.workpiece.center
+        across = np.where(turned_over, -x, x)
+        left = self.pattern.frame.leave(configs)
+        theta = left[:, 0] % tau
+        c, s = np.cos(theta), np.sin(theta)
+        return theta * 180.0 / pi, left[:, 1] - (c * across - s * y), left[:, 2] - (s * across + c * y)
+
+    def contacts(self, rows: Array) -> list[tuple[SeatContact, ...]]:
+        """The contacts of each of some candidates (N, 24)."""
+        # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
+        numbers = self.order.tolist() + [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
+        pegs, pieces = (rows[:, at : at + 4].astype(np.int64) for at in (PEG, PIECE))
+        pegs = np.where(np.arange(4) < rows[:, CONTACTS, None], np.array(numbers)[pegs], -1)
+        return self.solver.closing(self.known, False).boundary.contacts_of(pegs, pieces)
+
+    def seats(self) -> tuple[Seat, ...]:
+        """All seats, by their separations."""
+        rests = RestPoses.of(self.trees, self.solver.closing(self.known, False).boundary, len(self.known.pegs))
+        rows, kinds, own, sign = rests.rows, rests.kinds, self.own, self.pattern.frame.sign
+        configs = rows[:, CONFIG] + self.shift
+        away, rise = distances(configs, own, self.solver.outline.arm), configs[:, 3] - own[3]
+        is_own = (away < AGREES) & (np.abs(rise) < AGREES) & ~(rests.turned_over | (kinds == UNSETTLED))
+        same = self.solver.outline.cover_same(own, configs, rests.turned_over)
+        poses, separations = self.poses(configs, rests.turned_over), sign * configs[:, 3]
+        # In a loose rest the forces are not certain.
+        ends = (
+            np.arange(0, 4 * len(rows), 4) + np.where(kinds < LOOSE, rows[:, CONTACTS], 0.0).astype(np.int64)
+        ).tolist()
+        forces = rows[:, FORCE : FORCE + 4].ravel().tolist()
+        seats = list(
+            map(
+                Seat,
+                [KINDS[kind] for kind in kinds.tolist()],
+                map(Pose, *(values.tolist() for values in poses)),
+                separations.tolist(),
+                (sign * rise).tolist(),
+                rests.turned_over.tolist(),
+                same.tolist(),
+                self.contacts(rows),
+                [tuple(forces[4 * k : end]) for k, end in enumerate(ends)],
+                [None if depth == inf else depth for depth in rests.depths.tolist()],
+                is_own.tolist(),
+            )
+        )
+        return tuple([seats[k] for k in np.lexsort((poses[0], rests.turned_over, separations)).tolist()])
+
+    def seating(self, with_cage: bool) -> Seating:
+        """The seating of the fixture."""
+        tree = self.trees[0]
+        place = self.place
+        assert place is not None
+        row, join = tree.seats[place], tree.join_of(place)
+        way_out = tree.way_out(place)
+        seats = self.seats()
+        factor = float(row[FORCE : FORCE + 4].sum())
+        capture = None if join is None else float(join.separation - row[SEPARATION])
+        doubts = unsettled_words(sum(seat.kind == "unsettled" for seat in seats))
+        if join is not None and not is_equilibrium(join.candidate, self.solver.closing(self.known, False)):
+            # Only what was checked is claimed; from no opening at all the part comes home for certain.
+            join, capture, doubts = None, 0.0, (*doubts, NO_PASS)
+        if self.missed and self.nearest(np.array(self.missed)) is not None:
+            # Whatever missed the seat may have missed a pass out of it.
+            join, capture, way_out, doubts = None, 0.0, float(row[SEPARATION]), (*doubts, WAS_NOT_FOUND)
+        elif self.missed:
+            doubts = (*doubts, OTHERS_MAY_BE)
+        cage, placing = (None, None)
+        if join is not None and with_cage:
+            cage, placing = self.freedom(row[CONFIG], join)
+        return Seating(
+            capture_opening=capture,
+            room_factor=factor,
+            lowest_pass=None if join is None else self.lowest_pass(join),
+            way_out=None if way_out is None else float(way_out - row[SEPARATION]),
+            cage=cage,
+            placing=placing,
+            sticking_friction=self.sticking(row),
+            stop=self.pattern.frame.sign * self.pattern.stop if isfinite(self.pattern.stop) else None,
+            seats=seats,
+            unsettled=doubts,
+        ).in_toolkit(self.solver.toolkit)
+
+    def lowest_pass(self, join: Join) -> Pass:
+        """A join as the fixture's pass."""
+        config = join.candidate[CONFIG] + self.shift
+        separation = self.pattern.frame.sign * float(config[3])
+        pose = Pose(*(float(value[0]) for value in self.poses(config[None], np.zeros(1, np.bool_))))
+        return Pass(pose, separation, self.contacts(join.candidate[None])[0])
+
+    def caging_set(self, seat: Array, join: Join) -> CagingSet:
+        """The caging set of the fixture's seat, with what moves opened by a hair less than to a pass."""
+        closing, top = self.solver.closing(self.known, False), join.candidate[CONFIG]
+        opening = (top[3] - seat[3]) * (1.0 - LESS)
+        to_pass = top[:3] - seat[:3]
+        to_pass[0] = (to_pass[0] + pi) % tau - pi
+        seats = np.ascontiguousarray(self.trees[0].seats[:, CONFIG])
+        return CagingSet(closing, np.array(seat), seats, opening, to_pass, self.solver.outline.arm)
+
+    def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
+        """The cage and the placing."""
+        around = self.caging_set(seat, join)
+        turns, across, along = around.extents.reach
+        corners = self.pattern.frame.turned(np.array(list(product(across, along))), back=True)
+        x, y = ((float(ends.min()), float(ends.max())) for ends in corners.T)
+        return Cage((float(turns[0]) * 180.0 / pi, float(turns[1]) * 180.0 / pi), x, y), around.placing
+
+    def sticking(self, row: Array) -> float:
+        """The friction below which the part cannot stick near its seat."""
+        boundary = self.solver.closing(self.known, False).boundary
+        places, normals, moves = contact_normals(boundary, self.known, row)
+        return sticking_friction(places, normals, moves)
+
+
+def unsettled_words(count: int) -> tuple[str, ...]:
+    """The sentence about so many places that could not be settled, or none."""
+    if count == 0:
+        return ()
+    return (f"{'A place' if count == 1 else f'{count} places'} where the part may rest could not be settled.",)
+
+
+def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
+    """The seatings of fixtures: from how wide open each catches the part, and where else it can rest.
+
+    Each is a ``model.seating.Seating``. With two clamps the part is put in by hand, and each is a
+    ``seating.by_hand.ByHand``, which says how.
+
+    Parameters
+    ----------
+    fixtures : which, or how many of the best.
+    with_cage : whether cage and placing are computed.
+
+    Raises
+    ------
+    InputError
+        As ``Pattern.of``: for pegs with a flat and for pegs of radius 0.
+
+    Examples
+    --------
+    >>> import workhold
+    >>> widget = workhold.load("widget")
+    >>> result = workhold.design(widget, workhold.Vise(pitch=8, columns=2, peg_radius=2), best=1)
+    >>> [seating] = workhold.seatings(result)
+    >>> round(seating.capture_opening, 3), round(seating.sticking_friction, 3)
+    (0.03, 0.083)
+    """
+    chosen = result[:fixtures] if isinstance(fixtures, int) else fixtures
+    if result.toolkit.needs_pairs:
+        return [by_hand(fixture, result.workpiece, result.toolkit) for fixture in chosen]
+    return Solver(result.workpiece, result.toolkit).of_all(chosen, with_cage)

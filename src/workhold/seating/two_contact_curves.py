@@ -1,0 +1,250 @@
+"""Poses in which pegs of one jaw touch the part in two places: chord curves of pairs, and pockets.
+
+Glossary
+-------- two-contact curve : all poses, up to the shift along x, in which two contacts of one jaw touch; a row
+of ``HOLDING_LENGTH``
+    numbers, see ``kernels.seating.columns``. The contact space of two fingers: T. F. Allen, J. W. Burdick and
+    E. Rimon, "Two-finger caging of polygonal objects using contact space search", IEEE Transactions on
+    Robotics 31 (2015).
+slide : two contacts on parallel faces, which hold one orientation and so are no curve over it.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import combinations
+from math import atan2, hypot, pi, tau
+from typing import Any
+
+import numpy as np
+from attrs import define, frozen
+from numpy.typing import NDArray
+
+from workhold.kernels.chord.stretches import STRETCH_LENGTH
+from workhold.kernels.curves.columns import (
+    CURVE_INTEGERS,
+    CURVE_REALS,
+    DIRECTION,
+    END_STRETCH,
+    FIRST_STRETCH,
+    HEAD,
+    SLIDE_FROM,
+    SLIDE_TO,
+    TAIL,
+)
+from workhold.kernels.seating.columns import (
+    ANGLE,
+    CELL_LENGTH,
+    FIRST_PEG,
+    HIGH,
+    HOLDING_LENGTH,
+    KIND,
+    LOW,
+    PIVOT_X,
+    PIVOT_Y,
+    SECOND_PEG,
+    SOURCE,
+    Given,
+    JawCells,
+)
+from workhold.kernels.seating.holdings import make_cells
+from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
+from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
+from workhold.seating.growing_rows import filled
+from workhold.seating.obstacle_boundary import ObstacleBoundary
+from workhold.seating.pattern import Pattern
+from workhold.seating.peg_subsets import PegSubset, jaw_subsets
+
+__all__ = ["TwoContactCurves", "JawCurves"]
+
+Array = NDArray[np.float64]
+# Cells of the curves that are kept, of about 360 bytes with all that belongs to them; with more, all are
+# forgotten.
+MOST_KEPT = 250_000
+NO_CURVES = np.zeros((0, HOLDING_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
+NO_SLIDES = np.zeros((0, SLIDE_LENGTH))
+
+
+@frozen(eq=False, slots=False)
+class JawCurves:
+    """The two-contact curves of the pegs of one jaw, in the frame of their subset.
+
+    Parameters
+    ----------
+    rows, curves, reals : ``holdings``, ``curves`` and ``reals`` of ``Given``, with pegs and curves counted
+        from 0.
+    cells, middles : (C, 7) and (C, 19) of all curves, one curve after the other, see
+        ``kernels.seating.middles``.
+    slides : (S, 7) what is no curve over the orientation: ``kernels.seating.slides``.
+    """
+
+    rows: Array
+    curves: NDArray[np.int64]
+    reals: Array
+    cells: Array
+    middles: Array
+    slides: Array
+
+    @classmethod
+    def of(cls, boundary: ObstacleBoundary, pegs: Array, right: NDArray[np.int64]) -> JawCurves:
+        """The two-contact curves of pegs (K, 2) of a jaw, the first at the origin."""
+        made, slides = [pocket_rows(boundary, right)], list[tuple[float, ...]]()
+        integers, reals, stretches = [np.zeros((0, CURVE_INTEGERS), np.int64)], [np.zeros((0, CURVE_REALS))], []
+        stretches.append(np.zeros((0, STRETCH_LENGTH)))
+        curves_before = stretches_before = 0
+        for one, two in combinations(range(len(pegs)), 2):
+            dx, dy = pegs[two] - pegs[one]
+            table = boundary.curves(hypot(dx, dy), int(right[one]))
+            whole = np.array(table.curves.integers)
+            whole[:, [FIRST_STRETCH, END_STRETCH]] += stretches_before
+            for first, second, angle in ((one, two, atan2(dy, dx)), (two, one, atan2(dy, dx) + pi)):
+                # A chord from a piece to itself has all directions already, so its ends need no change of
+                # places.
+                kept = np.flatnonzero((first == one) | (whole[:, TAIL] != whole[:, HEAD]))
+                rows = np.zeros((len(kept), HOLDING_LENGTH))
+                rows[:, SOURCE], rows[:, FIRST_PEG], rows[:, SECOND_PEG] = kept + curves_before, first, second
+                rows[:, ANGLE] = angle
+                made.append(rows)
+                for pieces, real in zip(table.sliding_pairs.integers, table.sliding_pairs.reals, strict=True):
+                    tail, head = int(pieces[TAIL]), int(pieces[HEAD])
+                    if first == one or tail != head:
+                        low, high, alpha = (float(real[k]) for k in (SLIDE_FROM, SLIDE_TO, DIRECTION))
+                        slides.append((first, second, tail, head, low, high, alpha - angle))
+            integers.append(whole)
+            reals.append(table.curves.reals)
+            stretches.append(table.curves.stretches)
+            curves_before, stretches_before = curves_before + len(whole), stretches_before + len(stretches[-1])
+        rows, curves = np.concatenate(made), (np.concatenate(integers), np.concatenate(reals))
+        given, every = Given(rows, *curves, boundary.loose, pegs, right, boundary.parts), np.concatenate(stretches)
+        cells = filled(CELL_LENGTH, 2 * len(every) + 64 * len(boundary.pockets) + 64, make_cells, given, every)
+        known = np.empty((len(cells), MIDDLE_LENGTH))
+        write_middles(cells, given, known)
+        return cls(rows, *curves, cells, known, np.array(slides).reshape(-1, SLIDE_LENGTH))
+
+    def named(self, names: Array) -> tuple[Array, Array]:
+        """Rows and slides with a pattern's numbers (K + 1,) of the pegs, where the last, -1, is of no peg."""
+        rows, slid = np.array(self.rows), np.array(self.slides)
+        rows[:, FIRST_PEG : SECOND_PEG + 1] = names[self.pegs]
+        slid[:, SLIDE_FIRST : SLIDE_SECOND + 1] = names[self.sliding_pegs]
+        return rows, slid
+
+    @cached_property
+    def after_one(self) -> tuple[Array, Array]:
+        """Rows and slides of two pegs that come after the only one of the other jaw."""
+        return self.named(np.array([1.0, 2.0, -1.0]))
+
+    @cached_property
+    def pegs(self) -> NDArray[np.int64]:
+        """The pegs (H, 2) of the rows."""
+        return self.rows[:, FIRST_PEG : SECOND_PEG + 1].astype(np.int64)
+
+    @cached_property
+    def sliding_pegs(self) -> NDArray[np.int64]:
+        """The pegs (S, 2) of the slides."""
+        return self.slides[:, SLIDE_FIRST : SLIDE_SECOND + 1].astype(np.int64)
+
+    @cached_property
+    def pockets(self) -> int:
+        """How many rows are of a peg in a pocket: the first ones."""
+        return int(self.rows[:, KIND].sum())
+
+    @cached_property
+    def ordered(self) -> Array:
+        """The cells by their lowest orientation; those that reach past a whole turn come a second time."""
+        again = np.array(self.cells[self.cells[:, HIGH] > tau])
+        again[:, [LOW, HIGH]] -= tau
+        every = np.concatenate([self.cells, again])
+        return every[np.argsort(every[:, LOW], kind="stable")]
+
+    @classmethod
+    def known(cls, boundary: ObstacleBoundary, subset: PegSubset) -> JawCurves:
+        """The curves of a subset of pegs of one jaw, found once for all subsets that stand alike."""
+        kept = boundary.once(curves_of_jaws)
+        found = kept.get(subset.key)
+        if found is None:
+            found = cls.of(boundary, subset.pattern.pegs, subset.pattern.right)
+            if len(found.cells) + sum(len(one.cells) for one in list(kept.values())) > MOST_KEPT:
+                kept.clear()
+            kept[subset.key] = found
+        return found
+
+
+def curves_of_jaws(_: ObstacleBoundary) -> dict[tuple[object, ...], JawCurves]:
+    """An empty cache of the curves of jaws on a part, by how their pegs stand."""
+    return {}
+
+
+@define(frozen=True, eq=False)
+class TwoContactCurves:
+    """All two-contact curves of a pattern.
+
+    Parameters
+    ----------
+    given : what kernels are given, with pieces as they are.
+    sought : what roots are sought with: curves run past their ends by a hair, and so do the pieces here.
+    slides : (S, 7) what is no curve over the orientation.
+    jaws : for each jaw, by whether it moves, its curves, how many rows stand before them, and the height of
+        their first peg in mm.
+    """
+
+    given: Given
+    sought: Given
+    slides: Array
+    jaws: dict[int, tuple[JawCurves, int, float]]
+
+    @classmethod
+    def of(cls, boundary: ObstacleBoundary, pattern: Pattern) -> TwoContactCurves:
+        """The two-contact curves of a pattern on a part."""
+        parts: list[tuple[NDArray[Any], ...]] = []
+        jaws: dict[int, tuple[JawCurves, int, float]] = {}
+        before = curves_before = 0
+        for side, subset in jaw_subsets(pattern).items():
+            known = JawCurves.known(boundary, subset)
+            rows, slid = known.named(subset.names)
+            # Pockets, of which curves are none, come first.
+            rows[known.pockets :, SOURCE] += curves_before
+            parts.append((rows, known.curves, known.reals, slid))
+            jaws[side] = known, before, float(subset.shift[2])
+            before, curves_before = before + len(rows), curves_before + len(known.curves)
+        rows, curves, reals, slides = (np.concatenate(one) for one in zip(*parts, strict=True))
+        return cls(*given_of(boundary, pattern, rows, curves, reals), slides, jaws)
+
+    @classmethod
+    def of_jaw_alone(cls, boundary: ObstacleBoundary, subset: PegSubset) -> TwoContactCurves:
+        """The curves of a subset that has two pegs or more on one jaw alone, and of others none."""
+        if len(subset.sides) == 2 and not subset.is_of_a_jaw:
+            return cls(*given_of(boundary, subset.pattern, *NO_CURVES), NO_SLIDES, {})
+        side = int(2 * sum(subset.sides) > len(subset.sides))
+        own = subset if subset.is_of_a_jaw else subset.of_jaw(side)
+        known = JawCurves.known(boundary, own)
+        rows, slides = (known.rows, known.slides) if subset.sides[0] == side else known.after_one
+        given = given_of(boundary, subset.pattern, rows, known.curves, known.reals)
+        return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
+
+    def of_jaw(self, right: int) -> JawCells:
+        """The cells of one jaw's curves in order."""
+        known, before, height = self.jaws[right]
+        return JawCells(known.ordered, before, height)
+
+
+def given_of(
+    boundary: ObstacleBoundary, pattern: Pattern, rows: Array, curves: NDArray[np.int64], reals: Array
+) -> tuple[Given, Given]:
+    """``given`` and ``sought`` of ``TwoContactCurves``."""
+    after = np.array(pattern.pegs), pattern.right, boundary.parts
+    return Given(rows, curves, reals, boundary.pieces, *after), Given(rows, curves, reals, boundary.loose, *after)
+
+
+def pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:
+    """The rows of each peg in each pocket."""
+    held = [
+        (peg, pocket)
+        for peg, side in enumerate(right.tolist())
+        for pocket, (piece, _) in enumerate(boundary.pocket_pieces.tolist())
+        if boundary.fits(side, piece)
+    ]
+    rows = np.zeros((len(held), HOLDING_LENGTH))
+    rows[:, KIND], rows[:, SECOND_PEG] = 1.0, -1.0
+    rows[:, [FIRST_PEG, SOURCE]] = np.array(held).reshape(-1, 2)
+    rows[:, [PIVOT_X, PIVOT_Y]] = boundary.pockets[rows[:, SOURCE].astype(np.int64), :2]
+    return rows

@@ -1,0 +1,328 @@
+"""Equilibria between a straight wall, a locator and a clamp's tip.
+
+The wall is along x or y. Where a piece of the part's hull lies on it, one coordinate of the part's place
+follows from the orientation. The other follows from the locator on a piece, and the separation from the tip
+on a piece. So a part that stands on one piece of its hull and touches all three has one freedom. It balances
+where the normals of locator, tip and wall go through one point, which is where S is stationary over the
+orientation. All such poses are isolated (``kernels.seating.standing``). Four contacts are in closed form, or
+roots of polynomials (``kernels.seating.pocketed``).
+
+Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
+and Automation 14 (1998), where three frictionless contacts balance on concurrent normals.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from math import acos, atan2, ceil, cos, hypot, pi, sin, tau
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.curves.columns import CURVE_INTEGERS, CURVE_REALS
+from workhold.kernels.seating.candidates import fourths
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONTACTS,
+    DEPTH,
+    HOLDING_LENGTH,
+    MOTION,
+    PEG,
+    PIECE,
+    PLACE_X,
+    PLACE_Y,
+    SECOND,
+    SEPARATION,
+    THETA,
+    Given,
+)
+from workhold.kernels.seating.pocketed import tip_in_pocket
+from workhold.kernels.seating.standing import LOCATOR, TIP, Stood, stationary
+from workhold.kernels.seating.standing import ON_WALL as FIRST_ON_WALL
+from workhold.kernels.seating.turning import SHAPE_LENGTH
+from workhold.seating.growing_rows import filled
+from workhold.seating.hull import HullSide
+from workhold.seating.obstacle_boundary import ObstacleBoundary
+from workhold.seating.pattern import Pattern
+
+__all__ = ["LOCATOR", "ON_WALL", "TIP", "WallEquilibria", "wall_candidates"]
+
+Array = NDArray[np.float64]
+# The first and the second contact with the wall, beside the two pegs of a pattern.
+ON_WALL = FIRST_ON_WALL, FIRST_ON_WALL + 1
+# Radians by which runs of neighbouring pieces overlap or are apart; mm by which places of one point differ.
+BESIDE, SAME_PLACE = 1e-9, 1e-9
+# Orientations that one polynomial is zero at.
+MOST_ZEROS = 64
+Contact = tuple[int, int]
+
+
+@define(frozen=True, eq=False)
+class WallEquilibria:
+    """The equilibria of a part between a wall, a locator and a tip.
+
+    Parameters
+    ----------
+    boundary, pattern : of the part and the pegs.
+    """
+
+    boundary: ObstacleBoundary
+    pattern: Pattern
+
+    @property
+    def half_plane(self) -> tuple[float, float, float]:
+        """Unit vector from the wall to the part, and how far along it the wall is."""
+        assert self.pattern.half_plane is not None
+        return self.pattern.half_plane
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the wall is along y, square to the tip's travel."""
+        return self.half_plane[0] != 0.0
+
+    @property
+    def sides(self) -> list[HullSide]:
+        """The part's hull edges."""
+        return self.boundary.hull.sides
+
+    def outward(self) -> float:
+        """Direction in radians of the normal into the wall, which is the part's outward normal there."""
+        return atan2(-self.half_plane[1], -self.half_plane[0])
+
+    def resting(self, piece: int, theta: float) -> float:
+        """The coordinate in mm of the part's place square to the wall, on which a piece of its hull stands."""
+        ux, uy, off = self.half_plane
+        x, y, radius = self.boundary.hull.rows[piece, :3].tolist()
+        c, s = cos(theta), sin(theta)
+        return float((ux + uy) * (off + radius) - (c * x - s * y if self.is_upright else s * x + c * y))
+
+    @cached_property
+    def runs(self) -> list[tuple[int, float, float]]:
+        """Pieces of the hull, and first and last orientation in which the part stands on each.
+
+        At the ends of arcs runs overlap, so that no orientation lies between two. At hull edges they leave
+        out orientations so near that the edge's other end, too, touches the wall, with next to no force.
+        """
+        edges = np.array([side.angle for side in self.sides])
+        angles = np.sort(np.concatenate([edges, self.boundary.hull.limits]))
+        if not len(angles):
+            # A disc stands on its one arc in every orientation.
+            return [(k, 0.0, tau) for k in range(len(self.boundary.hull.rows))]
+        apart = np.abs((angles[:, None] - edges + pi) % tau - pi).min(axis=1, initial=pi)
+        over, ends = np.where(apart < 2.0 * BESIDE, -BESIDE, BESIDE), np.append(angles, angles[0] + tau)
+        pieces = self.boundary.hull.reach((ends[1:] + ends[:-1]) / 2.0).argmax(axis=1)
+        # The part's normal on the wall turns with the part.
+        lows, highs = self.outward() - ends[1:] - np.roll(over, -1), self.outward() - ends[:-1] + over
+        runs = zip(pieces.tolist(), lows.tolist(), highs.tolist(), ends[1:] - ends[:-1], strict=True)
+        return [(piece, low, high) for piece, low, high, width in runs if width > 4.0 * BESIDE]
+
+    @cached_property
+    def stood(self) -> Stood:
+        """What the part stands on, as kernels take it."""
+        boundary, pegs = self.boundary, np.array(self.pattern.pegs)
+        runs = np.array(self.runs, dtype=np.float64).reshape(-1, 3)
+        return Stood(
+            np.array(boundary.rows),
+            boundary.discs,
+            boundary.parts,
+            np.array(boundary.hull.rows),
+            runs,
+            pegs,
+            np.array(self.half_plane),
+        )
+
+    def given(self, pegs: Array) -> Given:
+        """Pegs without two-contact curves, as kernels take them."""
+        none = np.zeros((0, HOLDING_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
+        return Given(*none, self.stood.rows, pegs, self.pattern.right, self.boundary.parts)
+
+    def begun(self, theta: float, place: tuple[float, float], separation: float, contacts: list[Contact]) -> Array:
+        """A candidate without forces."""
+        row = np.zeros(CANDIDATE_LENGTH)
+        row[THETA], row[PLACE_X], row[PLACE_Y], row[SEPARATION] = theta, *place, separation
+        row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(contacts), -1.0, -1.0
+        for at, (peg, piece) in enumerate(contacts):
+            row[PEG + at], row[PIECE + at] = peg, piece
+        return row
+
+    def on(self, piece: int, second: bool = False) -> Contact:
+        """The contact of a piece of the hull with the wall."""
+        return ON_WALL[second], len(self.boundary.rows) + piece
+
+    def with_tip(self, fixed: Array) -> Array:
+        """Candidates (N, 24) of a part that three contacts fix, with each piece that the tip meets."""
+        return filled(CANDIDATE_LENGTH, 64, fourths, fixed, 0, self.given(self.stood.pegs))
+
+    def with_locator(self, fixed: Array) -> Array:
+        """Candidates (N, 24) of a part that may slide along the wall, with each piece that the locator meets.
+
+        The locator comes first among the contacts, and the separation grows with the place.
+        """
+        fixed, pegs = fixed.copy(), self.stood.pegs
+        if self.is_upright:
+            # Seen a quarter turn further, where the wall is level.
+            fixed[:, THETA] += pi / 2.0
+            fixed[:, PLACE_Y], fixed[:, PLACE_X] = fixed[:, PLACE_X].copy(), 0.0
+            pegs = np.stack([-pegs[:, 1], pegs[:, 0]], axis=1)
+        met = filled(CANDIDATE_LENGTH, 64, fourths, fixed, 1, self.given(pegs))
+        if self.is_upright:
+            met[:, THETA] -= pi / 2.0
+            met[:, PLACE_X], met[:, PLACE_Y] = met[:, PLACE_Y].copy(), -met[:, PLACE_X]
+        for first in (PEG, PIECE):
+            met[:, first : first + 4] = np.roll(met[:, first : first + 4], 1, axis=1)
+        return met
+
+    def flush(self) -> Array:
+        """Four contacts: a hull edge on the wall, and locator and tip, or the tip in a pocket."""
+        fixed, out = [], []
+        for side in self.sides:
+            theta = self.outward() - side.angle
+            ends, known = [self.on(side.pieces[0]), self.on(side.pieces[1], True)], self.resting(side.pieces[0], theta)
+            fixed.append(self.begun(theta, (known, 0.0) if self.is_upright else (0.0, known), 0.0, ends))
+            for ahead, up, held in self.pocketed(theta) if self.is_upright else ():
+                place = known, float(self.pattern.pegs[TIP, 1]) - up
+                out.append(self.begun(theta, place, known + ahead - self.pattern.pegs[TIP, 0], ends + held))
+        return np.concatenate([self.with_tip(self.with_locator(rows_of(fixed))), rows_of(out)])
+
+    def pocketed(self, theta: float) -> list[tuple[float, float, list[Contact]]]:
+        """The tip's pockets, from the place of a part in an orientation, and the tip's contacts in each."""
+        c, s, out = cos(theta), sin(theta), []
+        for (x, y), pieces in zip(*self.pockets(1), strict=True):
+            out.append((c * x - s * y, s * x + c * y, [(TIP, piece) for piece in pieces.tolist()]))
+        return out
+
+    def pockets(self, jaw: int) -> tuple[Array, NDArray[np.int64]]:
+        """The pockets of the locator (0) or the tip (1): places (V, 2) on the part, and pieces (V, 2)."""
+        first, end = self.boundary.parts[jaw]
+        own = (self.boundary.pocket_pieces[:, 0] >= first) & (self.boundary.pocket_pieces[:, 0] < end)
+        return np.ascontiguousarray(self.boundary.pockets[own, :2]), self.boundary.pocket_pieces[own]
+
+    def locator_in_pocket(self) -> Array:
+        """Four contacts: the locator in a pocket, a piece of the hull on the wall, and the tip."""
+        out = []
+        ux, uy, off = self.half_plane
+        lx, ly = self.pattern.pegs[LOCATOR].tolist()
+        for (vx, vy), (one, two) in zip(*(values.tolist() for values in self.pockets(0)), strict=True):
+            for piece, low, high in self.runs:
+                x, y, radius = self.boundary.hull.rows[piece, :3].tolist()
+                dx, dy = vx - x, vy - y
+                size, level = hypot(dx, dy), lx * ux + ly * uy - off - radius
+                if abs(level) >= size:
+                    continue
+                for turn in (1.0, -1.0):
+                    theta = not_before(low, atan2(uy, ux) - atan2(dy, dx) + turn * acos(level / size))
+                    if theta <= high:
+                        c, s = cos(theta), sin(theta)
+                        contacts = [(LOCATOR, one), (LOCATOR, two), self.on(piece)]
+                        out.append(self.begun(theta, (lx - c * vx + s * vy, ly - s * vx - c * vy), 0.0, contacts))
+        return self.with_tip(rows_of(out))
+
+    def tip_in_pocket(self) -> Array:
+        """Four contacts: the tip in a pocket, a piece of the hull on the wall, and the locator.
+
+        Where the wall alone is against the tip, three contacts do.
+        """
+        places, pieces = self.pockets(1)
+        work = np.empty((DEPTH, 2)), np.empty((MOST_ZEROS, 2))
+        found = filled(CANDIDATE_LENGTH, 64, tip_in_pocket, self.stood, places, pieces, *work)
+        if not self.is_upright:
+            return self.with_locator(found)
+        out = []
+        for piece, low, high in self.runs:
+            x, y = self.boundary.hull.rows[piece, :2].tolist()
+            for (vx, vy), held in zip(places.tolist(), pieces.tolist(), strict=True):
+                theta = not_before(low, atan2(0.0, self.half_plane[0]) - atan2(vy - y, vx - x))
+                if hypot(vx - x, vy - y) <= SAME_PLACE or theta > high:
+                    continue
+                c, s = cos(theta), sin(theta)
+                ahead, place = (
+                    c * vx - s * vy,
+                    (self.resting(piece, theta), self.pattern.pegs[TIP, 1] - (s * vx + c * vy)),
+                )
+                contacts = [self.on(piece), *((TIP, k) for k in held)]
+                row = self.begun(theta, place, place[0] + ahead - self.pattern.pegs[TIP, 0], contacts)
+                row[SECOND], row[MOTION], row[MOTION + 1], row[MOTION + 2] = -1.0, 1.0, s * x + c * y, -ahead
+                out.append(row)
+        return np.concatenate([found, rows_of(out)])
+
+    def three_contacts(self) -> Array:
+        """Candidates (N, 24) of three contacts, with wall, locator and tip, whose normals go through one point."""
+        work = np.empty((len(self.boundary.rows), SHAPE_LENGTH)), np.empty((DEPTH, 2))
+        return filled(CANDIDATE_LENGTH, 64, stationary, self.stood, *work)
+
+    def against_wall(self) -> Array:
+        """Candidates (N, 24) of the tip alone against the wall, on one normal of a hull edge or a hull piece."""
+        if self.half_plane[0] <= 0.0:
+            return rows_of([])
+        out = []
+        tx, ty = self.pattern.pegs[TIP].tolist()
+        for number in range(*self.boundary.parts[1]):
+            row = self.boundary.rows[number]
+            is_arc = row[IS_ARC] != 0.0
+            signed = row[SIGN] * row[RADIUS]
+            for side in self.sides if is_arc else ():
+                theta = self.outward() - side.angle
+                c, s = cos(theta), sin(theta)
+                place = self.resting(side.pieces[0], theta), ty - (s * row[X] + c * row[Y])
+                contacts = [(TIP, number), self.on(side.pieces[0]), self.on(side.pieces[1], True)]
+                one = self.begun(theta, place, place[0] + c * row[X] - s * row[Y] + signed - tx, contacts)
+                one[SECOND], one[MOTION + 2] = -1.0 / signed, 1.0
+                out.append(one)
+            for piece, low, high in self.runs:
+                hull = self.boundary.hull.rows[piece]
+                dx, dy = row[X] - hull[0], row[Y] - hull[1]
+                if is_arc and hypot(dx, dy) < SAME_PLACE:
+                    continue
+                # Normals along x: of an arc its centre is level with the hull's piece, ahead or behind.
+                angles = [-atan2(dy, dx), pi - atan2(dy, dx)] if is_arc else [-atan2(-row[AXIS_X], row[AXIS_Y])]
+                for theta in (not_before(low, angle) for angle in angles):
+                    if theta > high:
+                        continue
+                    c, s = cos(theta), sin(theta)
+                    place = self.resting(piece, theta), ty - (s * hull[0] + c * hull[1])
+                    ahead = c * dx - s * dy + (signed if is_arc else 0.0)
+                    separation = place[0] + c * hull[0] - s * hull[1] + ahead - tx
+                    one = self.begun(theta, place, separation, [(TIP, number), self.on(piece)])
+                    # Over the turn, and the rise of the tip above the piece: see ``curvature``.
+                    second, turn, rise = curvature(ahead, signed if is_arc else None)
+                    one[SECOND], one[MOTION] = second, turn
+                    # The piece stays on the wall.
+                    one[MOTION + 1] = turn * (s * hull[0] + c * hull[1])
+                    one[MOTION + 2] = -turn * (c * hull[0] - s * hull[1]) - rise
+                    out.append(one)
+        return rows_of(out)
+
+
+def curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
+    """The least second derivative of S over the part's turn and the tip's rise, and its direction.
+
+    The rise is the tip's above the piece on the wall; the derivative is NaN where both principal ones are
+    below 0. The tip is ahead of the piece's centre by d, on an arc of signed radius r, or a line. At a turn f
+    and a rise e it is ahead by (d - r) cos f + sqrt(r^2 - (e - (d - r) sin f)^2), or (d - e sin f) / cos f.
+    """
+    if signed is None:
+        matrix = np.array([[ahead, -1.0], [-1.0, 0.0]])
+    else:
+        apart = ahead - signed
+        matrix = np.array([[-apart - apart * apart / signed, apart / signed], [apart / signed, -1.0 / signed]])
+    values, ways = np.linalg.eigh(matrix)
+    return (float(values[0]) if values[1] > 0.0 else np.nan), float(ways[0, 0]), float(ways[1, 0])
+
+
+def not_before(low: float, theta: float) -> float:
+    """An orientation moved by whole turns to the first that is not before another."""
+    return theta + tau * ceil((low - theta) / tau)
+
+
+def rows_of(candidates: list[Array]) -> Array:
+    """Candidates (N, 24), none or more."""
+    return np.array(candidates).reshape(-1, CANDIDATE_LENGTH)
+
+
+def wall_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
+    """Candidates (N, 24) of all equilibria on a wall; the first peg is the locator, the second the tip."""
+    wall = WallEquilibria(boundary, pattern)
+    pockets = wall.locator_in_pocket(), wall.tip_in_pocket()
+    return np.concatenate([wall.flush(), *pockets, wall.three_contacts(), wall.against_wall()])

@@ -1,0 +1,73 @@
+"""The boundary on which the centres of pegs lie, and the discs by which its pieces are left out."""
+
+from __future__ import annotations
+
+from itertools import product
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+
+import workhold
+from seating_examples import STEP, solved
+from workhold import Workpiece
+from workhold.contact.curves import LatticeSteps, curve_table
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
+from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.model.seating import SeatContact
+from workhold.seating.obstacle_boundary import ObstacleBoundary
+
+OCTAGON = Workpiece.from_points("octagon", [(30 * cos(k * pi / 4), 30 * sin(k * pi / 4)) for k in range(8)])
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_pieces_lie_in_their_discs_and_reach_their_edges(number):
+    boundary = next(iter(solved(number)[0].boundaries.values()))
+    for row, (x, y, radius) in zip(boundary.rows, boundary.discs, strict=True):
+        ts = np.linspace(-row[HALF_EXTENT], row[HALF_EXTENT], 41)
+        if row[IS_ARC] == 0.0:
+            points = row[1:3] + ts[:, None] * row[3:5]
+        else:
+            turned = np.stack(
+                [row[3] * np.cos(ts) - row[4] * np.sin(ts), row[4] * np.cos(ts) + row[3] * np.sin(ts)], axis=1
+            )
+            points = row[1:3] + row[RADIUS] * turned
+        away = np.hypot(*(points - [x, y]).T).max()
+        assert radius - 1e-3 <= away <= radius + 1e-9
+
+
+def test_rolled_corners_make_up_a_turn():
+    """Around a convex part the pegs' boundary is its outline and one circle (J. Steiner, 1840), blunt corners included."""
+    for part in (OCTAGON, workhold.load("oblongPart")):
+        rows = ObstacleBoundary.of(part, (2.5, 2.5)).rows
+        outer = sum(2.0 * row[HALF_EXTENT] * (row[RADIUS] if row[IS_ARC] != 0.0 else 1.0) for row in rows)
+        around = sum(2.0 * s.half_extent * getattr(s, "radius", 1.0) for s in (face.segment for face in part.faces))
+        assert outer == pytest.approx(around + 2.0 * pi * 2.5, abs=1e-9)
+    corners = [row[HALF_EXTENT] for row in ObstacleBoundary.of(OCTAGON, (2.5, 2.5)).rows if row[IS_ARC] != 0.0]
+    assert corners == pytest.approx([pi / 8.0] * 8)
+
+
+def test_contacts_are_told_by_their_pegs_and_pieces() -> None:
+    """Whatever pairs of pegs and pieces, or none, come before others: no two are taken for one another."""
+    boundary = ObstacleBoundary.of(STEP, (3.0, 3.0))
+    touches, every = boundary.all_touches, [(-1, -1), *product(range(4), range(len(boundary.all_touches)))]
+    pairs = np.array(list(product(every, repeat=2)))
+    none = np.full((len(pairs), 2), -1)
+    told = boundary.contacts_of(*(np.concatenate([pairs[:, :, k], none], axis=1) for k in range(2)))
+    for contacts, pair in zip(told, pairs.tolist(), strict=True):
+        right = [SeatContact(peg, touches[at].face, touches[at].corner) for peg, at in pair if peg >= 0]
+        assert list(contacts) == right
+    assert boundary.corners.tolist() == [touch.corner for touch in touches]
+
+
+def test_curves_of_each_jaw_are_those_of_its_pieces():
+    """Of pegs of two radii, on a part with arcs of one centre, whatever was asked before."""
+    boundary = ObstacleBoundary.of(workhold.load("oblongPart"), (2.5, 4.0))
+    steps = LatticeSteps(np.array([15.0]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0]))
+    for side, (first, end) in enumerate(boundary.parts.tolist()):
+        boundary.curves(10.0, side)
+        told, known = boundary.curves(15.0, side), curve_table(boundary.loose[first:end], steps)
+        assert len(set(boundary.centers[first].tolist())) < end - first
+        for one, two in ((told.curves, known.curves), (told.sliding_pairs, known.sliding_pairs)):
+            assert len(one.integers) > 0 and np.array_equal(one.reals, two.reals)
+            assert np.array_equal(one.integers[:, [TAIL, HEAD]] - first, two.integers[:, [TAIL, HEAD]])
