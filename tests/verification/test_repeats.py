@@ -8,8 +8,9 @@ from math import pi
 import attrs
 import pytest
 
-from workhold import Fixture, Pose, Result, Vise
+from workhold import Fence, Fixture, Peg, Pose, Result, Vise
 from workhold.verification import repeats
+from workhold.verification.order import rank
 from workhold.verification.repeats import Key, Place, Seen
 from workhold.verification.rules.hardware import ToolkitRules
 
@@ -94,3 +95,42 @@ def test_one_set_when_a_rotation_carries_one_to_the_other(
     assert seen.add(0, Placed((0.5, 30.0, 3.0, 33.0))) is None  # type: ignore[arg-type]
     assert seen.add(1, Placed(tuple(image))) is None  # type: ignore[arg-type]
     assert seen.sets == {"I": sets}
+
+
+def test_beside_a_wall_only_steps_along_it_leave_a_fixture_as_it_is() -> None:
+    """Not steps away from it, nor the half turn that a plate without a wall allows."""
+
+    def moved_by(columns: int, rows: int, sign: int) -> Fixture:
+        """One locator, the wall's ends and a clamp, moved by holes and turned half way round (-1)."""
+        places = [("plate", 0, 1, 0.0, 26.0), ("wall", 0, 0, 5.0, 0.0), ("wall", 0, 0, 40.0, 0.0)]
+        places.append(("clamp -x" if sign > 0 else "clamp +x", 3, 2, 51.0, 46.0))
+        pegs = [
+            Peg(
+                name,
+                sign * column + columns,
+                sign * row + rows,
+                sign * x + 20.0 * columns,
+                sign * y + 20.0 * rows,
+                0,
+                0.5,
+            )
+            for name, column, row, x, y in places
+        ]
+        pose = Pose(10.0 + 90.0 * (1 - sign), sign * 7.0 + 20.0 * columns, sign * 3.0 + 20.0 * rows)
+        return Fixture("edge", tuple(pegs), pose, 0.0, {}, "-x" if sign > 0 else "+x")
+
+    seen = Seen(ToolkitRules(Fence(20, 3, wall_offset=6)))
+    assert seen.add(0, moved_by(0, 0, 1)) is None
+    assert seen.find(moved_by(2, 0, 1)) == 0
+    assert seen.find(moved_by(0, 1, 1)) is None and seen.find(moved_by(0, 0, -1)) is None
+
+
+def test_a_half_turn_leaves_the_place_in_the_order_as_it_is(widget_result: Result) -> None:
+    """Of fixtures with two pegs on each jaw, which are seen as they lie below half a turn."""
+    rules, looked_at = ToolkitRules(widget_result.toolkit), 0
+    for fixture in widget_result:
+        if fixture.type == "I":
+            (holes, angle, faces), (others, theta, touched) = (rank(f, rules) for f in (fixture, half_turned(fixture)))
+            assert (holes, faces) == (others, touched) and angle == pytest.approx(theta, abs=1e-9)
+            looked_at += len(set(faces[:2]) ^ set(faces[2:])) > 0
+    assert looked_at > 3
