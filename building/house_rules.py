@@ -18,7 +18,7 @@ __all__ = ["RULES", "Finding", "Rule", "Source", "long_subjects", "replaced_word
 # Where kinds of toolkits may be asked for.
 ROOMS_OF_KINDS = ("fixels/", "verification/rules/")
 KIND_CLASSES = {"Vise", "OpeningVise", "Plate", "Fence", "FlatJaw"}
-KIND_NAMES = {"vise", "opening-vise", "plate", "fence", "flat-jaw"}
+KIND_NAMES = {"vise", "opening-vise", "gripper", "translating-clamp", "plate", "edge", "fence", "flat-jaw"}
 # Attributes by which a toolkit, a peg or a contact is asked for its kind.
 KIND_ATTRIBUTES = {
     "has_a_hole",

@@ -34,7 +34,7 @@ HypothesisProvider._local_constants = Constants()  # type: ignore[assignment]
 
 PREPARE = "import sys; from workhold.kernels.preparing import prepared; list(prepared(*sys.argv[1:]))"
 # Parts of the kernels that take about as long to compile.
-SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", "holdings"))
+SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", "curves"))
 
 
 def pytest_configure(config: pytest.Config) -> None:

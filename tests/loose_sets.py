@@ -8,7 +8,7 @@ from math import nan
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CONFIG, CONTACTS, Families
+from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CONFIG, CONTACTS, Manifolds
 
 Array = NDArray[np.float64]
 NOWHERE = nan, nan
@@ -19,7 +19,7 @@ def laid_out(
     contacts: Sequence[float] | None = None,
     closed: Sequence[bool] | None = None,
     across: Sequence[tuple[float, float]] | None = None,
-) -> Families:
+) -> Manifolds:
     """Sets of some configurations (N, 4) each, with their first ones as candidates, of two contacts if nothing is said."""
     count = len(parts)
     rows = np.zeros((count, CANDIDATE_LENGTH))
@@ -28,7 +28,7 @@ def laid_out(
     configs = np.concatenate([np.zeros((0, 4)), *parts])
     begins = np.cumsum([0, *(len(part) for part in parts)])
     whole = np.zeros(count, np.int8) if closed is None else np.array(closed, np.int8)
-    return Families(rows, configs, begins, whole, np.array(across or [NOWHERE] * count).reshape(-1, 2))
+    return Manifolds(rows, configs, begins, whole, np.array(across or [NOWHERE] * count).reshape(-1, 2))
 
 
 def straight(level: float, length: float, steps: int = 5, start: tuple[float, float] = (0.0, 0.0)) -> Array:

@@ -15,7 +15,7 @@ from scipy.optimize import root
 from workhold import Fixture, Peg, Pose, Vise, Workpiece, load
 from workhold.geometry.segment import Line
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.columns import CONFIG, HOLDING, PEG, PIECE
+from workhold.kernels.seating.columns import CONFIG, PAIR, PEG, PIECE
 from workhold.model.seating import Seating
 from workhold.model.toolkit import Toolkit
 from workhold.seating.solver import Solver
@@ -176,11 +176,11 @@ def closed(obstacle: Obstacle, config: Array, size: float, stop: float) -> Array
     return config
 
 
-def cells_by_holding(holdings: TwoContactCurves, right: int) -> tuple[Array, Array]:
+def cells_by_pair(holdings: TwoContactCurves, right: int) -> tuple[Array, Array]:
     """The cells of one jaw's holdings and their middles, heights from its own first peg."""
     known, before, _ = holdings.jaws[right]
     cells = np.array(known.cells)
-    cells[:, HOLDING] += before
+    cells[:, PAIR] += before
     return cells, known.middles
 
 

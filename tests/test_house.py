@@ -12,6 +12,7 @@ import pytest
 import house
 import house_rules as rules
 from house_rules import Source
+from workhold.fixels.fields import TABLES
 
 ROOT = Path(__file__).parent.parent
 
@@ -35,6 +36,7 @@ ASKING = [
     'toolkit.kind == "vise"',
     '"plate" != name',
     'kind in ("plate", "fence")',
+    'toolkit.kind == "translating-clamp"',
     "type(toolkit) is Vise",
     "toolkit.kind == OpeningVise.kind",
     '{"vise": 1, "plate": 2}[kind]',
@@ -74,6 +76,10 @@ def test_a_line_that_asks_for_the_kind_is_found(text: str) -> None:
 )
 def test_other_lines_do_not_ask_for_the_kind(text: str) -> None:
     assert places(rules.lines_asking_for_kind(planted(text))) == []
+
+
+def test_every_kind_that_has_a_table_is_known() -> None:
+    assert set(TABLES) <= rules.KIND_NAMES
 
 
 def test_a_line_that_asks_twice_counts_once() -> None:

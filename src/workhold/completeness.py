@@ -1,7 +1,7 @@
 """Verification of a result, and the search of its query once more, for what a file alone cannot show.
 
-It stands above both the verification and the engines, which share nothing: fixtures are compared as the verification tells
-them apart (``verification.repeats``).
+It stands above both the verification and the engines, which share nothing: fixtures are compared as the
+verification tells them apart (``verification.repeats``).
 """
 
 from __future__ import annotations
@@ -40,11 +40,12 @@ def verify(
     progress: Progress | None = None,
     cancel: Event | None = None,
 ) -> Verification:
-    """Prove or refute every fixture of a result or a result file, and every number written with it.
+    """Proves or refutes every fixture of a result or a result file, and every number written with it.
 
     Parameters
     ----------
-    complete : also answer the query again, and compare which fixtures there are, how many, and the account of the search.
+    complete : also answer the query again, and compare which fixtures there are, how many, and the account of
+        the search.
     threads, cancel : of that search, see :func:`workhold.answer`; when it is cancelled, nothing is compared.
     progress : called as ``progress(fraction done, count)``: of fixtures not proven, then of fixtures found.
 
@@ -73,7 +74,8 @@ def verify(
 
 
 def completed(outcome: Verification, listing: Listing, *, threads: int | None = None, **watching: Any) -> Verification:
-    """A verification with what the search of the listing's query finds wrong with it; as it was when that is cancelled.
+    """A verification with what the search of the listing's query finds wrong with it; as it was when that is
+    cancelled.
 
     Parameters
     ----------

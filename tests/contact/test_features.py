@@ -24,7 +24,7 @@ from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.proof.interval_newton import contact_value
 from workhold.statics.wrenches import outward_normals
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 
 
 @given(outlines(), vises())
@@ -157,7 +157,7 @@ def test_a_joint_is_tangent_to_within_a_few_digits_of_a_bulge(turn, tangent):
     # Point pegs: their features end at the corners themselves.
     assert (end_slacks(contact_features(half, 0.0)) > 0).any() == tangent
     with exactly():
-        smooth = Outline.of(half).smooth
+        smooth = BallOutline.of(half).smooth
     assert smooth[2] == (tangent, tangent)
 
 

@@ -4,21 +4,32 @@ from __future__ import annotations
 
 import re
 from io import StringIO
+from math import isinf
 
 import ezdxf
 import pytest
+from attrs import evolve
 from sheet_reading import collisions
 from svg_reading import texts
 
 from workhold import Fence, Result, Workpiece, design
+from workhold.cli.seat_command import seat_table
 from workhold.drawing.fixture_picture import draw_fixture
+from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.part import contact_of
 from workhold.drawing.result_sheet import result_sheet
+from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.seats_picture import draw_seats
 from workhold.files.dxf.setup import setup_dxf
 from workhold.files.pin_list import pin_list
 from workhold.files.result.csv import result_csv_text
+from workhold.geometry.segment import Line
+from workhold.model.contact_kind import ROUND_PIN, WALL_END
 from workhold.model.restrictions import Restrictions
+from workhold.model.seating import Seat
 from workhold.model.shown import shown
 from workhold.model.units import MILLIMETRE
+from workhold.statics.contact_matrix import Touched
 
 L = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
@@ -98,3 +109,44 @@ def test_angles_choose_what_lies_on_the_fence() -> None:
     asked = Restrictions(angles=((theta - 0.5, theta + 0.5),))
     result = design(Workpiece.from_loops("part", [KITE]), Fence(10, 3, wall_offset=5), restrictions=asked)
     assert {round(fixture.pose.theta_deg, 6) for fixture in result} == {round(theta, 6)}
+
+
+def test_the_sheet_says_what_is_measured_and_how_far_the_set_up_may_be_moved() -> None:
+    """Rows are fixed by the fence, so it may be moved along it only; two clamps have a tip each."""
+    words = " ".join(word for page in result_sheet(held(KITE), 1) for word in texts(page))
+    assert "centre of the locator or of the clamp's tip, from column A at the fence" in words.replace("\n", " ")
+    assert "any columns further right; places are then told from the column that takes the place of A" in words
+    assert "further up" not in words
+    part = Workpiece.from_loops("block", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
+    two = design(part, Fence(20, 3, wall_offset=10, clamps=2, columns=4, rows=3))
+    told = " ".join(word for page in result_sheet(two, 1) for word in texts(page))
+    assert "of a clamp's tip" in told
+
+
+def test_a_wall_is_touched_at_its_ends_and_a_pin_where_its_face_is() -> None:
+    """The wall pushes up, whatever face of the part ends there."""
+    face = Line((0.0, 0.0), (40.0, 30.0))
+    assert contact_of(WALL_END, (12.0, 0.0), face) == ((12.0, 0.0), (0.0, -1.0))
+    (x, y), (nx, ny) = contact_of(ROUND_PIN, (20.0, 15.0), face)
+    assert (x, y) == pytest.approx((20.0, 15.0)) and (nx, ny) == pytest.approx((0.6, -0.8))
+
+
+def test_a_seat_like_a_fixture_is_said_to_lie_flush() -> None:
+    """In the picture of seats, and among those of the terminal, where a seat of pegs alone touches with four."""
+    result = held(KITE, travel=(4, 30))
+    fixture = result[0]
+    seat = Seat("fixture", fixture.pose, fixture.jaw_separation + 1.0, 1.0, False, False, (), (), None, False)
+    own = evolve(seat, jaw_separation=fixture.jaw_separation, difference=0.0, is_own=True)
+    picture = texts(draw_seats([own, seat], fixture, result.workpiece, result.toolkit))
+    assert picture.count("flush") == 2 and "four pegs" not in picture
+    lengths = LengthUnit.suiting(MILLIMETRE, 10.0)
+    gauge = SeatingWords(None, fixture, result.toolkit, lengths).gauge  # type: ignore[arg-type]
+    table = seat_table([own, seat], gauge, MILLIMETRE)
+    assert [row[-1] for row in table.rows] == ["right", "flush on the fence"]
+
+
+def test_what_lies_on_a_fence_ends_nowhere_that_matters() -> None:
+    """Edges are infinitely far from the ends of the contact, and not from the locator and the tip."""
+    result = held(KITE)
+    edges = Touched.of(result.workpiece, result.toolkit).of_fixture(result[0], result.toolkit).edges[0]
+    assert [bool(isinf(edge)) for edge in edges] == [False, True, True, False]

@@ -11,7 +11,7 @@ from attrs import evolve
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer
 from workhold.conventions import SAME_POSE
 from workhold.geometry.rotation import rotated
-from workhold.listing.identity import Identity, SetCount
+from workhold.listing.identity import Identity, SetCount, identity_order
 from workhold.model.result import FixtureTable
 from workhold.model.toolkit import Toolkit
 
@@ -93,3 +93,12 @@ def test_the_best_of_a_seat_are_named_without_their_clamps() -> None:
         (words, pose), (others, other) = identity.smallest(table), identity.smallest(moved)
         same = all(np.array_equal(*pair) for pair in zip(words, others, strict=True)) and np.array_equal(pose, other)
         assert same != differs and len(table) > 3
+
+
+def test_what_is_equal_in_holes_and_faces_is_ordered_by_its_place() -> None:
+    """In whatever order the fixtures come."""
+    query = Query(polygon(5), TOOLKITS["wall"])
+    one = answer(query).table.take(np.zeros(1, np.int64))
+    moved = [evolve(one, position=one.position + np.array([step, 0.0])) for step in (2.0, 0.0, 1.0)]
+    table = FixtureTable.joined(moved)
+    assert identity_order(table).tolist() == [1, 2, 0]

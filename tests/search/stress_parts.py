@@ -16,10 +16,10 @@ from workhold.model.fixture import Fixture, Pose
 from workhold.model.query import Query
 from workhold.verification.balls import dot
 from workhold.verification.closure import minors
-from workhold.verification.contacts import Contact, contact_system
-from workhold.verification.contacts import Pose as Balls
+from workhold.verification.contacts import BallContact, contact_system
+from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.fixture_proof import Judge
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.placing import certified_zero
 
 __all__ = [
@@ -76,7 +76,7 @@ def carried_over(fixtures: Iterable[Fixture], part: Workpiece, vise: Vise) -> li
     for fixture in fixtures:
         start = [radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y, fixture.jaw_separation]
         with ctx.workprec(256):
-            faces = Outline.of(part).faces
+            faces = BallOutline.of(part).faces
             contacts = [judge.hardware.contact(peg, faces[peg.face]) for peg in fixture.pegs]
             zero = certified_zero(partial(contact_system, contacts), start)
             if zero is None:
@@ -89,7 +89,7 @@ def carried_over(fixtures: Iterable[Fixture], part: Workpiece, vise: Vise) -> li
     return out
 
 
-def solved_fixture(fixture: Fixture, contacts: list[Contact], zero: list[arb]) -> Fixture:
+def solved_fixture(fixture: Fixture, contacts: list[BallContact], zero: list[arb]) -> Fixture:
     """A fixture with the pose, jaw separation and forces of an enclosed root of its contact equations."""
     pose = Balls.of(*zero)
     points = [contact.in_part(pose) for contact in contacts]

@@ -124,6 +124,8 @@ def test_an_equilateral_triangle_is_counted_by_hand() -> None:
     assert design(triangle, fence).counts == {"edge": 57}
     both = design(triangle, attrs.evolve(fence, directions=["-x", "+x"]))
     assert both.counts == {"edge": 114} and both.distinct == {"edge": 38}
+    # Each direction counts as a search of its own.
+    assert both.statistics["hull_edges"] == 6 and both.proof is not None and both.proof.cells == 6
     # Each set has one fixture for each turn of the triangle: one orientation alone has as many as there are sets.
     alone = design(triangle, fence, restrictions=Restrictions(angles=((-1.0, 1.0),)))
     assert alone.counts == {"edge": 19} == alone.distinct

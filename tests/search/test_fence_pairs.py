@@ -14,6 +14,7 @@ import pytest
 import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
 from workhold import Fence, Query, Workpiece, answer, design
+from workhold.model.restrictions import Restrictions
 from workhold.proof.flush import reactions_on_fence
 from workhold.search import wall_search
 
@@ -153,6 +154,10 @@ def test_a_search_that_is_stopped_within_a_hull_edge_looks_at_no_further_pairs(m
     monkeypatch.setattr(wall_search, "TOGETHER", 40)
     stopped = answer(query, cancel=stop)
     assert looked_at == 12 and not stopped.complete and not stopped.notes
+    # An edge that was begun is not done, be it the only one.
+    stop, looked_at = Event(), 10
+    last = answer(attrs.evolve(query, restrictions=Restrictions(angles=((-1, 1),))), cancel=stop)
+    assert looked_at == 12 and not last.complete and last.statistics["hull_edges"] == 0
     assert stopped.statistics["hull_edges"] < whole.statistics["hull_edges"]
     assert len(stopped) > 0 and stopped.pairs is not None and whole.pairs is not None and stopped.pairs < whole.pairs
 

@@ -138,7 +138,7 @@ def test_a_part_comes_home_from_the_largest_turns(name):
     ],
 )
 def test_no_extreme_lies_outside_the_cage(name, rank):
-    """Ways end where pegs touch and what moves is open by no more than is asked, and closing leads home from all ends."""
+    """Paths end where pegs touch and what moves is open by no more than is asked, and closing leads home from all ends."""
     part, toolkit, fixtures = listed(name)
     reading, told = reading_of(name, rank), around(name, rank, 1.0)
     obstacle, found = Obstacle.about(part, fixtures[rank], toolkit), told.extents

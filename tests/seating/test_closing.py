@@ -1,4 +1,4 @@
-"""Ways down: the shortest step out of what is entered, and that they lead through what is free to what is known."""
+"""Descent paths: the shortest step out of what is entered, and that they lead through what is free to what is known."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from scipy.optimize import nnls
 
 from sharpness import changed
 from workhold import Fixture, Peg, Pose, Vise, Workpiece
-from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP, add_normal, shortest_out
-from workhold.kernels.seating.columns import CONFIG, SECOND, WorkSpace
+from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
+from workhold.kernels.seating.columns import CONFIG, SECOND, DescentWorkSpace
+from workhold.kernels.seating.linear_program import add_normal, shortest_out
 from workhold.kernels.seating.pieces import clearances
 from workhold.kernels.seating.places import OUTSIDE, STOP
 from workhold.seating.closing_frame import ClosingFrame
@@ -47,14 +48,14 @@ def ways():
 
 def test_a_fifth_normal_is_none():
     """There are four unknowns; a fifth that rounding leaves something of would be written past the basis."""
-    work, adds = WorkSpace.for_pieces(1), changed(add_normal)
+    work, adds = DescentWorkSpace.for_pieces(1), changed(add_normal)
     work.near[0, :4], work.basis[:] = (0.0, 1.0, 0.0, 0.0), 0.0
     assert [adds(0, 1, place, work) for place in (3, 4)] == [True, False]
 
 
 def test_two_pegs_on_one_face_against_a_third_on_an_arc_make_a_seat(ways):
     """Both jaws' pegs on the long side, the left jaw's other one at the notch, 20 across: forces are parallel, and with the
-    left pegs 30 apart sin(theta) is 2/3. Ways down end there, and none anywhere that is not known."""
+    left pegs 30 apart sin(theta) is 2/3. Descent paths end there, and none anywhere that is not known."""
     seats = ways[0][2].seats
     theta = np.pi - np.arcsin(2.0 / 3.0)
     [seat] = seats[np.abs(seats[:, 0] - theta) < 1e-9]
@@ -83,7 +84,7 @@ def test_the_way_out_is_the_shortest():
     steps_out = changed(shortest_out, add_normal=changed(add_normal))
     generator, met = np.random.default_rng(4), 0
     for count in (1, 2, 3, 4, 6) * 12:
-        work = WorkSpace.for_pieces(0)
+        work = DescentWorkSpace.for_pieces(0)
         slopes, off = generator.normal(size=(count, 4)), generator.normal(size=count) * 1e-3
         if count == 3:
             slopes[2] = slopes[0]

@@ -1,4 +1,4 @@
-"""Ways down of a few pegs, followed once for many patterns, end where those of all pegs end that are followed anew."""
+"""Descent paths of a few pegs, followed once for many patterns, end where those of all pegs do."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from workhold.kernels.seating.columns import (
     SINE,
     TURNED,
 )
-from workhold.kernels.seating.following import free_until
+from workhold.kernels.seating.descent_paths import free_until
 from workhold.kernels.seating.leaving import RANGES, leave
 from workhold.kernels.seating.pieces import clearances
 from workhold.seating import subset_equilibria
@@ -113,7 +113,7 @@ def test_a_part_is_not_taken_away_through_a_wall():
     lying = np.array([[0.0, *part.center, 40.0]])
     for wall, is_free in (((0.0, 0.0, 0.0), 1), ((0.0, 1.0, 0.0), 0), ((0.0, -1.0, 0.0), 1)):
         out, room = np.zeros(1), RANGES * len(obstacles.pegs) * len(obstacles.rows) + 1
-        leave(lying, obstacles._replace(wall=np.array(wall)), np.empty((room, 2)), out)
+        leave(lying, obstacles._replace(half_plane=np.array(wall)), np.empty((room, 2)), out)
         assert np.isfinite(out[0]) == is_free
 
 

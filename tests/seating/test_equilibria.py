@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from seating_examples import cells_by_holding, moved, solved
+from seating_examples import cells_by_pair, moved, solved
 from workhold.kernels.seating.candidates import complete_third, complete_three
 from workhold.kernels.seating.columns import BOTTOM, CANDIDATE_LENGTH, CELL_LENGTH, DEPTH, SEPARATION, TOP
-from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
+from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.growing_rows import filled
 from workhold.seating.pattern import Pattern
@@ -21,7 +21,7 @@ def told_by(holdings, boundary, pattern, discs, stop):
     """Candidates of three contacts above the stop, and of three with one jaw."""
     stack, work, three, third = np.empty((DEPTH, 2)), np.empty((5, len(discs))), [], []
     for side in holdings.jaws:
-        given = *cells_by_holding(holdings, side), holdings.sought, discs
+        given = *cells_by_pair(holdings, side), holdings.sought, discs
         three.append(filled(ROOT_LENGTH, 4096, three_contacts, *given, stop, stack, work))
         third.append(filled(ROOT_LENGTH, 4096, third_of_jaw, *given, stack))
     three, third = np.concatenate(three), np.concatenate(third)
@@ -57,9 +57,9 @@ def test_holdings_meet_as_of_each_cell_by_itself():
     holdings = TwoContactCurves.of(solver.closing(pattern, False).boundary, pattern)
     left, right = holdings.of_jaw(0), holdings.of_jaw(1)
     work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(right.cells), np.int64)
-    every = filled(ROOT_LENGTH, 1024, two_holdings, left, right, holdings.sought, *work)
+    every = filled(ROOT_LENGTH, 1024, two_pairs, left, right, holdings.sought, *work)
     ones = [left._replace(cells=one[None, :]) for one in left.cells]
-    alone = [filled(ROOT_LENGTH, 64, two_holdings, one, right, holdings.sought, *work) for one in ones]
+    alone = [filled(ROOT_LENGTH, 64, two_pairs, one, right, holdings.sought, *work) for one in ones]
     assert len(every) > 10
     assert np.array_equal(every, np.concatenate(alone))
     # Nor does what is left out by heights meet.
@@ -67,7 +67,7 @@ def test_holdings_meet_as_of_each_cell_by_itself():
     for jaw in tall:
         jaw.cells[:, BOTTOM], jaw.cells[:, TOP] = -1e9, 1e9
     assert left.height != right.height
-    assert np.array_equal(filled(ROOT_LENGTH, 1024, two_holdings, *tall, holdings.sought, *work), every)
+    assert np.array_equal(filled(ROOT_LENGTH, 1024, two_pairs, *tall, holdings.sought, *work), every)
 
 
 def test_many_fixtures_are_told_as_one_by_one():

@@ -10,7 +10,7 @@ import pytest
 from loose_sets import NOWHERE, laid_out, straight
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, SEPARATION
-from workhold.kernels.seating.following import BESIDE
+from workhold.kernels.seating.descent_paths import BESIDE
 from workhold.kernels.seating.places import OUTSIDE, STOP
 from workhold.seating.join_tree import JoinTree, ManifoldDescents, distances
 

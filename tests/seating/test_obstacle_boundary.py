@@ -17,7 +17,11 @@ from workhold.kernels.curves.columns import HEAD, TAIL
 from workhold.model.seating import SeatContact
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 
-OCTAGON = Workpiece.from_points("octagon", [(30 * cos(k * pi / 4), 30 * sin(k * pi / 4)) for k in range(8)])
+# Corners of these polygons turn by an eighth of a circle, and by a hundredth.
+POLYGONS = [
+    Workpiece.from_points(str(n), [(30 * cos(2 * k * pi / n), 30 * sin(2 * k * pi / n)) for k in range(n)])
+    for n in (8, 100)
+]
 
 
 @pytest.mark.parametrize("number", range(3))
@@ -38,12 +42,12 @@ def test_pieces_lie_in_their_discs_and_reach_their_edges(number):
 
 def test_rolled_corners_make_up_a_turn():
     """Around a convex part the pegs' boundary is its outline and one circle (J. Steiner, 1840), blunt corners included."""
-    for part in (OCTAGON, workhold.load("oblongPart")):
+    for part in (*POLYGONS, workhold.load("oblongPart")):
         rows = ObstacleBoundary.of(part, (2.5, 2.5)).rows
         outer = sum(2.0 * row[HALF_EXTENT] * (row[RADIUS] if row[IS_ARC] != 0.0 else 1.0) for row in rows)
         around = sum(2.0 * s.half_extent * getattr(s, "radius", 1.0) for s in (face.segment for face in part.faces))
         assert outer == pytest.approx(around + 2.0 * pi * 2.5, abs=1e-9)
-    corners = [row[HALF_EXTENT] for row in ObstacleBoundary.of(OCTAGON, (2.5, 2.5)).rows if row[IS_ARC] != 0.0]
+    corners = [row[HALF_EXTENT] for row in ObstacleBoundary.of(POLYGONS[0], (2.5, 2.5)).rows if row[IS_ARC] != 0.0]
     assert corners == pytest.approx([pi / 8.0] * 8)
 
 

@@ -26,7 +26,7 @@ from workhold.kernels.seating.columns import (
     THETA,
 )
 from workhold.kernels.seating.pieces import clearances
-from workhold.kernels.seating.slides import slides_stopped
+from workhold.kernels.seating.slides import slides_blocked
 from workhold.seating import subset_equilibria, two_contact_curves
 from workhold.seating.equilibria import Equilibria, equilibria
 from workhold.seating.growing_rows import filled
@@ -164,7 +164,7 @@ def test_slides_end_where_a_third_peg_of_the_jaw_touches():
     boundary, size = solver.closing(pattern, False).boundary, solver.outline.arm
     [group] = (group for group in subsets_of(pattern) if group.is_of_a_jaw and len(group.sides) == 3)
     held = two_contact_curves.TwoContactCurves.of(boundary, group.pattern)
-    stopped = filled(CANDIDATE_LENGTH, 256, slides_stopped, held.slides, held.given)
+    stopped = filled(CANDIDATE_LENGTH, 256, slides_blocked, held.slides, held.given)
     assert len(stopped) > 2
     kept = subset_equilibria.SubsetCache()
     own = subset_equilibria.equilibria_of_subset(kept, boundary, group, size)

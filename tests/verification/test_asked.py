@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, radians, sin
+from itertools import combinations
+from math import cos, hypot, radians, sin
 from typing import Any
 
 import attrs
@@ -16,6 +17,8 @@ from workhold.model.load import Load
 from workhold.model.quality import FIGURES
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.verification import Verification, verify
+from workhold.verification.restrictions import broken_restriction
+from workhold.verification.rules.hardware import ToolkitRules
 
 Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
 
@@ -60,6 +63,13 @@ def test_blocked_holes_and_bodies_are_looked_at(limited: Result) -> None:
     assert any(f"stands in {hole}, which is blocked" in item.reason for item in outcome.unproven)
     outcome = verified_in(body_radius=200.0, blocked=[])
     assert any("overlap" in item.reason or "stands over" in item.reason for item in outcome.unproven)
+    # They may touch, and not be wider by the least that counts.
+    free = attrs.evolve(limited.query, restrictions=Restrictions())
+    nearest = min(hypot(a.x - b.x, a.y - b.y) for a, b in combinations(limited[0].pegs, 2))
+    for radius, words in ((nearest / 2 - 1e-5, ""), (nearest / 2 + 1e-5, "overlap")):
+        vise = attrs.evolve(limited.toolkit, body_radius=radius, blocked=[])
+        found = broken_restriction(limited[0], attrs.evolve(free, toolkit=vise), ToolkitRules(vise))
+        assert words in found and bool(found) == bool(words)
 
 
 @pytest.mark.parametrize("number", range(len(FIGURES)))

@@ -18,12 +18,12 @@ from strategies import seeds
 from workhold import Vise
 from workhold.verification.balls import Point
 from workhold.verification.closure import Balance, closure_findings, minors, span
-from workhold.verification.contacts import Pose
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.contacts import BallPose
+from workhold.verification.rules.hardware import ToolkitRules
 
 # The part as it is drawn.
-HARDWARE = Hardware(Vise(pitch=10, columns=1, peg_radius=0))
-UPRIGHT = Pose.of(arb(0), arb(0), arb(0), arb(0))
+HARDWARE = ToolkitRules(Vise(pitch=10, columns=1, peg_radius=0))
+UPRIGHT = BallPose.of(arb(0), arb(0), arb(0), arb(0))
 
 
 def random_contacts(random: Random) -> tuple[list[tuple[float, float]], list[float]]:

@@ -23,8 +23,8 @@ from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.search.pin_contacts import PinContacts
 from workhold.search.wall_search import WallSearch
 from workhold.verification import Verification, verify, verify_fixture
-from workhold.verification.contacts import Pose as Balls
-from workhold.verification.outline import Outline
+from workhold.verification.contacts import BallPose as Balls
+from workhold.verification.outline import BallOutline
 from workhold.verification.rules.wall import flush_findings, wall_contacts
 from workhold.verification.undecided import undecided_faults
 
@@ -260,7 +260,7 @@ def test_a_foot_beyond_the_ends_that_are_told_is_found() -> None:
     """Ends at the outer feet leave none beyond; with the right one at the middle foot the third is."""
     feet = [[0, 0, 0], [8, 0, 0], [8, 4, 0], [24, 4, 0], [24, 0, 0], [32, 0, 0], [32, 4, 0], [48, 4, 0], [48, 0, 0]]
     workpiece = part([*feet, [56, 0, 0], [50, 30, 0], [4, 34, 0]])
-    outline, pose = Outline.of(workpiece), Balls.of(arb(0), arb(0), arb(0), arb(0))
+    outline, pose = BallOutline.of(workpiece), Balls.of(arb(0), arb(0), arb(0), arb(0))
     left, right = wall_contacts([outline.faces[0], outline.faces[8]], outline, pose)
     inner = evolve(right, piece=evolve(right.piece, center=outline.faces[5].start), faces=(4,))
     pegs = [workhold.Peg("wall", 0, 0, x, 0.0, face, 0.5) for x, face in ((0.0, 0), (56.0, 8), (32.0, 4))]
@@ -269,3 +269,7 @@ def test_a_foot_beyond_the_ends_that_are_told_is_found() -> None:
     short = [("left", pegs[0], left), ("right", pegs[2], inner)]
     (found, *_) = flush_findings("fence", short, pose, outline)
     assert "lies on the fence at face 7, beyond the ends that are told" in found.reason
+    one_foot = [("left", pegs[0], left), ("right", pegs[0], left)]
+    assert "the part does not lie flush on the fence" in [
+        f.reason for f in flush_findings("fence", one_foot, pose, outline)
+    ]

@@ -21,7 +21,7 @@ from workhold.model.proof import Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.repeats import Seen
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
@@ -164,7 +164,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
     assert "it has the seat and the directions of fixture 1" in again
     assert "the one before it" in told(edited(lambda content: content["fixtures"].reverse()))
     every = results["all"]
-    seen, less = Seen(Hardware(every.toolkit)), len(every) - 1
+    seen, less = Seen(ToolkitRules(every.toolkit)), len(every) - 1
     second = next(index for index, fixture in enumerate(every) if seen.add(index, fixture) is not None)
     table = every.table.take(np.delete(np.arange(len(every)), second))
     short = evolve(every, table=table, found={"edge2": less}, distinct={"edge2": less}, pairs=less)
@@ -176,7 +176,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen, refuted = Seen(Hardware(best.toolkit)), 0
+    seen, refuted = Seen(ToolkitRules(best.toolkit)), 0
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     for place in range(0, len(every), 3):

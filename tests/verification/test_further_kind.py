@@ -26,7 +26,7 @@ from workhold.verification.order import rank
 from workhold.verification.patterns import stance
 from workhold.verification.reading import fixtures_of
 from workhold.verification.repeats import Seen
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seating_contacts import stop_of
 
 Data = dict[str, Any]
@@ -84,7 +84,7 @@ class Known:
     def read(self, item: Data) -> Fixture:
         """A fixture from its JSON object."""
         (fixture,) = fixtures_of([item], Path("truth"))
-        return Hardware(self.toolkit).taken(fixture)
+        return ToolkitRules(self.toolkit).taken(fixture)
 
     def ruling(self, item: Data, **fields: Any) -> Ruling:
         """What is shown of a fixture, perhaps in a toolkit with other fields."""
@@ -120,12 +120,12 @@ def on_faces(item: Data, workpiece: Workpiece) -> Data:
 
 def test_every_true_fixture_is_proven(known: Known) -> None:
     """At the lowest precision, and no two are the same."""
-    seen = Seen(Hardware(known.toolkit))
+    seen = Seen(ToolkitRules(known.toolkit))
     for number, item in enumerate(known.items):
         ruling = known.ruling(item)
         assert (ruling.verdict, ruling.bits) == ("proven", 128), (number, ruling)
         assert seen.add(number, known.read(item)) is None
-    assert Hardware(known.toolkit).names == (
+    assert ToolkitRules(known.toolkit).names == (
         "the fixed jaw at its left end",
         "the fixed jaw at its right end",
         "peg 1",
@@ -266,7 +266,7 @@ def test_the_part_lies_on_the_wall_and_off_the_pegs(known: Known) -> None:
 
 def test_the_same_fixture_is_known_again(known: Known) -> None:
     """With both pegs moved by whole holes, the jaw with them, or their names exchanged; not turned half way round."""
-    hardware, (pitch, _) = Hardware(known.toolkit), known.toolkit.pitch
+    hardware, (pitch, _) = ToolkitRules(known.toolkit), known.toolkit.pitch
     seen = Seen(hardware)
     for number, item in enumerate(known.items):
         seen.add(number, known.read(item))

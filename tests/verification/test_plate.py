@@ -24,11 +24,11 @@ from workhold.model.notes import no_fixture_notes, undecided_note
 from workhold.model.proof import GIVEN_UP, Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.verification import Verification, verify, verify_file, verify_fixture
-from workhold.verification.contacts import Pose as Balls
+from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.order import rank
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.repeats import Seen
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
@@ -317,7 +317,7 @@ def loops_of(loop: list[list[float]]) -> list[list[list[float]]]:
 
 def test_the_half_turn_and_other_names_are_the_same(result: Result) -> None:
     """A fixture moved by whole holes, with its locators renamed, or on the plate turned half way round, is the same."""
-    seen = Seen(Hardware(result.toolkit))
+    seen = Seen(ToolkitRules(result.toolkit))
     for index, fixture in enumerate(result):
         assert seen.add(index, fixture) is None
     opposite = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
@@ -365,11 +365,11 @@ def test_a_clamp_keeps_its_distance_from_locators(
     column: int, row: int, pitch_y: float, radius: float, meets: bool
 ) -> None:
     """A locator of 2 mm beside the body from hole G1 at x = 60 to the tip at 50, before the tip and behind the hole."""
-    hardware = Hardware(Plate((10, pitch_y), 2, clamp_radius=radius, travel=(0, 30)))
+    hardware = ToolkitRules(Plate((10, pitch_y), 2, clamp_radius=radius, travel=(0, 30)))
     pegs = [workhold.Peg("plate", k, 40, 0.0, 0.0, 0, 1.0) for k in (0, 1)]
     pegs += [workhold.Peg("plate", column, row, 0.0, 0.0, 0, 1.0), workhold.Peg("clamp -x", 6, 0, 50.0, 0.0, 0, 1.0)]
     fixture = Fixture("clamp", tuple(pegs), Pose(0.0, 0.0, 0.0), -10.0, {}, "-x")
-    outline = Outline.of(part([[x + 500.0, y, b] for x, y, b in NOTCHED]))
+    outline = BallOutline.of(part([[x + 500.0, y, b] for x, y, b in NOTCHED]))
     contacts = [hardware.contact(peg, outline.faces[0]) for peg in pegs]
     at = Balls.of(arb(0), arb(0), arb(0), arb(-10))
     said = [found.reason for found in hardware.standing_findings(fixture, contacts, at, outline)]
@@ -382,7 +382,7 @@ def test_the_order_is_that_of_the_plate_turned_to_the_clamp() -> None:
     """A clamp along -y on one pitch stands in the order of one along -x on the other."""
     workpiece = part(NOTCHED)
     upright, lying = Plate((14, 20), 3, directions="-y"), Plate((20, 14), 3, directions="-x")
-    one, other = ([rank(f, Hardware(plate)) for f in design(workpiece, plate)] for plate in (upright, lying))
+    one, other = ([rank(f, ToolkitRules(plate)) for f in design(workpiece, plate)] for plate in (upright, lying))
     assert len(one) == len(other) > 10
     for ((_, kind, *holes), angle, faces), ((_, second, *others), theta, touched) in zip(one, other, strict=True):
         assert (kind, second) == (2, 0)

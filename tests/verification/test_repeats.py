@@ -8,10 +8,11 @@ from math import pi
 import attrs
 import pytest
 
-from workhold import Fixture, Pose, Result, Vise
+from workhold import Fence, Fixture, Peg, Pose, Result, Vise
 from workhold.verification import repeats
+from workhold.verification.order import rank
 from workhold.verification.repeats import Key, Place, Seen
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 
 
 def shifted(fixture: Fixture, rows: int) -> Fixture:
@@ -50,7 +51,7 @@ def moved(fixture: Fixture, distance: float) -> Fixture:
 
 @pytest.mark.parametrize("again", [lambda f: f, lambda f: shifted(f, 3), renamed, half_turned])
 def test_the_same(widget_result: Result, again: object) -> None:
-    seen = Seen(Hardware(widget_result.toolkit))
+    seen = Seen(ToolkitRules(widget_result.toolkit))
     for index, fixture in enumerate(widget_result):
         assert seen.add(index, fixture) is None
     for index, fixture in enumerate(widget_result):
@@ -59,7 +60,7 @@ def test_the_same(widget_result: Result, again: object) -> None:
 
 def test_not_the_same(widget_result: Result) -> None:
     """Another place of the workpiece, or another opening with the same left pegs and pose."""
-    seen = Seen(Hardware(widget_result.toolkit))
+    seen = Seen(ToolkitRules(widget_result.toolkit))
     fixture = widget_result[0]
     right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.carrier == "right")) for peg in fixture.pegs]
     wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
@@ -88,9 +89,48 @@ def test_one_set_when_a_rotation_carries_one_to_the_other(
     """The rotation is known to the millionths by which a drawing may miss its symmetry; so much may the fixtures differ
     that it carries into each other."""
     monkeypatch.setattr(repeats, "patterns", one_pattern)
-    seen = Seen(Hardware(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
+    seen = Seen(ToolkitRules(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
     image = [0.5 + pi / 2, 10.0 + 7.0, -4.0 - 20.0, 33.0]
     image[number] += off
     assert seen.add(0, Placed((0.5, 30.0, 3.0, 33.0))) is None  # type: ignore[arg-type]
     assert seen.add(1, Placed(tuple(image))) is None  # type: ignore[arg-type]
     assert seen.sets == {"I": sets}
+
+
+def test_beside_a_wall_only_steps_along_it_leave_a_fixture_as_it_is() -> None:
+    """Not steps away from it, nor the half turn that a plate without a wall allows."""
+
+    def moved_by(columns: int, rows: int, sign: int) -> Fixture:
+        """One locator, the wall's ends and a clamp, moved by holes and turned half way round (-1)."""
+        places = [("plate", 0, 1, 0.0, 26.0), ("wall", 0, 0, 5.0, 0.0), ("wall", 0, 0, 40.0, 0.0)]
+        places.append(("clamp -x" if sign > 0 else "clamp +x", 3, 2, 51.0, 46.0))
+        pegs = [
+            Peg(
+                name,
+                sign * column + columns,
+                sign * row + rows,
+                sign * x + 20.0 * columns,
+                sign * y + 20.0 * rows,
+                0,
+                0.5,
+            )
+            for name, column, row, x, y in places
+        ]
+        pose = Pose(10.0 + 90.0 * (1 - sign), sign * 7.0 + 20.0 * columns, sign * 3.0 + 20.0 * rows)
+        return Fixture("edge", tuple(pegs), pose, 0.0, {}, "-x" if sign > 0 else "+x")
+
+    seen = Seen(ToolkitRules(Fence(20, 3, wall_offset=6)))
+    assert seen.add(0, moved_by(0, 0, 1)) is None
+    assert seen.find(moved_by(2, 0, 1)) == 0
+    assert seen.find(moved_by(0, 1, 1)) is None and seen.find(moved_by(0, 0, -1)) is None
+
+
+def test_a_half_turn_leaves_the_place_in_the_order_as_it_is(widget_result: Result) -> None:
+    """Of fixtures with two pegs on each jaw, which are seen as they lie below half a turn."""
+    rules, looked_at = ToolkitRules(widget_result.toolkit), 0
+    for fixture in widget_result:
+        if fixture.type == "I":
+            (holes, angle, faces), (others, theta, touched) = (rank(f, rules) for f in (fixture, half_turned(fixture)))
+            assert (holes, faces) == (others, touched) and angle == pytest.approx(theta, abs=1e-9)
+            looked_at += len(set(faces[:2]) ^ set(faces[2:])) > 0
+    assert looked_at > 3

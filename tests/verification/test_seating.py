@@ -18,7 +18,7 @@ from workhold.seating.solver import Solver
 from workhold.verification.claims import claim_of
 from workhold.verification.listing import Listing, read_listing
 from workhold.verification.order import order_faults
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.part_in_floats import FloatOutline
 from workhold.verification.patterns import pattern_faults, stance
 from workhold.verification.seating import Judged, SeatingJudge
@@ -295,7 +295,7 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
     arcs = Workpiece.from_loops("arcs", [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, 0]]])
     pose = {"theta_deg": 0.0, "x": 0.0, "y": 0.0}
     for theta, is_inside in ((0.0, False), (-80.0, True), (-90.0, True), (-150.0, False)):
-        touched = touching_wall(Outline.of(arcs), {"peg": 1, "face": 1}, pose | {"theta_deg": theta}, False)
+        touched = touching_wall(BallOutline.of(arcs), {"peg": 1, "face": 1}, pose | {"theta_deg": theta}, False)
         assert touched.is_inside == is_inside, theta
     ends = {one["peg"]: one for one in own["contacts"] if one["peg"] in (1, 2)}
     exchanged = [ends[3 - one["peg"]] | {"peg": one["peg"]} if one["peg"] in ends else one for one in own["contacts"]]
@@ -315,7 +315,7 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_the_lowest_point_of_a_part_is_that_of_its_box(mirrored: bool) -> None:
-    rough = FloatOutline.of(Outline.of(BOWED).segments, BOWED)
+    rough = FloatOutline.of(BallOutline.of(BOWED).segments, BOWED)
     part = BOWED.turned_over if mirrored else BOWED
     for theta in range(0, 360, 7):
         low = part.placed(Pose(theta, 3.0, 5.0)).bounds[1]

@@ -14,7 +14,7 @@ from workhold import Workpiece
 from workhold.geometry.intersect import distance_to_segment
 from workhold.geometry.segment import Arc, Line
 from workhold.verification.balls import exact_point
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.sides import ArcSide, arc_side, line_side
 
 
@@ -26,7 +26,7 @@ def holds(ball: arb, value: float, tolerance: float = 1e-9) -> bool:
 @given(outlines(), seeds)
 def test_distances_and_gaps_are_those_of_the_floats(workpiece: Workpiece, seed: int) -> None:
     random = Random(seed)
-    outline = Outline.of(workpiece)
+    outline = BallOutline.of(workpiece)
     assert len(outline.segments) == len(workpiece.segments)
     for _ in range(4):
         x, y = random.uniform(-80, 80), random.uniform(-80, 80)
@@ -44,7 +44,7 @@ def test_distances_and_gaps_are_those_of_the_floats(workpiece: Workpiece, seed: 
 def test_slacks_are_the_ways_to_the_ends(workpiece: Workpiece, seed: int) -> None:
     """On a face moved out by an offset, also past its ends."""
     random = Random(seed)
-    outline = Outline.of(workpiece)
+    outline = BallOutline.of(workpiece)
     for face in workpiece.faces:
         side, segment, offset = outline.faces[face.number], face.segment, random.uniform(0.0, 3.0)
         parameter = random.uniform(-1.1, 1.1) * segment.half_extent
@@ -93,7 +93,7 @@ def test_a_point_beside_and_past_a_line() -> None:
 def test_a_circle_of_two_halves_is_one_face_without_ends() -> None:
     plate = [[-40, -30, 0], [40, -30, 0], [40, 30, 0], [-40, 30, 0]]
     workpiece = Workpiece.from_loops("plate", [plate, [[-7, 0, -1], [7, 0, -1]]])
-    side = Outline.of(workpiece).faces[4]
+    side = BallOutline.of(workpiece).faces[4]
     assert isinstance(side, ArcSide)
     assert side.whole
     assert side.slacks(exact_point(5, 0), arb(2)) == ()
@@ -103,7 +103,7 @@ def test_a_circle_of_two_halves_is_one_face_without_ends() -> None:
 
 def test_lines_that_continue_each_other_are_one_face() -> None:
     workpiece = Workpiece.from_loops("bar", [[[0, 0, 0], [20, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
-    outline = Outline.of(workpiece)
+    outline = BallOutline.of(workpiece)
     slacks = outline.faces[0].slacks(exact_point(20, -3), arb(3))
     assert [slack.contains(far) for slack, far in zip(slacks, (20, 40), strict=True)] == [True, True]
     assert {index for index, _ in outline.others[0]} == {2, 3, 4}

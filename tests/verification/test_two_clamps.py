@@ -25,13 +25,14 @@ from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.restrictions import Restrictions, circle_zone
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.account import too_few_contacts
-from workhold.verification.contacts import Pose as Balls
+from workhold.verification.contacts import BallContact
+from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.listing import listing_of
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.repeats import Seen
-from workhold.verification.rules.hardware import Hardware
-from workhold.verification.rules.stroke import WAYS, clamp_place
-from workhold.verification.seat import Push, closure_margin, ratio_of
+from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.rules.stroke import WAYS, Stroke, clamp_place
+from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, Standing
 from workhold.verification.undecided import undecided_faults
 
@@ -230,7 +231,7 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
 def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
     """With all counts adjusted: the pairs of each seat are derived."""
     result = results["all"]
-    rules = Hardware(result.toolkit)
+    rules = ToolkitRules(result.toolkit)
     seen = Seen(rules)
     again = [index for index, fixture in enumerate(result) if seen.add(index, fixture) is not None]
     kept = np.delete(np.arange(len(result)), again[0])
@@ -246,7 +247,7 @@ def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen = Seen(Hardware(best.toolkit))
+    seen = Seen(ToolkitRules(best.toolkit))
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     refuted = 0
@@ -268,7 +269,7 @@ def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) ->
 
 def standing(fixture: Fixture, workpiece: Workpiece, toolkit: Plate) -> Standing:
     """The seat of a fixture, at its pose as it is written."""
-    rules, outline = Hardware(toolkit), Outline.of(workpiece)
+    rules, outline = ToolkitRules(toolkit), BallOutline.of(workpiece)
     pose = Balls.of(arb(fixture.pose.theta_deg) * arb.pi() / 180, arb(fixture.pose.x), arb(fixture.pose.y), arb(0))
     locators = [rules.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs[:3]]
     return Standing.of(fixture, locators, pose, Query(workpiece, toolkit), rules, outline)
@@ -334,10 +335,47 @@ def test_clamps_that_touch_each_other_are_none() -> None:
     assert "the clamps meet: they overlap by 0.2 mm" not in words[0] and "they overlap by 0.2 mm" in words[1]
 
 
+@pytest.mark.parametrize(("radius", "overlap"), [(4.999, False), (5.001, True)])
+def test_bodies_of_clamps_keep_clear_of_each_other_as_well(radius: float, overlap: bool) -> None:
+    """One along a row from its hole at x = 30 to its tip at 0, and a tip 10 mm above the middle of that."""
+    pose = Balls.of(arb(0), arb(0), arb(0), arb(-30), arb(-40))
+    side, thick = BallOutline.of(part(BLOCK)).faces[0], arb(radius)
+    lying = BallContact((arb(30), arb(0)), (arb(1), arb(0)), side, thick)
+    upright = BallContact((arb(20), arb(50)), (arb(0), arb(1)), side, thick, travel=1)
+    found = [finding.reason for finding in Stroke((10.0, 50.0), None).apart_findings(lying, upright, pose)]
+    assert found == (["the clamps meet: they overlap by 0.002 mm"] if overlap else [])
+    assert list(Stroke(None, None).apart_findings(lying, upright, pose)) == []
+
+
 def push(taken: tuple[float, float, float], share: float = 1.0) -> Push:
     """A clamp of which the locators take up so much."""
     a, b, c = (arb(value) for value in taken)
     return Push((a, b, c), arb(share))
+
+
+@pytest.mark.parametrize(
+    ("apart", "first", "words"),
+    [
+        (1e-5, push((0.5, -0.5, 0.5)), ""),
+        (
+            1e-7,
+            push((0.5, -0.5, 0.5)),
+            "the locators do not fix the pose: their wrenches have a determinant of only 1e-07",
+        ),
+        (40.0, push((9e5, -0.5, 0.5)), ""),
+        (40.0, push((2e6, -0.5, 0.5)), "clamp 1 presses a locator with 2e+06 times its own force"),
+        (40.0, push((0.5, -0.5, 0.5), 1e-7), "clamp 1 does not push the part"),
+        (40.0, push((0.5, 0.5, 0.5)), "clamp 1 holds the part without the other"),
+    ],
+)
+def test_what_clamps_may_do_at_a_seat(apart: float, first: Push, words: str) -> None:
+    """Two locators so far apart below the part and one beside it, whose determinant that is; another clamp keeps all."""
+    points = [(arb(0), arb(0)), (arb(apart), arb(0)), (arb(0), arb(5))]
+    normals = [(arb(0), arb(1)), (arb(0), arb(1)), (arb(1), arb(0))]
+    seat, second = LocatorWrenches(points, normals), push((0.5, -0.5, 0.5))
+    balance = SeatBalance(points, normals, seat, (first, second), ratio_of(first, second))
+    found = [finding.reason for finding in balance.push_findings(1.0)]
+    assert found == [] if not words else words in found[0]
 
 
 def test_ratio_and_margin_in_closed_form() -> None:

@@ -14,10 +14,11 @@ from workhold.drawing.plates import STILL, draw_wall, labelled
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
 from workhold.family.copies import Packing
 from workhold.family.holding import shifted
+from workhold.model.carrier import Carrier
 from workhold.model.fixture import Fixture
 from workhold.model.holes import column_letters
 from workhold.model.result import FixtureTable, fixture_at
-from workhold.model.toolkit import Carrier, Toolkit
+from workhold.model.toolkit import Toolkit
 from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
 

@@ -7,7 +7,7 @@ mark becomes what the question is called there: an option of the command line, a
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from workhold.errors import InputError
 
@@ -22,6 +22,9 @@ __all__ = [
     "SECTION",
     "UNIT",
     "UnitAskedError",
+    "refuse_axis",
+    "refuse_fit",
+    "refuse_layers",
     "worded",
 ]
 
@@ -60,3 +63,40 @@ def worded(sentence: str, called: Mapping[str, str] | None) -> str:
         first, mark, rest = sentence.partition(LAYERS)
         sentence = first + mark + rest.replace(f" {LAYERS} ", ", ")
     return MARK.sub(lambda mark: names.get(mark[0][1:-1], mark[0][1:-1]), sentence)
+
+
+def refuse_layers(layers: Sequence[str] | None) -> None:
+    """Refuse a choice of layers for a file that has none.
+
+    Raises
+    ------
+    InputError
+        When layers were chosen.
+    """
+    if layers is not None:
+        raise InputError(f"layers can be chosen in DXF files only: leave {LAYERS} out.")
+
+
+def refuse_fit(fit: float | None) -> None:
+    """Refuse a fit for a file that holds lines and arcs only.
+
+    Raises
+    ------
+    InputError
+        When a fit was given.
+    """
+    if fit is not None:
+        raise InputError(f"a JSON file holds lines and arcs only: leave {FIT} out.")
+
+
+def refuse_axis(axis: str | None, section: float | None) -> None:
+    """Refuse a view of a solid for a file that holds a flat drawing.
+
+    Raises
+    ------
+    InputError
+        When an axis or a section was chosen.
+    """
+    if axis is not None or section is not None:
+        question = AXIS if axis is not None else SECTION
+        raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")

@@ -44,32 +44,30 @@ from workhold.kernels.seating.candidates import (
     complete_three,
     complete_two,
     fourths,
+    judge_balance,
     settle,
-    tell_balance,
 )
 from workhold.kernels.seating.closing import close_jaws
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
     CELL_LENGTH,
     DEPTH,
-    HOLDING_LENGTH,
     NODE_LENGTH,
-    Families,
+    PAIR_LENGTH,
+    DescentWorkSpace,
     Given,
     JawCells,
+    Manifolds,
     Obstacles,
-    Ways,
-    WorkSpace,
+    SelfMotions,
 )
 from workhold.kernels.seating.concentric import about_one_center
-from workhold.kernels.seating.fibres import free_poses
-from workhold.kernels.seating.following import begin_ways, free_until, take_up
-from workhold.kernels.seating.four_contacts import third_of_jaw, two_holdings
+from workhold.kernels.seating.configuration_slices import free_poses
+from workhold.kernels.seating.descent_paths import begin_descents, free_until, take_up
+from workhold.kernels.seating.equilibrium_manifolds import first_sets, write_beyond, write_each_once
+from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
 from workhold.kernels.seating.freedom import first_of_each, free_runs, keep_free
-from workhold.kernels.seating.gathering import GATHERED_LENGTH, GROUP_LENGTH, gathered
-from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.leaving import leave
-from workhold.kernels.seating.loose import first_sets, write_beyond, write_each_once
 from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces, tangent_chords
 from workhold.kernels.seating.pieces import clearances
@@ -77,11 +75,13 @@ from workhold.kernels.seating.places import leads_out, write_places
 from workhold.kernels.seating.pocketed import tip_in_pocket
 from workhold.kernels.seating.reaching import reach_out
 from workhold.kernels.seating.silhouettes import cover_same
-from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_held, slides_squared, slides_stopped
+from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_blocked, slides_held, slides_squared
 from workhold.kernels.seating.standing import Stood, stationary
 from workhold.kernels.seating.sticking import least_friction
+from workhold.kernels.seating.subset_candidates import GATHERED_LENGTH, SUBSET_LENGTH, gathered
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.kernels.seating.turning import SHAPE_LENGTH
+from workhold.kernels.seating.two_contact_curves import make_cells
 from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.kernels.statics.quality import figures
 from workhold.kernels.statics.reactions import LOAD_LENGTH
@@ -172,7 +172,7 @@ def seats_and_passes() -> Calls:
     outline.setflags(write=False)
     curves = np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
     parts = np.zeros((2, 2), np.int64)
-    given = Given(np.zeros((0, HOLDING_LENGTH)), *curves, rows, pegs, sides, parts)
+    given = Given(np.zeros((0, PAIR_LENGTH)), *curves, rows, pegs, sides, parts)
     wall = np.zeros((0, 6)), np.zeros(3)
     obstacles = Obstacles(rows, points, np.zeros((0, 3)), pegs, sides, parts, 1.0, 0.0, *wall)
     cells, stack, roots = np.zeros((0, CELL_LENGTH)), np.zeros((DEPTH, 2)), np.zeros((0, ROOT_LENGTH))
@@ -183,15 +183,15 @@ def seats_and_passes() -> Calls:
     yield write_middles, (cells, given, between)
     yield three_contacts, (cells, between, given, np.zeros((0, 3)), 0.0, stack, np.zeros((5, 0)), roots)
     jaw = JawCells(cells, 0, 0.0)
-    yield two_holdings, (jaw, jaw, given, np.zeros((2, CELL_LENGTH)), stack, none, roots)
+    yield two_pairs, (jaw, jaw, given, np.zeros((2, CELL_LENGTH)), stack, none, roots)
     yield third_of_jaw, (cells, between, given, np.zeros((0, 3)), stack, roots)
     for complete in (complete_three, complete_two, complete_third):
         yield complete, (roots, given, pockets, many)
     yield fourths, (many, 0, given, many)
     gathering = 0.0, 0.0, given, np.zeros(CANDIDATE_LENGTH), np.zeros((0, GATHERED_LENGTH))
-    yield gathered, (np.zeros((0, GROUP_LENGTH)), many, many, many, *gathering)
+    yield gathered, (np.zeros((0, SUBSET_LENGTH)), many, many, many, *gathering)
     slides = np.zeros((0, SLIDE_LENGTH))
-    for slid in (slides_squared, slides_stopped):
+    for slid in (slides_squared, slides_blocked):
         yield slid, (slides, given, many)
     yield slides_held, (slides, jaw, jaw, given, pockets, many)
     yield at_tangencies, (0, 0, np.zeros((0, ALPHA + 1)), 0.0, 0.0, given, many)
@@ -199,7 +199,7 @@ def seats_and_passes() -> Calls:
     yield about_one_center, (given, 0.0, 0.0, many)
     yield on_three_faces, (slides, given, 0.0, 0.0, np.zeros((0, THREE_FACES)))
     seen, fours, known = np.zeros((4, 4)), np.zeros((0, 4)), np.zeros(0, np.int8)
-    along, loose = Ways.room(0, 0), Families.room(0, 0)
+    along, loose = SelfMotions.room(0, 0), Manifolds.room(0, 0)
     yield keep_free, (along, obstacles, seen)
     yield free_runs, (along, 0.0, 0.0, obstacles, fours, seen, none, pegs, loose)
     yield first_sets, (fours, loose, none, 1.0, 1.0, none)
@@ -211,15 +211,15 @@ def seats_and_passes() -> Calls:
     stood = Stood(rows, np.zeros((0, 3)), parts, wall[0], np.zeros((0, 3)), points, wall[1])
     yield stationary, (stood, np.zeros((0, SHAPE_LENGTH)), stack, many)
     yield tip_in_pocket, (stood, points, pockets, stack, points, many)
-    yield tell_balance, (many, 0.0, 0.0, np.zeros(0, np.int8))
+    yield judge_balance, (many, 0.0, 0.0, np.zeros(0, np.int8))
     yield settle, (many, given, 1.0, np.zeros((4, 4)), np.zeros((4, 5)))
-    work, ways = WorkSpace.for_pieces(0), np.zeros((0, 4))
+    work, ways = DescentWorkSpace.for_pieces(0), np.zeros((0, 4))
     begins, nodes = np.zeros(1, np.int64), np.zeros((0, NODE_LENGTH))
     yield close_jaws, (ways, points, 1.0, obstacles, ways, work, np.zeros(0, np.int8), begins, nodes)
     yield reach_out, (ways, ways, np.zeros(0), 1.0, 1.0, obstacles, work, begins, nodes)
     followed = none, none, nodes, begins, ways, np.zeros((0, 4), np.int8)
     yield free_until, (*followed, 1.0, obstacles, np.zeros((4, 4)), none)
-    yield begin_ways, (many, 1.0, ways, points)
+    yield begin_descents, (many, 1.0, ways, points)
     yield (
         take_up,
         (none, none, none, none, nodes, begins, np.zeros(0, np.int8), ways, ways, points, np.zeros(0, np.int8)),
@@ -232,11 +232,11 @@ def seats_and_passes() -> Calls:
 
 
 # Kernels of seating of which many call the same ones: half of the work.
-HOLDINGS = (
+PAIR_KERNELS = (
     make_cells,
     write_middles,
     three_contacts,
-    two_holdings,
+    two_pairs,
     third_of_jaw,
     complete_three,
     at_tangencies,
@@ -251,9 +251,9 @@ HOLDINGS = (
 
 
 def half_of_seating(first: bool) -> Calls:
-    """The kernels of seating that are among the holdings, or the others."""
+    """The kernels of seating that are among ``PAIR_KERNELS``, or the others."""
     for kernel, arguments in seats_and_passes():
-        if (kernel in HOLDINGS) == first:
+        if (kernel in PAIR_KERNELS) == first:
             yield kernel, arguments
 
 
@@ -263,13 +263,13 @@ PARTS: dict[str, Callable[[], Calls]] = {
     "others": table_and_proof,
     "distances": distances,
     "clamps": clamps,
-    "holdings": partial(half_of_seating, True),
+    "curves": partial(half_of_seating, True),
     "seats": partial(half_of_seating, False),
 }
 # The parts that all searches need, and those of seating, in two shares of about the same length, for two processes. What a
 # search for two clamps needs besides is compiled when it is called, in a second.
 SEARCH = ("distances", "others"), ("crossings", "matrices")
-SEATING = ("seats",), ("holdings",)
+SEATING = ("seats",), ("curves",)
 
 
 def kernel_count(parts: Sequence[str]) -> int:

@@ -20,14 +20,15 @@ from workhold.statics.judging import unfit
 
 __all__ = ["BestFixtures"]
 
-# Records are decided when so many are waiting, or as many as are to be kept if that is more: soon where they tell a margin
-# that further ones must reach, else in blocks that cost the least.
+# Records are decided when so many are waiting, or as many as are to be kept if that is more: soon where they
+# tell a margin that further ones must reach, else in blocks that cost the least.
 WAITING, WAITING_LONG = 64, 1 << 13
 
 
 @define(eq=False)
 class BestFixtures:
-    """The best of the fixtures added so far, as many as the query asks for, and those that tie with the last of them.
+    """The best of the fixtures added so far, as many as the query asks for, and those that tie with the last
+    of them.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ class BestFixtures:
         return self.problem.query.best
 
     def add(self, records: NDArray[np.float64]) -> float:
-        """Take records (N, 19) from the search; the closure margin that further ones must reach."""
+        """Takes records (N, 19) from the search; the closure margin that further ones must reach."""
         self.waiting.append(records)
         least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
         if sum(map(len, self.waiting)) >= max(least, self.most):
@@ -62,7 +63,7 @@ class BestFixtures:
         return self.margin
 
     def decide(self) -> None:
-        """Decide the records that wait, and keep the best."""
+        """Decides the records that wait, and keeps the best."""
         waiting, self.waiting = self.waiting, []
         parts = [] if self.kept is None else [self.kept]
         fresh = 0

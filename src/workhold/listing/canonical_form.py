@@ -45,7 +45,8 @@ class Candidates:
     Parameters
     ----------
     standing : (N,) how many of the pegs stand on the carrier that stands still.
-    feature, column, row : touched feature and lattice place; columns count on each carrier, rows on both alike.
+    feature, column, row : touched feature and lattice place; columns count on each carrier, rows on both
+        alike.
     theta : (N,) orientation of the workpiece in radians.
     point : (N, 4, 2) peg centres in the workpiece's frame about the centre of the part, in mm.
     gap : (N,) x distance in mm from the rightmost standing to the leftmost moving peg.
@@ -88,7 +89,7 @@ def joined(parts: list[Candidates]) -> Candidates:
 
 
 def canonical_form(c: Candidates, swapped: int) -> Candidates:
-    """Bring candidates to the one form each fixture is listed in (``kernels.contact.canonical_form.to_canonical_form``)."""
+    """Candidates in the one form each fixture is listed in, see ``kernels.contact.canonical_form``."""
     theta, column, row = c.theta.copy(), c.column.copy(), c.row.copy()
     order = np.empty((len(c.standing), 4), np.int64)
     to_canonical_form(c.standing, theta, column, row, order, swapped, SAME_POSE)
@@ -119,15 +120,16 @@ def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
 
 
 def most_holes(problem: Problem) -> tuple[int, int]:
-    """The largest column and row that candidates in the listed form can have: no two pegs are farther apart than the part
-    is wide."""
+    """The largest column and row that candidates in the listed form can have: no two pegs are farther apart
+    than the part is wide."""
     lattice = problem.frame.lattice
     reach = problem.diameter + abs(lattice.row_offset)
     return int(reach / lattice.pitch_x) + 2, int(reach / lattice.pitch_y) + 2
 
 
 def packed_holes(c: Candidates, most: tuple[int, int] | None = None) -> list[IntArray]:
-    """Arrangements and holes of candidates, packed; ``most`` are the largest column and row that may be packed alike."""
+    """Arrangements and holes of candidates, packed; ``most`` are the largest column and row that may be
+    packed alike."""
     column, row = (c.column.max(initial=0), c.row.max(initial=0)) if most is None else most
     return packed((c.standing[:, None], MOST_PEGS), (c.column, column), (c.row, row))
 
@@ -155,7 +157,8 @@ def clusters(
 
 
 def same_holes_first(c: Candidates) -> tuple[IntArray, IntArray]:
-    """Order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in all these."""
+    """Order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in
+    all these."""
     words = packed_holes(c)
     order = order_of(key_of(*words, c.theta))
     fresh = changes([word[order] for word in words])
@@ -164,10 +167,12 @@ def same_holes_first(c: Candidates) -> tuple[IntArray, IntArray]:
 
 
 def listed_once(c: Candidates) -> Candidates:
-    """Sort by type, holes, orientation, faces and place, and drop repetitions: same holes, same pose.
+    """Candidates sorted by type, holes, orientation, faces and place, without those of the same holes and
+    pose.
 
-    A contact exactly at a tangent joint is found on both faces that meet there. Two fixtures with the same holes and the
-    same orientation may still differ in where the workpiece lies; one number that mixes all that tells them apart.
+    A contact exactly at a tangent joint is found on both faces that meet there. Two fixtures with the same
+    holes and the same orientation may still differ in where the workpiece lies; one number that mixes all
+    that tells them apart.
     """
     if len(c.standing) == 0:
         return c
@@ -182,18 +187,20 @@ def listed_once(c: Candidates) -> Candidates:
 
 
 def place_number(point: Array, gap: Array) -> Array:
-    """A number (N,) that tells places of the workpiece apart: of a peg's centre (N, 2) in its frame and gaps (N,) in mm."""
+    """A number (N,) that tells places of the workpiece apart: of a peg's centre (N, 2) in its frame and gaps
+    (N,) in mm."""
     return np.asarray(point @ np.array([1.0, 0.7548776662]) + 0.5698402910 * gap)
 
 
 def different_places(c: Candidates, first: IntArray, group: IntArray) -> IntArray:
-    """Which of candidates ``first`` (K,), in ``group`` (K,) by their holes and orientations, are no repetitions, in the
-    order of group, faces and place; see :func:`listed_once`."""
+    """Which of candidates ``first`` (K,), in ``group`` (K,) by their holes and orientations, are no
+    repetitions, in the order of group, faces and place; see :func:`listed_once`."""
     place = place_number(c.point[first, 0], c.gap[first])
     order = np.lexsort([place, group])
     new = np.ones(len(order), np.bool_)
     new[1:] = (group[order][1:] != group[order][:-1]) | (np.diff(place[order]) >= SAME_PLACE)
-    # Of the same fixture on several faces, the one on the lowest is kept, whatever rounding makes of its place.
+    # Of the same fixture on several faces, the one on the lowest is kept, whatever rounding makes of its
+    # place.
     run = np.empty(len(order), np.int64)
     run[order] = np.cumsum(new)
     features = (c.feature[first], c.feature.max())

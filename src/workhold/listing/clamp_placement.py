@@ -1,8 +1,8 @@
 """Where a clamp is bolted: in a hole of its line, behind its tip.
 
 A clamp slides along a line of the plate's own holes. With a travel it is bolted in the nearest hole behind
-its tip from which its body, a capsule from the hole to the tip, clears locators and part, and that is still
-on the plate. Without a travel the clamp is its tip alone, which has no hole.
+its tip that will do. From there its body, a capsule from the hole to the tip, clears locators and part.
+Without a travel the clamp is its tip alone, which has no hole.
 """
 
 from __future__ import annotations

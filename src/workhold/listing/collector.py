@@ -1,8 +1,9 @@
-"""Fixtures gathered while a search goes on: decided, listed once, measured, counted and ranked, in memory or on the disk.
+"""Fixtures collected while a search goes on: decided, listed once, measured, counted and ranked.
 
-Records come in the order of the search. Those decided are sorted by holes, so that fixtures found twice lie together; each
-part of that order is listed and measured on some thread; and the parts are sorted by rank. Rows of equal rank stay in the
-order of their identities. With a folder no more than a few parts are in memory at a time; the outcome does not depend on it.
+Records come in the order of the search. Those decided are sorted by holes, so that fixtures found twice lie
+together; each part of that order is listed and measured on some thread; and the parts are sorted by rank.
+Rows of equal rank stay in the order of their identities. With a folder no more than a few parts are in memory
+at a time; the outcome does not depend on it.
 """
 
 from __future__ import annotations
@@ -47,8 +48,8 @@ class ResultCollector:
     problem : what was searched.
     pool : of threads that share the work.
     ahead : how many pieces of work may be under way.
-    cancel : when set, records that cannot be decided quickly are left, fixtures that are not measured soon are, and of
-        those measured no more than the best ``LISTED_LATE`` are listed.
+    cancel : when set, records that cannot be decided quickly are left, fixtures that are not measured soon
+        are, and of those measured no more than the best ``LISTED_LATE`` are listed.
     folder : of what does not stay in memory; None for memory alone.
     course : how far the deciding has come.
     found, distinct : numbers of fixtures and of sets of each arrangement, once they are measured.
@@ -79,7 +80,8 @@ class ResultCollector:
 
     @contextmanager
     def given_up_on_errors(self) -> Iterator[None]:
-        """Have what is being decided end soon when the block ends by an error or a signal: the pool waits for it."""
+        """Ends soon what is being decided when the block ends by an error or a signal: the pool waits for
+        it."""
         try:
             yield
         except BaseException:
@@ -87,14 +89,15 @@ class ResultCollector:
             raise
 
     def take(self, records: NDArray[np.float64]) -> float:
-        """Take records (N, 19) of the search, in its order; 0, the closure margin that further ones must reach."""
+        """Takes records (N, 19) of the search, in its order; 0, the closure margin that further ones must
+        reach."""
         self.course.total += len(records)
         for block in self.batches.add(records):
             self.decide(block)
         return 0.0
 
     def decide(self, block: NDArray[np.float64]) -> None:
-        """Have a block decided."""
+        """Has a block decided."""
         self.deciding.append(self.pool.submit(self.decided, block))
         while len(self.deciding) > self.ahead:
             self.keep(*self.deciding.popleft().result())
@@ -110,16 +113,16 @@ class ResultCollector:
         return SortedRun.of(key, astuple(candidates, recurse=False))
 
     def keep(self, run: SortedRun, account: Account) -> None:
-        """Keep decided fixtures."""
+        """Keeps decided fixtures."""
         self.by_holes.add(run)
         self.accounts.append(account)
 
     def add(self, candidates: Candidates, account: Account) -> None:
-        """Take fixtures that are decided already."""
+        """Takes fixtures that are decided already."""
         self.keep(self.by_their_holes(candidates), account)
 
     def finish_deciding(self, progress: Progress | None = None) -> Account:
-        """Wait for what is being decided; the account of all records."""
+        """Waits for what is being decided; the account of all records."""
         self.decide(self.batches.rest())
         while self.deciding:
             wait([self.deciding[0]], timeout=NAP)
@@ -130,7 +133,7 @@ class ResultCollector:
         return Account.together(self.accounts)
 
     def measure(self, progress: Progress | None = None) -> bool:
-        """List once, measure and count; whether nothing was left because somebody asked to stop."""
+        """Lists once, measures and counts; whether nothing was left because somebody asked to stop."""
         parts, done = self.by_holes.parts(), 0
         course = Course(len(parts), cancel=self.cancel)
         for table, turned in in_order(self.pool, self.ahead, self.measured_part, list(enumerate(parts))):
@@ -154,8 +157,8 @@ class ResultCollector:
         return done == len(parts)
 
     def measured_part(self, numbered: tuple[int, Callable[[], SortedRun]]) -> tuple[SortedRun, SortedRun | None]:
-        """The fixtures of a part in the order of their ranks; and of a symmetric workpiece the smallest of the forms that
-        its turns give them."""
+        """The fixtures of a part in the order of their ranks; and of a symmetric workpiece the smallest of
+        the forms that its turns give them."""
         number, part = numbered
         candidates = listed_once(Candidates(*part().columns))
         table = measured(placed(candidates, self.problem), self.problem)
@@ -176,7 +179,8 @@ class ResultCollector:
         return min(found, LISTED_LATE) if self.course.is_stopped else found
 
     def tables(self, progress: Progress | None = None) -> Iterator[FixtureTable]:
-        """The fixtures, best first, in tables one after the other; when somebody asks to stop, the first of them."""
+        """The fixtures, best first, in tables one after the other; when somebody asks to stop, the first of
+        them."""
         parts, listed = self.by_rank.parts(), 0
         for number, part in enumerate(in_order(self.pool, self.ahead, taken, parts), 1):
             rows = min(len(part), max(self.listed - listed, 0))

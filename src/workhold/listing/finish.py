@@ -1,4 +1,5 @@
-"""From the kernels' records to fixtures: decided, brought to the listed form, placed in the toolkit, listed once."""
+"""Fixtures made of the kernels' records: decided, brought to the listed form, placed in the toolkit, listed
+once."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ BLOCK = 1 << 14
 
 
 def finish(records: list[Array], problem: Problem, cancel: Event | None = None) -> tuple[Candidates, Account]:
-    """Decide records, bring them to the listed form and list them once, on this thread.
+    """Decides records, brings them to the listed form and lists them once, on this thread.
 
     Parameters
     ----------
@@ -49,8 +50,8 @@ def blocks_of(records: Iterable[Array]) -> Iterator[Array]:
 
 
 def listed_form(records: Array, problem: Problem, course: Course) -> tuple[Candidates, Account]:
-    """Records (N, 19) decided: the fixtures among them that fit the toolkit, in the form they are listed in, and an account
-    of all."""
+    """Records (N, 19) decided: the fixtures among them that fit the toolkit, in the form they are listed in,
+    and an account of all."""
     proven, account = decided(records, problem, course)
     candidates = canonical_form(candidates_of(proven, problem), problem.frame.swapped)
     fits = placeable(candidates, problem)
@@ -64,7 +65,7 @@ class Batches:
     waiting: list[Array] = field(factory=lambda: [np.zeros((0, record.RECORD_LENGTH))], init=False)
 
     def add(self, records: Array) -> list[Array]:
-        """Take records (N, 19); the blocks that are full."""
+        """Takes records (N, 19); the blocks that are full."""
         self.waiting.append(records)
         if sum(map(len, self.waiting)) < BLOCK:
             return []

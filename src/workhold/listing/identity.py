@@ -1,9 +1,9 @@
 """When two fixtures are the same, and how many sets they form under the rotations of a part onto itself.
 
-A fixture is named by whole numbers for its holes and lines, and by the pose, which says what is touched. Faces are
-left out, since a contact at a tangent joint is on two of them and only one is listed. Fixtures that a rotation of
-the part, or half a turn of the toolkit, carries into each other share the smallest of their images, which stands
-for the set.
+A fixture is named by whole numbers for its holes and lines, and by the pose, which says what is touched.
+Faces are left out, since a contact at a tangent joint is on two of them and only one is listed. Fixtures that
+a rotation of the part, or half a turn of the toolkit, carries into each other share the smallest of their
+images, which stands for the set.
 """
 
 from __future__ import annotations
@@ -60,8 +60,8 @@ class Identity:
         return len(self.rotations) > 1
 
     def smallest(self, table: FixtureTable) -> tuple[list[IntArray], Array]:
-        """The smallest images of fixtures under the rotations: packed whole numbers (N,), and orientations and places
-        (N, P)."""
+        """The smallest images of fixtures under the rotations: packed whole numbers (N,), and orientations
+        and places (N, P)."""
         x, y = self.toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
         forms = [self.form(table, x, y, sign) for sign in (1, -1)]
         halves = np.array([turns_into_itself(one, self.toolkit) for one in self.toolkit.arrangements])[
@@ -94,8 +94,8 @@ class Identity:
         return words, pose
 
     def form(self, table: FixtureTable, x: Array, y: Array, sign: int) -> tuple[list[IntArray], Array, Array]:
-        """What names fixtures but for the pose: packed whole numbers (N,), the place (N, 2) of the first peg, and how far
-        (N, M) ahead of it what moves is.
+        """What names fixtures but for the pose: packed whole numbers (N,), the place (N, 2) of the first peg,
+        and how far (N, M) ahead of it what moves is.
 
         Parameters
         ----------
@@ -127,8 +127,8 @@ class Identity:
         return packed(*numbers), anchor, sign * away[:, : None if self.every else 0]
 
     def count(self, words: Sequence[IntArray], pose: Array, arrangement: IntArray) -> IntArray:
-        """How many sets of each arrangement (A,) there are among fixtures with these smallest images, of arrangements
-        (N,)."""
+        """How many sets of each arrangement (A,) there are among fixtures with these smallest images, of
+        arrangements (N,)."""
         order = np.lexsort(words[::-1])
         fresh = changes([word[order] for word in words])
         order, fresh = clusters(order, fresh, *((numbers, SAME_IMAGE) for numbers in pose.T))
@@ -141,8 +141,11 @@ def half_turns(toolkit: Toolkit) -> bool:
 
 
 def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
-    """Whether half a turn of everything makes an arrangement the same again: with as many pegs on either jaw, or with two
-    clamps in opposite directions, unless a wall stays where it is."""
+    """Whether half a turn of everything makes an arrangement the same again.
+
+    It does with as many pegs on either jaw, or with two clamps in opposite directions on a plate without a
+    wall.
+    """
     ways = [
         toolkit.carriers[number].travel for number in arrangement.carriers if toolkit.carriers[number].on is not None
     ]
@@ -154,7 +157,8 @@ def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
 
 
 def precedes(words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array) -> BoolArray:
-    """Which (N,) of some whole numbers (N,) each and poses (N, P) come before others in lexicographic order."""
+    """Which (N,) of some whole numbers (N,) each and poses (N, P) come before others in lexicographic
+    order."""
     before = np.zeros(len(pose), np.bool_)
     for one, other in zip(pose.T[::-1], other_pose.T[::-1], strict=True):
         before = (one < other - SAME_IMAGE) | ((one <= other + SAME_IMAGE) & before)

@@ -1,4 +1,4 @@
-"""From the records of any engine to the result a user sees."""
+"""Results that a user sees, made of the records of any engine."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class Work:
     ----------
     complete : whether it came to its end.
     statistics : see ``Result.statistics``.
-    cells, examined : ranges of orientation and sets of four contacts that were examined for the records (None: no more
-        than the records).
+    cells, examined : ranges of orientation and sets of four contacts that were examined for the records
+        (None: no more than the records).
     """
 
     complete: bool
@@ -60,7 +60,7 @@ def listed_result(
     cancel: Event | None = None,
     threads: int = 1,
 ) -> Result:
-    """Check, list once, rank and count the fixtures that an engine found.
+    """Checks, lists once, ranks and counts the fixtures that an engine found.
 
     Parameters
     ----------

@@ -1,11 +1,12 @@
-"""Near copies among fixtures: what a machinist would call one way to hold the part.
+"""Near duplicates among fixtures: what a machinist would call one way to hold the part.
 
 Glossary
 --------
-alike : of the same arrangement, with the same faces touched by each carrier's pegs, and all square or all tilted; up to
-    rotations and mirror images of the part onto itself and the half turn that swaps the carriers. Such fixtures differ by a
-    row or a column more or less, or by the part's symmetry.
-entry : the first of the fixtures that are alike, and how many come after it.
+near duplicates : fixtures of one arrangement, all square or all tilted, whose pegs touch the same faces for
+    each carrier. Rotations and mirror images of the part onto itself and the half turn that swaps the
+    carriers make no difference. Such fixtures differ by a row or a column more or less, or by the part's
+    symmetry.
+entry : the first of some near duplicates, and how many come after it.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ __all__ = ["Entries", "entries", "first_of_each", "near_duplicates"]
 
 IntArray = NDArray[np.int64]
 
-# Fixtures judged together, and those, from the best on, among which fixtures that are alike are sought.
+# Fixtures judged together, and those, from the best on, among which near duplicates are sought.
 BLOCK, MOST_LOOKED_AT = 1 << 14, 200_000
 
 
@@ -39,7 +40,7 @@ class Entries:
     Parameters
     ----------
     index : (E,) of the fixture that stands for each entry, in the order of the list.
-    like : (E,) how many more are like it.
+    like : (E,) how many near duplicates come after it.
     unfit : how many fixtures are left out because they are none for a workshop.
     """
 
@@ -49,8 +50,8 @@ class Entries:
 
 
 def entries(result: Result, with_unfit: bool = False) -> Entries:
-    """The entries of the best of a result; fixtures that are none for a workshop make entries only if asked for, or if there
-    are no others."""
+    """The entries of the best of a result; fixtures that are none for a workshop make entries only if asked
+    for, or if there are no others."""
     table = result.table
     blocks = (table.take(slice(start, start + BLOCK)) for start in range(0, len(table), BLOCK))
     bad = np.concatenate([np.zeros(0, np.bool_), *(unfit(block.quality, result.query.tolerance) for block in blocks)])
@@ -68,11 +69,12 @@ def first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """A number (N,) for each fixture, the same for those that are alike."""
+    """A number (N,) for each fixture, the same for near duplicates."""
     if len(table) == 0:
         return np.zeros(0, np.int64)
     carriers = toolkit.peg_carriers(table.arrangement)
-    # Faces of each carrier's pegs in order, the first carrier's in front; with the pegs of each type where they belong.
+    # Faces of each carrier's pegs in order, the first carrier's in front; with the pegs of each type where
+    # they belong.
     order = np.lexsort((table.face, carriers), axis=-1)
     faces = np.take_along_axis(table.face.astype(np.int64), order, axis=1)
     tilted = (table.quality[:, TILT] > 0.0).astype(np.int64)
@@ -83,7 +85,8 @@ def near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit)
 
 
 def distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
-    """Where each distinct row of whole numbers (N, 6) from 0 upward comes first, in their order, and which (N,) each is."""
+    """Where each distinct row of whole numbers (N, 6) from 0 upward comes first, in their order, and which
+    (N,) each is."""
     words = np.column_stack(packed((keys, int(keys.max()))))
     # One word, which is enough for most parts, is sorted far sooner than rows.
     _, first, member = np.unique(
@@ -93,7 +96,7 @@ def distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """Of each row (K, 6) of arrangement, tilt and faces the first of its images under the symmetries of the part."""
+    """The first image of each row (K, 6) of arrangement, tilt and faces under the symmetries of the part."""
     numbers = np.array([face.number for face in workpiece.faces])
     carriers = toolkit.peg_carriers(keys[:, 0].astype(np.int8))
     # Type I of a vise: as many pegs on either carrier, which a half turn swaps.
@@ -101,8 +104,8 @@ def smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> I
     images = np.array(symmetries([face.segment for face in workpiece.faces]))
     to = np.zeros((len(images), int(numbers.max()) + 1), np.int64)
     to[:, numbers] = numbers[images]
-    # The first image begins with the lowest number that one of the faces can have, so of many symmetries only those are
-    # tried that give one of them its lowest.
+    # The first image begins with the lowest number that one of the faces can have, so of many symmetries only
+    # those are tried that give one of them its lowest.
     lowest = to == to.min(axis=0)
     few = np.argsort(~lowest, axis=0, kind="stable")[: lowest[:, numbers].sum(axis=0).max()]
     tried = few[:, keys[:, 2:]].transpose(0, 2, 1).reshape(-1, len(keys))

@@ -1,10 +1,10 @@
 """Placing fixtures in the holes of the carriers, and which of them cannot be placed.
 
-Pegs stand in the columns nearest to those of the other carrier, moved outward only as far as the largest travel or a blocked
-hole demands, first the standing ones, then the moving ones. Rows are shifted so that the lowest is 0, or centred where the
-carriers have an end; a blocked hole shifts them no farther than it must. A clamp on a plate of locators is
-bolted in a hole of its line instead (``listing.clamp_placement``). All this is in the frame of the search; the way
-back to the toolkit's own is the last step.
+Pegs stand in the columns nearest to those of the other carrier. The largest travel or a blocked hole may
+demand that they move outward, first the standing ones, then the moving ones. Rows are shifted so that the
+lowest is 0, or centred where the carriers have an end; a blocked hole shifts them no farther than it must. A
+clamp on a plate of locators is bolted in a hole of its line instead (``listing.clamp_placement``). All this
+is in the frame of the search; the way back to the toolkit's own is the last step.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ class Arranged:
 
     Parameters
     ----------
-    candidates : the fixtures, those that a half turn leaves in their arrangement turned half way round where only that fits.
+    candidates : the fixtures, those that a half turn leaves in their arrangement turned half way round where
+        only that fits.
     standing, moving : (N,) columns that each carrier's pegs stand outward.
     lift : (N,) rows that all pegs are shifted up.
     fits : (N,) whether there is such a place at all.
@@ -60,7 +61,7 @@ class Arranged:
 
 
 def arranged(c: Candidates, problem: Problem) -> Arranged:
-    """Find every fixture's place on the carriers."""
+    """The place of every fixture on the carriers."""
     angles, frame = problem.restrictions.angles, problem.frame
     clear = bodies_clear(c, frame)
     found = placed_as_is(c, frame)
@@ -113,8 +114,8 @@ def bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
 
 
 def at_angle(theta: Array, angles: tuple[tuple[float, float], ...], frame: Frame) -> BoolArray:
-    """Which orientations (N,) in radians lie, seen from the toolkit, in one of some ranges in degrees; in any when there are
-    none."""
+    """Which orientations (N,) in radians lie, seen from the toolkit, in one of some ranges in degrees; in any
+    when there are none."""
     if not angles:
         return np.ones(len(theta), np.bool_)
     degrees = np.degrees(theta) + 90.0 * frame.quarters
@@ -167,7 +168,8 @@ def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntAr
 
     Parameters
     ----------
-    room : (N, 4) fewest and most columns outward in all, and columns free on the standing and on the moving carrier.
+    room : (N, 4) fewest and most columns outward in all, and columns free on the standing and on the moving
+        carrier.
     spare : (N,) rows free above the topmost peg, where the carriers have an end.
     """
     c = found.candidates
@@ -196,7 +198,8 @@ def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntAr
 
 
 def outward_moves(standing: int, moving: int) -> Iterator[tuple[int, int]]:
-    """Columns to move outward on carriers of so many, the fewest in all first, then the most on the standing one."""
+    """Columns to move outward on carriers of so many, the fewest in all first, then the most on the standing
+    one."""
     for total in range(standing + moving - 1):
         for two in range(max(0, total - standing + 1), min(total, moving - 1) + 1):
             yield total - two, two
@@ -253,7 +256,7 @@ def placeable(c: Candidates, problem: Problem) -> BoolArray:
 
 
 def placed(c: Candidates, problem: Problem) -> FixtureTable:
-    """Write candidates that fit out as holes of the toolkit; of their quality only the closure margin is known yet."""
+    """The table of candidates that fit; of their quality only the closure margin is known yet."""
     if problem.frame.moving.on is not None:
         return placed_with_clamp(c, problem)
     frame = problem.frame
@@ -270,7 +273,7 @@ def placed(c: Candidates, problem: Problem) -> FixtureTable:
 
 
 def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
-    """Write candidates that fit out as holes of a plate and of the clamp that is bolted on it."""
+    """The table of candidates that fit on a plate with a clamp that is bolted on it."""
     frame, placement = problem.frame, clamp_placement(c, problem)
     hole, _ = placement.nearest(problem)
     column = np.concatenate([c.column[:, LOCATORS], hole[:, None]], axis=1)

@@ -44,7 +44,7 @@ class RankedTable:
         return int(self.count.found.sum())
 
     def add(self, table: FixtureTable) -> None:
-        """Take fixtures; where only the best are asked for, keep those that may be among them."""
+        """Takes fixtures; where only the best are asked for, keeps those that may be among them."""
         query, most = self.query, self.query.best
         self.count.add(table)
         self.tables.append(measured_as(table, query, self.touched))

@@ -1,9 +1,10 @@
 """The order of fixtures: by figures of quality, the first of them counting most.
 
-Every figure but the last counts to two significant digits, so that the next one has a say among fixtures that are about
-as good; the last counts to nine decimals. Fixtures that are none for a workshop come after all others. What is equal then
-stays in the order of types, holes, poses and faces. A fixture's place depends on no other fixture, so the best of a part of
-a list are those of the whole that are in it, and ``--best`` needs no more than a part at a time.
+Every figure but the last counts to two significant digits, so that the next one has a say among fixtures that
+are about as good. The last counts to nine decimals. Fixtures that are none for a workshop come after all
+others. What is equal then stays in the order of types, holes, poses and faces. A fixture's place depends on
+no other fixture. So the best of a part of a list are those of the whole that are in it, and ``--best`` needs
+a part at a time.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ def measured(table: FixtureTable, problem: Problem) -> FixtureTable:
 
 
 def measured_as(table: FixtureTable, query: Query, touched: Touched) -> FixtureTable:
-    """A table with all its figures of quality; those of closure are as the search found them, to the last digit."""
+    """A table with all its figures of quality; those of closure are as the search found them, to the last
+    digit."""
     quality = quality_of(
         table,
         query.workpiece,
@@ -53,12 +55,14 @@ def measured_as(table: FixtureTable, query: Query, touched: Touched) -> FixtureT
 def ranking_keys(
     quality: NDArray[np.float64], ranking: Sequence[str], tolerance: Tolerance
 ) -> list[NDArray[np.float64]]:
-    """Numbers (N,) to sort by, the first counting most and smaller being better, from figures of quality (N, 12)."""
+    """Numbers (N,) to sort by, the first counting most and smaller being better, from figures of quality (N,
+    12)."""
     return [unfit(quality, tolerance).astype(np.float64), *figure_keys(quality, ranking)]
 
 
 def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
-    """Numbers (N,) to sort by, as of :func:`ranking_keys`, without regard to what is no fixture for a workshop."""
+    """Numbers (N,) to sort by, as of :func:`ranking_keys`, without regard to what is no fixture for a
+    workshop."""
     keys = []
     for place, key in enumerate(ranking):
         number = ranked_number(key)

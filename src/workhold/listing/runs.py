@@ -1,11 +1,13 @@
-"""Rows too many for memory, sorted by keys: runs that are sorted each, kept on the disk, and merged part by part.
+"""Rows too many for memory, sorted by keys: runs that are sorted each, kept on the disk, and merged part by
+part.
 
-Reference: D. E. Knuth, *The Art of Computer Programming* 3 (1998), section 5.4; runs are cut at the same keys instead of
-being merged row by row, which array operations do better.
+Reference: D. E. Knuth, *The Art of Computer Programming* 3 (1998), section 5.4; runs are cut at the same keys
+instead of being merged row by row, which array operations do better.
 
 Glossary
 --------
-key : bytes that compare as rows are to be ordered; rows of one key stay in the order in which they were added.
+key : bytes that compare as rows are to be ordered; rows of one key stay in the order in which they were
+    added.
 run : rows in the order of their keys.
 part : the rows of all runs between two keys.
 """
@@ -33,7 +35,8 @@ Columns = tuple[NDArray[Any], ...]
 One = TypeVar("One")
 Other = TypeVar("Other")
 
-# Rows merged at a time, rows in memory that go to the disk together, and rows between two keys that are remembered.
+# Rows merged at a time, rows in memory that go to the disk together, and rows between two keys that are
+# remembered.
 PART, ROOM, STRIDE = 1 << 15, 1 << 18, 1 << 9
 SIGN = np.uint64(1 << 63)
 # The largest number of 64 bits.
@@ -41,8 +44,8 @@ MOST = (1 << 64) - 1
 
 
 def key_of(*numbers: NDArray[Any]) -> Keys:
-    """Keys (N,) by which rows are in the lexicographic order of numbers (N,) each: whole ones from 0 upward, or floats, of
-    which NaN comes last."""
+    """Keys (N,) by which rows are in the lexicographic order of numbers (N,) each: whole ones from 0 upward,
+    or floats, of which NaN comes last."""
     words = np.empty((len(numbers[0]), len(numbers)), ">u8")
     for k, values in enumerate(numbers):
         if values.dtype.kind == "f":
@@ -57,8 +60,9 @@ def key_of(*numbers: NDArray[Any]) -> Keys:
 def order_of(keys: Keys) -> NDArray[np.intp]:
     """The order (N,) of keys, equal ones as they stand.
 
-    Comparing bytes takes long. So the words that keys are made of become one number, each by its distance from the least of
-    its kind or, where that is too much for a number, by its rank; the number is sorted with the index behind it.
+    Comparing bytes takes long. So the words that keys are made of become one number, each by its distance
+    from the least of its kind or, where that is too much for a number, by its rank; the number is sorted with
+    the index behind it.
     """
     count = max(len(keys), 1)
     number, size = np.zeros(len(keys), np.uint64), 1
@@ -74,8 +78,8 @@ def order_of(keys: Keys) -> NDArray[np.intp]:
 
 
 def small(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.uint64], int]:
-    """Numbers (N,) in the order of others, from 0 upward, and how many there may be: no more than ``most``, or as few as
-    there are different ones."""
+    """Numbers (N,) in the order of others, from 0 upward, and how many there may be: no more than ``most``,
+    or as few as there are different ones."""
     least = int(word.min())
     span = int(word.max()) - least + 1
     return (word - np.uint64(least), span) if span <= most else ranked(word)
@@ -113,7 +117,7 @@ class SortedRun:
 
     @property
     def some_keys(self) -> Keys:
-        """Its first key, and every so many-th after it."""
+        """The first key, and every so many-th after it."""
         return self.keys[::STRIDE]
 
     def place(self, key: Keys) -> int:
@@ -127,7 +131,8 @@ class SortedRun:
 
 @define(eq=False)
 class Scratch:
-    """A file without a name that any thread may write to its end or read; it is gone when the program ends, however it does.
+    """A file without a name that any thread may write to its end or read; it is gone when the program ends,
+    however it does.
 
     Parameters
     ----------
@@ -142,7 +147,7 @@ class Scratch:
         self.file = TemporaryFile(dir=self.folder, buffering=0)  # noqa: SIM115
 
     def write(self, array: NDArray[Any]) -> int:
-        """Write the bytes of an array; the place where they begin."""
+        """Writes the bytes of an array; the place where they begin."""
         content = np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
         with self.lock:
             place = self.file.seek(0, os.SEEK_END)
@@ -214,7 +219,7 @@ class Runs:
         return sum(map(len, self.runs)) + sum(map(len, self.fresh))
 
     def add(self, run: SortedRun) -> None:
-        """Add rows.
+        """Adds rows.
 
         Raises
         ------
@@ -228,8 +233,8 @@ class Runs:
             self.fresh = []
 
     def parts(self) -> list[Callable[[], SortedRun]]:
-        """What gives the rows of all runs in the order of their keys, part by part; rows of one key are in one part. At
-        least one, where there is any run."""
+        """What gives the rows of all runs in the order of their keys, part by part; rows of one key are in
+        one part. At least one, where there is any run."""
         runs = [*self.runs, *self.fresh]
         keys = np.sort(np.concatenate([run.some_keys for run in runs]))
         pivots = np.unique(keys[PART // STRIDE :: PART // STRIDE])
@@ -242,14 +247,15 @@ class Runs:
         return lambda: SortedRun.joined([run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)])
 
     def close(self) -> None:
-        """Give back memory and disk."""
+        """Gives back memory and disk."""
         self.runs, self.fresh = [], []
         if self.scratch is not None:
             self.scratch.file.close()
 
 
 def in_order(pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]) -> Iterator[Other]:
-    """What work gives for each item, in the order of the items; so many at a time are begun and not yet taken."""
+    """What work gives for each item, in the order of the items; so many at a time are begun and not yet
+    taken."""
     running: deque[Future[Other]] = deque()
     try:
         for item in items:

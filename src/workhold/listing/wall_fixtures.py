@@ -183,14 +183,14 @@ class WallCollector:
         return len(self.ranked) + sum(len(part) for parts in self.waiting for part in parts)
 
     def add(self, found: Sequence[WallFixtures | None]) -> None:
-        """Take the fixtures of each direction, where there are some."""
+        """Takes the fixtures of each direction, where there are some."""
         for parts, part in zip(self.waiting, found, strict=True):
             parts += [] if part is None else [part]
         if sum(len(part) for parts in self.waiting for part in parts) > WAITING:
             self.list_waiting()
 
     def list_waiting(self) -> None:
-        """List what waits."""
+        """Lists what waits."""
         for number, (parts, problem) in enumerate(zip(self.waiting, self.problems, strict=True)):
             if parts:
                 table = placed_on_wall(WallFixtures.joined(parts), problem)

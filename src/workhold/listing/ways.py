@@ -19,7 +19,8 @@ __all__ = ["joined_ways", "summed"]
 
 
 def joined_ways(results: Sequence[Result], query: Query) -> Result:
-    """The results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the query."""
+    """The results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the
+    query."""
     table = joined_tables([result.table for result in results])
     # Of a search that was stopped no more than the best of a way may be listed: of all then, too.
     cut = [] if query.best else [len(result) for result in results if 0 < len(result) < sum(result.found.values())]
@@ -46,8 +47,8 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
 
 
 def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:
-    """The remarks of several results as those of all: how many candidates are undecided, and why there is no fixture only
-    where none has any; of several reasons the one that most candidates got to."""
+    """The remarks of several results as those of all: how many candidates are undecided, or why no result has
+    a fixture. Of several reasons it is the one that most candidates got to."""
     proofs = [result.proof for result in results if result.proof is not None]
     verified, undecided = sum(proof.verified for proof in proofs), sum(len(proof.undecided) for proof in proofs)
     reasons = no_fixture_notes(query.toolkit.wording)

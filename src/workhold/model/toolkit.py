@@ -160,7 +160,8 @@ class Toolkit:
     @property
     def tips(self) -> int:
         """How many clamps hold the part, whose contacts are the last of a fixture."""
-        return sum(self.carriers[number].contact is CLAMP_TIP for number in self.arrangements[0].carriers)
+        carriers = self.carriers
+        return sum(carriers[number].contact is CLAMP_TIP for number in self.arrangements[0].carriers)
 
     @property
     def travels(self) -> int:

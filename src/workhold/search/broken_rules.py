@@ -1,8 +1,9 @@
-"""Why no contacts on a lattice make a fixture: every simultaneous contact is asked which rule it breaks first.
+"""Why no contacts on a lattice make a fixture: every simultaneous contact is asked which rule it breaks
+first.
 
-The rules are asked one after the other, as a person would: what the user ruled out, whether four pegs can touch at all,
-contact margin, smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts as computed, in
-plain numbers; the proof that there is no fixture is the search's.
+The rules are asked one after the other, as a person would. First comes what the user ruled out, then whether
+four pegs can touch at all, contact margin, smallest gap, closure, clamping, and the place on the carriers.
+The counts are of contacts as computed, in plain numbers; the proof that there is no fixture is the search's.
 """
 
 from __future__ import annotations
@@ -77,12 +78,13 @@ class ContactSets:
 
 
 def removals_of(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> Removals:
-    """How many contacts there are without any restriction, what each rule takes away of them, and what comes nearest.
+    """How many contacts there are without any restriction, what each rule takes away of them, and what comes
+    nearest.
 
     Parameters
     ----------
-    alone : whether one clamp is to hold the part; of two the contacts are those of three locators and one of them. None
-        comes nearest, as each is a clamp short.
+    alone : whether one clamp is to hold the part; of two the contacts are those of three locators and one of
+        them. None comes nearest, as each is a clamp short.
     """
     contacts = all_contacts(problem, threads)
     first, removals = restriction_removals(problem, threads, len(contacts.margin))
@@ -127,11 +129,11 @@ def all_contacts(problem: Problem, threads: int | None) -> ContactSets:
 
 
 def facing(c: Candidates, swapped: int) -> Candidates:
-    """Contacts with the moving chord on the right, where the carriers may swap their ``swapped`` pegs: those whose
-    moving pegs are farther right in the middle.
+    """Contacts with the moving chord on the right, where the carriers may swap their ``swapped`` pegs: those
+    whose moving pegs are farther right in the middle.
 
-    Either chord may be on the left, and each set of four contacts is found both ways. Where neither is farther right, the
-    lower one is taken for the right one.
+    Either chord may be on the left, and each set of four contacts is found both ways. Where neither is
+    farther right, the lower one is taken for the right one.
     """
     across, upward = rotated(c.point[..., 0], c.point[..., 1], c.theta[:, None])
     right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
@@ -177,7 +179,8 @@ Rule = tuple[str, Callable[[ContactSets], BoolArray], Callable[[ContactSets], tu
 
 
 def rules(problem: Problem, unit: Unit) -> list[Rule]:
-    """The rules in the order they are asked: words, which contacts keep it, and which broken one comes nearest and why."""
+    """The rules in the order they are asked: words, which contacts keep it, and which broken one comes
+    nearest and why."""
     margin, frame = problem.contact_margin, problem.frame
     out: list[Rule] = []
     if margin > 0.0:

@@ -25,7 +25,8 @@ Records = NDArray[np.float64]
 FIRST_ORIENTATION = -0.7320508075688772
 # A block is told the closure margin known so many blocks before it; as many may run at the same time.
 LAG = 8
-# Seconds in which threads are left alone: waking for every small block takes the interpreter from them, and time to wake up.
+# Seconds in which threads are left alone: waking for every small block takes the interpreter from them, and
+# time to wake up.
 NAP = 5e-4
 # Blocks handed out for each thread beyond those that are done: more than end in a nap.
 AHEAD = 32
@@ -82,15 +83,16 @@ def run_blocks(
     stop: Callable[[], None] | None = None,
     pool: Executor | None = None,
 ) -> tuple[list[Records], list[Block]]:
-    """Do all blocks on some threads.
+    """Does all blocks on some threads.
 
     Parameters
     ----------
-    receive : called from this thread with the records of each block, in the order of the blocks; they are then not kept. It
-        returns the closure margin that further fixtures must reach, which is told to the block ``LAG`` places later: so what
-        a block leaves out does not depend on how fast the others are.
+    receive : called from this thread with the records of each block, in the order of the blocks; they are
+        then not kept. It returns the closure margin that further fixtures must reach, which is told to the
+        block ``LAG`` places later: so what a block leaves out does not depend on how fast the others are.
     look : called from this thread with the records of each block as it finishes, in any order.
-    stop : called once when the work is cancelled or given up: blocks that run then end soon, with what they have found.
+    stop : called once when the work is cancelled or given up: blocks that run then end soon, with what they
+        have found.
     pool : of so many threads, where there is one already.
 
     Returns
@@ -133,18 +135,21 @@ def finished_blocks(
     stop: Callable[[], None] | None,
     pool: Executor | None,
 ) -> Iterator[tuple[int, Records, bool]]:
-    """Blocks as they finish: number, records, and whether they came to their end; no new one is begun once ``cancel`` is
-    set.
+    """Blocks as they finish: number, records, and whether they came to their end; no new one is begun once
+    ``cancel`` is set.
 
     Parameters
     ----------
-    margins : grows by one for each block received; a block waits for the one ``LAG`` places before it. None for no margins.
+    margins : grows by one for each block received; a block waits for the one ``LAG`` places before it. None
+        for no margins.
     """
     first, running, whole = 0, dict[Future[Records], int](), True
-    # Other work in the pool is not to wait behind many blocks, and margins are told to blocks as they are known.
+    # Other work in the pool is not to wait behind many blocks, and margins are told to blocks as they are
+    # known.
     alone = pool is None and margins is None
     most = threads * (AHEAD if alone else 2)
-    # Told by the threads themselves: asking each future what has become of it takes longer than a small block.
+    # Told by the threads themselves: asking each future what has become of it takes longer than a small
+    # block.
     ended = SimpleQueue[Future[Records]]()
     with ThreadPoolExecutor(max_workers=threads) if pool is None else nullcontext(pool) as workers:
         try:

@@ -17,10 +17,12 @@ __all__ = ["contacts_of", "count_contacts"]
 
 
 def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | None = None) -> int:
-    """How many sets of four pegs of the two jaws touch a workpiece at the same time, each contact inside its feature.
+    """How many sets of four pegs of the two jaws touch a workpiece at the same time, each contact inside its
+    feature.
 
-    Nothing else is asked of them: neither the gap between the jaws nor closure nor clamping. Sets that rest on a chord of
-    parallel faces and right pegs on faces square to the jaws' motion count only where they can be told apart.
+    Nothing else is asked of them: neither the gap between the jaws nor closure nor clamping. Sets that rest
+    on a chord of parallel faces and right pegs on faces square to the jaws' motion count only where they can
+    be told apart.
 
     Parameters
     ----------

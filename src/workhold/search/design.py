@@ -37,7 +37,8 @@ from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
 __all__ = ["Sink", "answer", "design"]
 
-# The part of the work, as progress tells it, that finding records is; the rest is deciding which of them are fixtures.
+# The part of the work, as progress tells it, that finding records is; the rest is deciding which of them are
+# fixtures.
 SEARCH = 0.9
 
 
@@ -63,14 +64,15 @@ def design(
     cancel: Event | None = None,
     preview: Preview | None = None,
 ) -> Result:
-    """Find every fixture of a workpiece in a toolkit, such as a vise.
+    """Finds every fixture of a workpiece in a toolkit, such as a vise.
 
     Parameters
     ----------
     workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force, listing : see
         :class:`workhold.model.query.Query`.
     seating, opening, foolproof : the same.
-    types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None is all.
+    types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None
+        is all.
     rank_by : the query's ranking.
     prefer : instead of a ranking, what is wanted most: "square", "strong", "precise" or "roomy".
     threads, progress, cancel, preview : see :func:`answer`.
@@ -111,28 +113,29 @@ def answer(
     preview: Preview | None = None,
     sink: Sink | None = None,
 ) -> Result:
-    """Find every fixture that a query asks for, or the best of them.
+    """Finds every fixture that a query asks for, or the best of them.
 
     Parameters
     ----------
-    threads : how many threads share the work; None for one on each processor. The result does not depend on it.
+    threads : how many threads share the work; None for one on each processor. The result does not depend on
+        it.
     progress : called from this thread as ``progress(fraction done, fixtures found so far)``.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
-    preview : called from this thread now and then with some fixtures found so far, as a result marked incomplete; not in the
-        first 0.3 s.
+    preview : called from this thread now and then with some fixtures found so far, as a result marked
+        incomplete; not in the first 0.3 s.
     sink : takes the fixtures, which are then not held in memory all at once; the result comes without them.
 
     Returns
     -------
     Result
-        Fixtures best first (see ``listing.ranking``); those that are equally good in the order of their holes,
-        orientation, faces and place.
+        Fixtures best first (see ``listing.ranking``); those that are equally good in the order of their
+        holes, orientation, faces and place.
 
     Raises
     ------
     InputError
-        For faces that do not exist, a peg that fits nowhere along the part, restrictions that leave nothing to touch, and
-        a number of threads that is none.
+        For faces that do not exist, a peg that fits nowhere along the part, restrictions that leave nothing
+        to touch, and a number of threads that is none.
 
     Examples
     --------

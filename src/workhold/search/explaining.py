@@ -1,4 +1,5 @@
-"""Why there is no fixture: what each rule takes away of the contacts, what comes nearest, and which single change helps."""
+"""Why there is no fixture: what each rule takes away of the contacts, what comes nearest, and which single
+change helps."""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ HELP_SECONDS = 10.0
 
 
 def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -> Explanation:
-    """Explain why there is no fixture that a query asks for.
+    """Explains why there is no fixture that a query asks for.
 
     Parameters
     ----------
@@ -71,7 +72,8 @@ def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
 
 
 def nearest_turn(query: Query, result: Result) -> str:
-    """Where angles were asked for, how far beyond them the part can be held, without warnings if that can be."""
+    """Where angles were asked for, how far beyond them the part can be held, without warnings if that can
+    be."""
     if not query.restrictions.angles or result.query.restrictions.angles:
         return ""
     quality = result.table.quality
@@ -90,8 +92,8 @@ def nearest_turn(query: Query, result: Result) -> str:
 
 
 def changes(query: Query, unit: Unit) -> Iterator[tuple[str, Callable[[], Query], Mapping[str, Any] | None]]:
-    """Changes of a query to try, one at a time: in words, what makes the query, or finds that there is none such, and the
-    fields of the toolkit that it changes, if it does."""
+    """Changes of a query to try, one at a time: in words; what makes the query, or finds that there is none
+    such; and the fields of the toolkit that it changes, if it does."""
     asked, toolkit = query.restrictions, query.toolkit
     if asked.avoid:
         if len(asked.avoid) > 1:
@@ -122,7 +124,8 @@ def held_in_another(query: Query, change: Change) -> Query:
 
 
 def held_in(query: Query, toolkit: Toolkit) -> Query:
-    """A query in another toolkit of the kind, where that has another number of clamps without what only the first has."""
+    """A query in another toolkit of the kind, where that has another number of clamps without what only the
+    first has."""
     if toolkit.peg_count == query.toolkit.peg_count:
         return evolve(query, toolkit=toolkit)
     return evolve(query, toolkit=toolkit, arrangements=None, ranking=None, listing=None)

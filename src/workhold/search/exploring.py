@@ -1,4 +1,5 @@
-"""Which toolkit to buy: the same part tried in many, with the number of fixtures and the first choice in each."""
+"""Which toolkit to buy: the same part tried in many, with the number of fixtures and the first choice in
+each."""
 
 from __future__ import annotations
 
@@ -44,7 +45,7 @@ class Explored:
 
 
 def explore(queries: Iterable[tuple[str, Query | InputError]], cancel: Event | None = None) -> Iterator[Explored]:
-    """Answer the same query for one toolkit after the other.
+    """Answers the same query for one toolkit after the other.
 
     Parameters
     ----------
@@ -74,8 +75,8 @@ def first_choice(
 ) -> Explored | None:
     """The toolkit whose first fixture stands first among those of all; None when none has a fixture.
 
-    A fixture for a workshop goes before one that is none, and what is sold, as ``is_sold`` says of a name, before what
-    nobody sells.
+    A fixture for a workshop goes before one that is none, and what is sold, as ``is_sold`` says of a name,
+    before what nobody sells.
     """
     able = [item for item in explored if item.figures]
     if not able:

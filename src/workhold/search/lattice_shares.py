@@ -1,8 +1,8 @@
 """The search for two clamps on a lattice, in shares: the seats of one range of orientations after the other.
 
-Three locators alone fix the pose, and both clamps follow in closed form; so the contacts of three locators
-and one clamp that the search of each direction proves, not asked to close, are all that pairs are made of.
-Ranges keep no more than the seats of one of them in memory.
+Three locators alone fix the pose, and both clamps follow in closed form. So pairs are made of the contacts of
+three locators and one clamp that the search of each direction proves, not asked to close. Ranges keep no more
+than the seats of one of them in memory.
 """
 
 from __future__ import annotations

@@ -1,12 +1,15 @@
-"""Where round pegs on straight lines touch a part that lies flush on a wall, in closed form and with bounds of the error.
+"""Where round pegs on straight lines touch a part that lies flush on a wall, in closed form and with bounds
+of the error.
 
-In the wall's frame a part lies on a hull edge: u runs along it from its start, v up from it. The lines are rows, of one v
-each, or columns, of one u each; every one meets a straight feature in one point at most and an arc in two.
+In the wall's frame a part lies on a hull edge: u runs along it from its start, v up from it. The lines are
+rows, of one v each, or columns, of one u each; every one meets a straight feature in one point at most and an
+arc in two.
 
-Bounds of the error. Everything is exact but for the rounding of the tangent of the hull edge, by ``turn`` radians, and of
-sums and products of lengths up to ``size`` mm, by ``off`` mm together. A contact is then off by ``off`` over the sine of the
-angle at which its line meets the feature, and its normal by ``turn`` and, on an arc, by that over the radius; the factors
-below are generous. Where a line only grazes an arc there is no bound, and the contact is decided in balls.
+Bounds of the error. Everything is exact but for the rounding of the tangent of the hull edge, by ``turn``
+radians, and of sums and products of lengths up to ``size`` mm, by ``off`` mm together. A contact is then off
+by ``off`` over the sine of the angle at which its line meets the feature, and its normal by ``turn`` and, on
+an arc, by that over the radius; the factors below are generous. Where a line only grazes an arc there is no
+bound, and the contact is decided in balls.
 """
 
 from __future__ import annotations
@@ -36,8 +39,8 @@ IntArray = NDArray[np.int64]
 
 # Half a unit in the last place of a double.
 ROUNDING = 1.2e-16
-# mm and radians. What lies further past the end of an arc is no contact, however it is rounded: where a line does not graze
-# the arc, its place is off by less.
+# mm and radians. What lies further past the end of an arc is no contact, however it is rounded: where a line
+# does not graze the arc, its place is off by less.
 PAST_END = 1e-4
 # Pairs of lines and features looked at together.
 TOGETHER = 1 << 19
@@ -62,7 +65,8 @@ class PartOnWall:
 
 
 def part_on_wall(rows: Array, start: Array, end: Array) -> PartOnWall:
-    """Features (F, 12) of a part lying on the hull edge from a start to an end (2,), all about the same point."""
+    """Features (F, 12) of a part lying on the hull edge from a start to an end (2,), all about the same
+    point."""
     step = end - start
     length = float(np.hypot(*step))
     (tx, ty), out = step / length, rows.copy()
@@ -115,8 +119,8 @@ class PinContacts:
 def pin_contacts_on(
     lying: PartOnWall, chosen: tuple[int, int], levels: Array, upright: bool, margin: float
 ) -> PinContacts:
-    """Contacts of pegs on lines with some features, at least nearly ``margin`` mm inside their ends; at a tangent joint with
-    both features that meet there.
+    """Contacts of pegs on lines with some features, at least nearly ``margin`` mm inside their ends; at a
+    tangent joint with both features that meet there.
 
     Parameters
     ----------
@@ -173,8 +177,9 @@ def on_arcs(
     round_ = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     some = rows[round_]
     radius, place = some[:, RADIUS], some[:, along[1]]
-    # Beside a grazing line the square root below is of what rounding leaves: the place is off by no more than both roots.
-    # Its normal is across the line to within its swing, so no contact there is told to press, but by balls.
+    # Beside a grazing line the square root below is of what rounding leaves: the place is off by no more than
+    # both roots. Its normal is across the line to within its swing, so no contact there is told to press, but
+    # by balls.
     least = 16.0 * lying.off * radius
     low, high = heights(some, across, 3.0 * np.sqrt(least) + PAST_END)
     line, which = np.nonzero(np.abs(levels[:, None] - (place + (low + high) / 2.0)) <= (high - low) / 2.0)
@@ -217,14 +222,16 @@ def half_angles(rows: Array) -> Array:
 
 
 def least_ahead(rows: Array) -> Array:
-    """By how many mm (F,) contacts lie along the axes of arcs (F, 12) at least, of those that are not far past the ends."""
+    """The least mm (F,) that contacts lie along the axes of arcs (F, 12), of those that are not far past the
+    ends."""
     angle = half_angles(rows)
     return np.asarray(np.where(angle >= np.pi, -np.inf, rows[:, RADIUS] * np.cos(angle)))
 
 
 def heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
-    """Least and largest coordinates (F,) in mm from their centres of contacts with arcs (F, 12) that are not far past the
-    ends, and ``spare`` (F,) mm more; ``across`` are the columns of their axes' parts across the coordinate and along it."""
+    """Least and largest coordinates (F,) in mm from their centres of contacts with arcs (F, 12) that are not
+    far past the ends, and ``spare`` (F,) mm more; ``across`` are the columns of their axes' parts across the
+    coordinate and along it."""
     turn, half = np.arctan2(np.abs(rows[:, across[0]]), rows[:, across[1]]), half_angles(rows)
     low = -np.cos(np.maximum(np.pi - turn - half, 0.0))
     return rows[:, RADIUS] * low - spare, rows[:, RADIUS] * np.cos(np.maximum(turn - half, 0.0)) + spare

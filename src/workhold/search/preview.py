@@ -32,7 +32,8 @@ ENOUGH = 1_000
 class Previews:
     """Shows fixtures while the search goes on; each preview holds those of the ones before it.
 
-    Only what is decided quickly is shown. The results are marked incomplete, and their counts are of what they list.
+    Only what is decided quickly is shown. The results are marked incomplete, and their counts are of what
+    they list.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ class Previews:
         self.hurry.set()
 
     def add(self, records: NDArray[np.float64]) -> None:
-        """Take records (N, 19) that the search found, and show some if it is time."""
+        """Takes records (N, 19) that the search found, and shows some if it is time."""
         if self.shown is not None and len(self.shown.standing) >= ENOUGH:
             return
         if len(records):

@@ -36,7 +36,8 @@ class Removals:
 
     @classmethod
     def together(cls, found: Sequence[Removals]) -> Removals:
-        """The removals of several directions as one, with what came nearest where the most was left longest."""
+        """The removals of several directions as one, with what came nearest where the most was left
+        longest."""
         # A rule may be asked twice in one direction, early where that saves work and again at its place.
         counts: dict[tuple[str, int], tuple[int, int]] = {}
         for one in found:

@@ -1,9 +1,9 @@
 """The first fixtures of a list with their seating, ordered anew by it.
 
-A search finds and ranks fixtures by figures that do without seating. Of the first of them, as many as a query asks, the
-seating is worked out, each pattern of pegs once; then they are ordered by the query's ranking, in which the warnings of the
-seating count as those of quality do. What is equal keeps the order that it had. Those whose seating is not as asked are
-left out, and so are then all whose seating was not worked out.
+A search finds and ranks fixtures by figures that do without seating. The seating of the first of them, as many
+as a query asks for, is worked out, each pattern of pegs once. Then they are ordered by the query's ranking, in
+which the warnings of the seating count as those of quality do. Equal fixtures keep their order. Those whose
+seating is not as asked are left out, and so are then all whose seating was not worked out.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ SEARCHED = 0.3
 
 
 class Sink(Protocol):
-    """What takes a result too large for memory.
+    """A sink for results too large for memory.
 
     Attributes
     ----------
@@ -47,13 +47,17 @@ class Sink(Protocol):
     def folder(self) -> Path: ...
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Take a result and its fixtures, so many, best first, in tables one after the other; fewer when somebody asks to
-        stop."""
+        """Takes a result and its fixtures, best first, in tables one after the other.
+
+        Parameters
+        ----------
+        listed : how many fixtures there are; fewer come when somebody cancels.
+        """
 
 
 @frozen
 class SeatingWork:
-    """How seating is worked out.
+    """A query whose seating is worked out, and how.
 
     Parameters
     ----------
@@ -77,7 +81,7 @@ def seated_answer(
     progress: Progress | None = None,
     cancel: Event | None = None,
 ) -> Result:
-    """Answer a query, and work out the seating of the first fixtures if it asks for that.
+    """Answers a query, and finds the seating of the first fixtures if it asks for that.
 
     Parameters
     ----------
@@ -107,11 +111,12 @@ def deliver_seated(
     progress: Progress | None,
     cancel: Event | None,
 ) -> Result:
-    """Hand over what a query with seating asks for, as :func:`seated_answer` finds it; the result comes without fixtures.
+    """Delivers what :func:`seated_answer` finds; the result that is returned has no fixtures.
 
     Parameters
     ----------
-    search : answers a query without seating, watched by ``progress`` and ``cancel``; a ``sink`` takes its fixtures.
+    search : answers a query without seating, watched by ``progress`` and ``cancel``; a ``sink`` takes its
+        fixtures.
 
     Raises
     ------
@@ -122,9 +127,9 @@ def deliver_seated(
     if is_put_in_by_hand(query):
         by_hand = SeatedSink(sink, SeatingWork(query, threads, None, cancel))
         return put_in_by_hand(search(query.without_seating, progress=progress, cancel=cancel, sink=by_hand), query)
-    told = None if progress is None else rising(progress)
-    work = SeatingWork(query, threads, stage(told, SEARCHED, 1.0), cancel)
-    share, taker = stage(told, 0.0, SEARCHED), SeatedSink(sink, work)
+    whole = None if progress is None else rising(progress)
+    work = SeatingWork(query, threads, stage(whole, SEARCHED, 1.0), cancel)
+    share, taker = stage(whole, 0.0, SEARCHED), SeatedSink(sink, work)
     result = search(query.without_seating, progress=share, cancel=cancel, sink=taker)
     return evolve(result, query=query)
 
@@ -135,7 +140,7 @@ def is_put_in_by_hand(query: Query) -> bool:
 
 
 def refuse_unasked(query: Query) -> None:
-    """Refuse what cannot be asked of seating.
+    """Refuses what cannot be asked of seating.
 
     Raises
     ------
@@ -152,7 +157,7 @@ def refuse_unasked(query: Query) -> None:
 
 
 def put_in_by_hand(result: Result, query: Query) -> Result:
-    """A result of two clamps as that of the query with seating: the same fixtures, and how the part is put in."""
+    """The result of a query with seating for two clamps: the same fixtures, and how the part is put in."""
     notes = (*result.reasons, by_hand_note()) if sum(result.found.values()) else result.reasons
     return evolve(result, query=query, notes=notes)
 
@@ -161,12 +166,12 @@ def rising(progress: Progress) -> Progress:
     """A progress that never goes back."""
     highest = 0.0
 
-    def told(fraction: float, found: int) -> None:
+    def report(fraction: float, found: int) -> None:
         nonlocal highest
         highest = max(highest, fraction)
         progress(highest, found)
 
-    return told
+    return report
 
 
 def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Result:
@@ -177,9 +182,9 @@ def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Resu
     listed : how many fixtures it lists, where it does not have all of them.
     """
     query, count = work.query, min(work.query.seating or 0, len(result))
-    told = seatings_of(result.part(slice(0, count)), work)
-    looked_at = np.flatnonzero([one is not None for one in told])
-    known = [one for one in told if one is not None]
+    seatings = seatings_of(result.part(slice(0, count)), work)
+    looked_at = np.flatnonzero([one is not None for one in seatings])
+    known = [one for one in seatings if one is not None]
     order = order_of(result.table.take(looked_at), known, query)
     kept = [place for place in order.tolist() if is_as_asked(known[place], query)]
     notes = tuple(best_note(query.best) if is_best(note, result) and query.best else note for note in result.reasons)
@@ -205,32 +210,33 @@ def is_best(note: str, result: Result) -> bool:
     return result.query.best is not None and note == best_note(result.query.best)
 
 
-def is_as_asked(told: Seating, query: Query) -> bool:
+def is_as_asked(seating: Seating, query: Query) -> bool:
     """Whether a seating keeps the rules of a query."""
-    return (query.opening is None or told.catches(query.opening)) and (told.is_foolproof or not query.foolproof)
+    catches = query.opening is None or seating.catches(query.opening)
+    return catches and (seating.is_foolproof or not query.foolproof)
 
 
-def order_of(table: FixtureTable, told: Sequence[Seating], query: Query) -> NDArray[np.intp]:
+def order_of(table: FixtureTable, seatings: Sequence[Seating], query: Query) -> NDArray[np.intp]:
     """The order of fixtures with their seating, best first; equal ones as they are."""
-    further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in told]
-    quality = np.hstack([table.quality, np.array(further).reshape(len(told), len(SEATING_FIGURES))])
-    quality[:, WARNINGS] += [one.warning_count for one in told]
+    further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in seatings]
+    quality = np.hstack([table.quality, np.array(further).reshape(len(seatings), len(SEATING_FIGURES))])
+    quality[:, WARNINGS] += [one.warning_count for one in seatings]
     return rank(quality, query.ranking, query.tolerance)
 
 
 def seatings_of(result: Result, work: SeatingWork) -> list[Seating | None]:
-    """The seating of all fixtures of a result; None of those that were left undone."""
+    """The seatings of all fixtures of a result; None for fixtures that were left."""
     progress, count = work.progress, sum(result.found.values())
     # Loading it takes longer than many a search.
     from workhold.seating.solver import Solver
 
-    told = Solver(result.workpiece, result.toolkit).as_many(
+    made = Solver(result.workpiece, result.toolkit).as_many(
         result,
         threads=work.threads,
         progress=None if progress is None else lambda done: progress(done, count),
         cancel=work.cancel,
     )
-    return [None if one is None else evolve(one, opening=work.query.opening) for one in told]
+    return [None if one is None else evolve(one, opening=work.query.opening) for one in made]
 
 
 @frozen
@@ -252,7 +258,7 @@ class SeatedSink:
         return self.sink.folder
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Take a result and its fixtures, so many, best first, in tables one after the other."""
+        """Takes a result and its fixtures, best first, in tables one after the other."""
         if is_put_in_by_hand(self.work.query):
             self.sink.receive(put_in_by_hand(result, self.work.query), listed, tables)
             return

@@ -1,7 +1,7 @@
 """A search in shares, each of which is looked at whole before the next: what locators find in it, put
 together by the clamping.
 
-Locators fix the pose, in one of two ways: on a lattice of holes they are sought by ranges of orientation
+Locators fix the pose in one of two ways. On a lattice of holes they are sought by ranges of orientation
 (``search.lattice_shares``), beside a wall by the hull edges that may lie on it (``search.wall_shares``). In
 each share the contacts of locators with one clamp are found. With one clamp they are the fixtures; of two
 clamps they make seats, whose clamps are paired (``listing.clamped_seats``).
@@ -36,7 +36,7 @@ class Collector(Protocol):
     def __len__(self) -> int: ...
 
     def add(self, found: Any) -> None:
-        """Take the findings of a share."""
+        """Takes the findings of a share."""
 
     def result(self, account: Account, work: Work) -> Result:
         """The result of all."""

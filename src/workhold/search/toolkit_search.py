@@ -1,8 +1,8 @@
 """The search of a toolkit: its lattice steps and its blocks of work.
 
-Two pegs of one carrier are a lattice step apart; two carriers share the direction of rows and differ by the travel of the
-one that moves, along x in the frame of the search. What is particular to a toolkit is data (``model.toolkit``); which
-kernels seek an arrangement of pegs is said in ``KERNELS``.
+Two pegs of one carrier are a lattice step apart; two carriers share the direction of rows and differ by the
+travel of the one that moves, along x in the frame of the search. What is particular to a toolkit is data
+(``model.toolkit``); which kernels seek an arrangement of pegs is said in ``KERNELS``.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ __all__ = ["LEAST_BLOCKS", "ToolkitSearch", "lattice_steps"]
 
 Array = NDArray[np.float64]
 
-# Kernels of crossings and of sliding pairs for each arrangement of pegs, and how long the former take, relative to others.
+# Kernels of crossings and of sliding pairs for each arrangement of pegs, and how long the former take,
+# relative to others.
 KERNELS: dict[tuple[int, ...], tuple[Callable[..., Array], Callable[..., Array], float]] = {
     (2, 2): (two_and_two_cells, sliding_two_and_two, 1.0),
     (3, 1): (three_and_one_cells, sliding_three_and_one, 0.5),
@@ -49,15 +50,18 @@ KERNELS: dict[tuple[int, ...], tuple[Callable[..., Array], Callable[..., Array],
 # Cells of a half turn: so many for each pitch that L of the wrenches holds, within limits.
 CELLS_PER_PITCH = 10.0
 FEWEST_CELLS, MOST_CELLS = 96, 1024
-# Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a half turn.
+# Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a
+# half turn.
 PAIRS_PER_BLOCK = 2e6
 LEAST_BLOCKS = 8
 
 
 def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
-    """Differences between two holes of one of some carriers of one pitch, up to a length in mm, both directions of each.
+    """Differences between two holes of one of some carriers of one pitch, up to a length in mm, both
+    directions of each.
 
-    Left out are those between pegs whose bodies would overlap, and those that two holes free of blocks never have.
+    Left out are those between pegs whose bodies would overlap, and those that two holes free of blocks never
+    have.
     """
     pitch_x, pitch_y = carriers[0].pitch
     most_columns = min(max(carrier.column_count for carrier in carriers) - 1, int(longest / pitch_x))
@@ -86,7 +90,8 @@ def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
 def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Which differences (S, 2) of columns and rows two free holes of a carrier have.
 
-    Where rows have no end, only whole blocked columns are looked at: any pattern can be shifted up past a blocked hole.
+    Where rows have no end, only whole blocked columns are looked at: any pattern can be shifted up past a
+    blocked hole.
     """
     rows = 1 if carrier.rows is None else carrier.rows
     free = np.ones((carrier.column_count, rows), np.bool_)
@@ -104,7 +109,8 @@ def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray
 
 
 def tables_of(problem: Problem, loose: Array, threads: int, cancel: Event | None) -> CurveTable:
-    """The chord curves of a problem's loose features, those of each carrier apart unless its pegs touch the same."""
+    """The chord curves of a problem's loose features, those of each carrier apart unless its pegs touch the
+    same."""
     share = partial(curve_table, threads=threads, cancel=cancel)
     longest, (standing, moving) = problem.diameter + 1e-6, problem.frame.carriers
     if all(arrangement.pegs[-1] == 1 for arrangement in problem.toolkit.arrangements):
@@ -123,10 +129,11 @@ def tables_of(problem: Problem, loose: Array, threads: int, cancel: Event | None
 def may_lie_at(
     edges: Array, angles: Collection[tuple[float, float]], half_turns: int, turned: float = 0.0
 ) -> NDArray[np.bool_]:
-    """Which cells (K,) between edges (K + 1,) of psi hold orientations of the part in one of some ranges in degrees.
+    """Which cells (K,) between edges (K + 1,) of psi hold orientations of the part in one of some ranges in
+    degrees.
 
-    The part's angle is -psi, and ``turned`` degrees more in the toolkit than in the frame of the search; over one half turn
-    of cells an angle stands for its opposite as well.
+    The part's angle is -psi, and ``turned`` degrees more in the toolkit than in the frame of the search; over
+    one half turn of cells an angle stands for its opposite as well.
     """
     wanted = np.full(len(edges) - 1, not angles)
     low, turn = turned - np.degrees(edges[1:]), 180.0 * half_turns
@@ -181,8 +188,8 @@ class ToolkitSearch:
         threads: int = 1,
         cancel: Event | None = None,
     ) -> ToolkitSearch:
-        """The search of a problem, with its chord curves, or some of them once ``cancel`` is set; ``counting`` leaves the
-        contact margin out."""
+        """The search of a problem, with its chord curves, or some of them once ``cancel`` is set;
+        ``counting`` leaves the contact margin out."""
         if counting:
             problem = Problem.of(evolve(problem.query, contact_margin=0.0), problem.pairing)
         loose = loosened(problem.rows[:, :SEGMENT_LENGTH])
@@ -224,9 +231,11 @@ class ToolkitSearch:
     def blocks(
         self, types: Collection[str], least: int = LEAST_BLOCKS, within: tuple[float, float] | None = None
     ) -> list[Block]:
-        """Blocks of work that together find all fixtures of the arrangements of given names, about ``least`` or more for a
-        half turn; or all those ``within`` a range of orientations of the workpiece, in degrees, and some near it."""
-        # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
+        """Blocks of work that together find all fixtures of the arrangements of given names, about ``least``
+        or more for a half turn; or all those ``within`` a range of orientations of the workpiece, in degrees,
+        and some near it."""
+        # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot
+        # cross.
         cells = int(
             min(
                 max(CELLS_PER_PITCH * self.problem.wrench_length / self.frame.lattice.pitch_y, FEWEST_CELLS), MOST_CELLS
@@ -298,14 +307,14 @@ class ToolkitSearch:
         return self.stats[-1]
 
     def stop(self) -> None:
-        """Have the kernels that run in other threads return soon with what they have found."""
+        """Makes the kernels that run in other threads return soon with what they have found."""
         for counts in self.stats:
             counts[STOPPED] = 1
 
     def run(
         self, kernel: Callable[..., Array], low: float, high: float, stats: NDArray[np.int64], margin: float
     ) -> Array:
-        """Run a kernel with the curves of some orientations, for fixtures of a closure margin or more."""
+        """Runs a kernel with the curves of some orientations, for fixtures of a closure margin or more."""
         limits, members = self.limits_from(margin), members_of_cell(self.table, low, high)
         return kernel(members, self.features, self.table.curves, self.frame.lattice, limits, self.counting, stats)
 

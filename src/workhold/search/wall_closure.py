@@ -1,5 +1,5 @@
-"""Whether a locator and a clamp press a part against the wall: null vectors of the four wrenches in doubles, with bounds of
-their error."""
+"""Whether a locator and a clamp press a part against the wall: null vectors of the four wrenches in doubles,
+with bounds of their error."""
 
 from __future__ import annotations
 
@@ -46,8 +46,9 @@ class ContactPairs:
 
 
 def may_oppose(lying: PartOnWall, one: PinContacts, clamps: ContactPairs, problem: Problem) -> BoolArray:
-    """Which pairs (M,) :func:`closure` may find to press the part: those of whose normals a, b the parts along the wall are
-    opposed, for the locator's force is -b_u sign a_u times the length of the hull edge; about half of all."""
+    """Which pairs (M,) :func:`closure` may find to press the part: those of whose normals a, b the parts
+    along the wall are opposed, for the locator's force is -b_u sign a_u times the length of the hull edge;
+    about half of all."""
     length, two = problem.wrench_length, clamps.places
     reach, swing = (
         max(x.max(initial=0.0), y.max(initial=0.0)) for x, y in ((one.reach, two.reach), (one.swing, two.swing))
@@ -65,10 +66,12 @@ def seating(
     push: tuple[float, float],
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """As :func:`closure` of one of two clamps: wall and locator must fix the part, and the clamp must push.
+    """Null vectors, pushes and verdicts as of :func:`closure`, of one of two clamps: wall and locator must
+    fix the part, and the clamp must push.
 
-    The null vectors (M, 4) are the forces of the wall's two ends and the locator per unit of that on the clamp's face. With
-    the notation there the locator's is -b_u / a_u, and the determinant of the three wrenches is |a_u| l.
+    The null vectors (M, 4) are the forces of the wall's two ends and the locator per unit of that on the
+    clamp's face. With the notation there the locator's is -b_u / a_u, and the determinant of the three
+    wrenches is |a_u| l.
     """
     length = problem.wrench_length
     a, b = one.normal[locator], two.normal
@@ -113,13 +116,13 @@ def closure(
     push: tuple[float, float] | None,
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled; how much (M,) of its force the clamp passes
-    on in its direction; which pairs (M,) press the part, and of which that is open.
+    """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled; how much (M,) of its force
+    the clamp passes on in its direction; which pairs (M,) press the part, and of which that is open.
 
-    Where both pegs move towards the wall, ``push`` is None: they pass on what the wall takes up, in parts of the
-    second one's force. With normals a, b and moments m, M of locator and clamp about the start of the hull edge of
-    length l, lengths in parts of L, and p = -b_u sign a_u, q = |a_u|, the null vector is
-    (l (p a_v + q b_v) - t, t, p l, q l) with t = p m + q M.
+    Where both pegs move towards the wall, ``push`` is None: they pass on what the wall takes up, in parts of
+    the second one's force. With normals a, b and moments m, M of locator and clamp about the start of the
+    hull edge of length l, lengths in parts of L, and p = -b_u sign a_u, q = |a_u|, the null vector is (l (p
+    a_v + q b_v) - t, t, p l, q l) with t = p m + q M.
     """
     length = problem.wrench_length
     a, b = one.normal[locator], two.normal

@@ -21,8 +21,8 @@ __all__ = ["removals_beside_wall"]
 
 
 def removals_beside_wall(query: Query, alone: bool) -> Removals:
-    """How many pairs of contacts of locator and clamp there are in a toolkit of which one clamp moves, before any rule; what
-    each rule takes away of them; and what comes nearest.
+    """How many pairs of contacts of locator and clamp there are in a toolkit of which one clamp moves, before
+    any rule; what each rule takes away of them; and what comes nearest.
 
     Parameters
     ----------
@@ -42,7 +42,8 @@ def removals_beside_wall(query: Query, alone: bool) -> Removals:
 
 
 def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
-    """The rules in the order they are asked, with how many pairs are left after each; the first is no rule."""
+    """The rules in the order they are asked, with how many pairs are left after each; the first is no
+    rule."""
     toolkit, asked = query.toolkit, query.restrictions
     free = toolkit.without(toolkit.limits)
     holes = toolkit.without([limit for limit in toolkit.limits if limit.bounds != "holes"])

@@ -1,9 +1,10 @@
-"""The search of a fence: part flush on the wall, a locator in a row of holes, and a clamp on a row or a column.
+"""The search beside a wall: part flush on it, a locator in a row of holes, and a clamp on a row or a column.
 
-There is nothing to seek but to look: one orientation for each hull edge, then every row meets every feature in closed form,
-which are the locator's places, and then the clamp's lines do likewise. Whether a pair presses the part against the wall is
-told by the null vector of the four wrenches (Overmars et al. 1995: the line of the joint force of locator and clamp meets
-the hull edge strictly between its ends), with bounds of its error; what these leave open is decided in balls.
+There is one orientation for each hull edge. Every row then meets every feature in closed form, which are the
+locator's places, and the clamp's lines do likewise. The null vector of the four wrenches decides whether a
+pair presses the part against the wall. In words (Overmars et al. 1995): the line of the joint force of
+locator and clamp meets the hull edge strictly between its ends. What the bounds of its error leave open is
+decided in balls.
 """
 
 from __future__ import annotations
@@ -45,7 +46,8 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Forces that may be off by more are told by balls: whether two clamps close is often a matter of an exact zero.
+# Forces that may be off by more are told by balls: whether two clamps close is often a matter of an exact
+# zero.
 DOUBTFUL = 1e-10
 # Pairs of locator and clamp looked at together.
 TOGETHER = 1 << 17
@@ -61,12 +63,12 @@ class WallSearch:
     explains : whether it is to tell what comes nearest.
     plate, clamp : in whose holes the locator stands, and the clamp.
     push : unit vector along which the clamp moves as it clamps.
-    locators, examined, verified, escalated : how many contacts of the locator and pairs there were, how many pairs were
-        proven to press the part, and how many needed balls.
+    locators, examined, verified, escalated : how many contacts of the locator and pairs there were, how many
+        pairs were proven to press the part, and how many needed balls.
     undecided : the pairs that not even they decide, with the number of their hull edge.
     is_square : whether every face that was offered is parallel or square to the wall.
-    nearest : where it is asked for, and as long as none is proven, the smallest share of the four contacts in the pair in
-        which it is the largest, and that pair.
+    nearest : where it is asked for, and as long as none is proven, the smallest share of the four contacts in
+        the pair in which it is the largest, and that pair.
     """
 
     problem: Problem
@@ -140,7 +142,8 @@ class WallSearch:
             yield ContactPairs(places, np.tile(chosen, len(numbers)), np.repeat(numbers, len(chosen)))
 
     def on_columns(self, lying: PartOnWall, locators: PinContacts) -> Iterator[ContactPairs]:
-        """Contacts of pegs on columns of holes, some at a time, with the locators that these are counted from."""
+        """Contacts of pegs on columns of holes, some at a time, with the locators that these are counted
+        from."""
         problem = self.problem
         low, high = reach_of(lying.rows[slice(*problem.moving)], upward=False)
         pitch, columns = self.plate.pitch[0], self.plate.columns
@@ -216,7 +219,8 @@ class WallSearch:
     def sharpened(
         self, pressed: WallFixtures, edge: int, lying: PartOnWall, one: PinContacts, two: PinContacts, locator: IntArray
     ) -> WallFixtures:
-        """Pairs told by balls where doubles do not tell well enough: of two clamps how far their forces may be off, too."""
+        """Pairs told by balls where doubles do not tell well enough: of two clamps how far their forces may
+        be off, too."""
         places = self.placed(pressed, edge, one, two, locator)
         if not self.problem.pairing:
             return places
@@ -234,8 +238,8 @@ class WallSearch:
     def placed(
         self, pressed: WallFixtures, edge: int, one: PinContacts, two: PinContacts, locator: IntArray
     ) -> WallFixtures:
-        """Contacts where doubles may not tell well enough where they are, or how they press, told by balls: near a row or a
-        column that grazes an arc."""
+        """Contacts where doubles may not tell well enough where they are, or how they press, told by balls:
+        near a row or a column that grazes an arc."""
         far = np.flatnonzero(np.maximum(one.reach[locator], two.reach) > SAME_PLACE / 2)
         places, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
         for k in far.tolist():
@@ -292,7 +296,8 @@ def faces_are_square(lying: PartOnWall) -> bool:
 
 
 def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[WallSearch]:
-    """The searches of a query on the ways of a fence, which differ in the clamp's direction alone."""
+    """The searches of a query in the ways of a toolkit with a wall, which differ in the clamp's direction
+    alone."""
     one, *others = (evolve(query, toolkit=way) for way in ways)
     problem = Problem.of(one, pairing=pairing)
     return [WallSearch(problem), *(WallSearch(evolve(problem, query=other)) for other in others)]
@@ -301,8 +306,8 @@ def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) ->
 def fixtures_on(searches: Sequence[WallSearch], edge: int) -> Iterator[tuple[WallSearch, WallFixtures]]:
     """The pairs that press the part as it lies on a hull edge, some at a time, each with its search.
 
-    What does not depend on the clamp's direction is looked at once for all searches (``searches_of``): where the part lies,
-    the locators, and what pegs touch on rows and on columns.
+    What does not depend on the clamp's direction is looked at once for all searches (``searches_of``). This
+    is where the part lies, the locators, and what pegs touch on rows and on columns.
     """
     one = searches[0]
     problem = one.problem

@@ -20,7 +20,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST
-from workhold.kernels.seating.fibres import MOST_CROSSINGS, MOST_INTERVALS, free_poses
+from workhold.kernels.seating.configuration_slices import MOST_CROSSINGS, MOST_INTERVALS, free_poses
 from workhold.kernels.seating.places import AT_SEAT, SAME_LEVEL
 from workhold.seating.closing import Closing
 from workhold.seating.extents import Extents

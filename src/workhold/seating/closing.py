@@ -14,7 +14,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import close_jaws
-from workhold.kernels.seating.columns import NODE_LENGTH, Obstacles, WorkSpace
+from workhold.kernels.seating.columns import NODE_LENGTH, DescentWorkSpace, Obstacles
 from workhold.kernels.seating.leaving import RANGES, leave
 from workhold.kernels.seating.reaching import reach_out
 from workhold.seating.obstacle_boundary import ObstacleBoundary
@@ -96,7 +96,7 @@ class Closing:
             np.empty(len(configs) + 1, np.int64),
             np.empty((room, NODE_LENGTH)),
         )
-        work = WorkSpace.for_pieces(len(obstacles.rows))
+        work = DescentWorkSpace.for_pieces(len(obstacles.rows))
         known = seats[np.argsort(seats[:, 3], kind="stable")]
         most = LONGEST_STEP * min(self.pattern.radii)
         close_jaws(configs, lengths, most, obstacles, known, work, ends, begins, nodes)
@@ -120,7 +120,7 @@ class Closing:
         """
         obstacles, begins = self.obstacles._replace(most=most), np.empty(len(configs) + 1, np.int64)
         room = USUAL * len(configs)
-        work = WorkSpace.for_pieces(len(obstacles.rows))
+        work = DescentWorkSpace.for_pieces(len(obstacles.rows))
         while True:
             nodes = np.empty((room, NODE_LENGTH))
             reach_out(np.array(configs), aims, far, first, longest, obstacles, work, begins, nodes)

@@ -11,7 +11,7 @@ from math import cos, inf, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.seating.candidates import MISFIT, settle, tell_balance
+from workhold.kernels.seating.candidates import MISFIT, judge_balance, settle
 from workhold.kernels.seating.columns import (
     CLEAR,
     CONFIG,
@@ -42,7 +42,7 @@ def with_forces(candidates: Array, given: Given, size: float) -> Array:
 def verdicts(candidates: Array, slack: float, slack_in_doubt: float) -> NDArray[np.int8]:
     """Whether all contacts of candidates (N, 24) press and balance, as ``kernels.seating.candidates`` has it."""
     out = np.empty(len(candidates), np.int8)
-    tell_balance(candidates, slack, slack_in_doubt, out)
+    judge_balance(candidates, slack, slack_in_doubt, out)
     return out
 
 

@@ -27,7 +27,7 @@ from workhold.kernels.seating.columns import (
     NODE_LENGTH,
     SECOND,
 )
-from workhold.kernels.seating.following import begin_ways
+from workhold.kernels.seating.descent_paths import begin_descents
 from workhold.seating.closing import Closing
 from workhold.seating.growing_rows import with_room
 
@@ -48,7 +48,7 @@ def descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
         Configurations (2 N, 4), and how long the first steps are in mm (2 N, 2).
     """
     starts, lengths = np.empty((2 * len(rows), 4)), np.empty((2 * len(rows), 2))
-    begin_ways(np.ascontiguousarray(rows), size, starts, lengths)
+    begin_descents(np.ascontiguousarray(rows), size, starts, lengths)
     return starts, lengths
 
 

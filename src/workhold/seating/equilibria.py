@@ -24,13 +24,13 @@ from workhold.kernels.seating.columns import (
     FORCE,
     SECOND,
     SEPARATION,
-    Families,
-    Ways,
+    Manifolds,
+    SelfMotions,
 )
-from workhold.kernels.seating.four_contacts import two_holdings
+from workhold.kernels.seating.four_contacts import two_pairs
 from workhold.kernels.seating.freedom import first_of_each
-from workhold.kernels.seating.gathering import GATHERED_LENGTH, GROUP, gathered
 from workhold.kernels.seating.slides import slides_held
+from workhold.kernels.seating.subset_candidates import GATHERED_LENGTH, SUBSET, gathered
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH
 from workhold.seating.antipodal_contacts import antipodal_candidates
 from workhold.seating.contact_forces import settle_on_wall, verdicts, with_forces
@@ -77,7 +77,7 @@ class Equilibria:
 
     seats: Array
     passes: Array
-    loose: Families
+    loose: Manifolds
     doubtful: Array
     origins: NDArray[np.int64]
     subsets: tuple[tuple[PegSubset, DescentPaths], ...] = ()
@@ -90,11 +90,11 @@ def equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equ
     curves, finder = TwoContactCurves.of(boundary, pattern), ManifoldFinder(boundary, pattern)
     given, jaws, pockets = curves.given, (curves.of_jaw(0), curves.of_jaw(1)), boundary.pocket_pieces
     work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(jaws[1].cells), np.int64)
-    roots = filled(ROOT_LENGTH, 1024, two_holdings, *jaws, curves.sought, *work)
+    roots = filled(ROOT_LENGTH, 1024, two_pairs, *jaws, curves.sought, *work)
     two = filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)
     slid = filled(CANDIDATE_LENGTH, 256, slides_held, curves.slides, *jaws, given, pockets)
     kept, ends, of_subsets = SubsetCache.on(boundary), (pattern.stop, pattern.widest), list[tuple[float, ...]]()
-    subsets, motions = list[tuple[PegSubset, DescentPaths]](), list[tuple[PegSubset, Ways]]()
+    subsets, motions = list[tuple[PegSubset, DescentPaths]](), list[tuple[PegSubset, SelfMotions]]()
     for subset in subsets_of(pattern):
         own = equilibria_of_subset(kept, boundary, subset, size)
         of_subsets.append((own.first, own.end, own.descents.first, *subset.numbers_and_shift))
@@ -103,9 +103,9 @@ def equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equ
     room = len(two) + len(slid) + sum(int(end - first) for first, end, *_ in of_subsets) + 256
     among = np.array(of_subsets, dtype=np.float64), kept.candidates, two, slid, *ends, given, np.empty(CANDIDATE_LENGTH)
     found = filled(GATHERED_LENGTH, room, gathered, *among)
-    every = with_forces(np.ascontiguousarray(found[:, :GROUP]), given, size)
+    every = with_forces(np.ascontiguousarray(found[:, :SUBSET]), given, size)
     loose = finder.distinct(finder.cut(of_pattern(motions)))
-    return sorted_out(every, loose, found[:, GROUP:].astype(np.int64), tuple(subsets))
+    return sorted_out(every, loose, found[:, SUBSET:].astype(np.int64), tuple(subsets))
 
 
 def equilibria_on_wall(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
@@ -120,7 +120,7 @@ def equilibria_on_wall(boundary: ObstacleBoundary, pattern: Pattern, size: float
 
 def sorted_out(
     candidates: Array,
-    loose: Families,
+    loose: Manifolds,
     origins: NDArray[np.int64],
     subsets: tuple[tuple[PegSubset, DescentPaths], ...] = (),
 ) -> Equilibria:

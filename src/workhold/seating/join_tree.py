@@ -22,9 +22,9 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_THE_STOP
-from workhold.kernels.seating.columns import CONFIG, CONTACTS, SEPARATION, Families
-from workhold.kernels.seating.following import BESIDE
-from workhold.kernels.seating.loose import first_sets, write_beyond
+from workhold.kernels.seating.columns import CONFIG, CONTACTS, SEPARATION, Manifolds
+from workhold.kernels.seating.descent_paths import BESIDE
+from workhold.kernels.seating.equilibrium_manifolds import first_sets, write_beyond
 from workhold.kernels.seating.places import FALLS, leads_out, write_places
 from workhold.seating.closing import Closing
 from workhold.seating.equilibria import Equilibria
@@ -157,7 +157,7 @@ class ManifoldDescents:
     one: tuple[Array, Array, NDArray[np.int8]]
 
     @classmethod
-    def of(cls, loose: Families, closing: Closing, seats: Array) -> ManifoldDescents:
+    def of(cls, loose: Manifolds, closing: Closing, seats: Array) -> ManifoldDescents:
         """Follows the descent paths off some sets; ``seats`` (M, 4) are those of ``Closing.run``."""
         if not len(loose.rows):
             return NOTHING
@@ -185,7 +185,7 @@ NUMBERS, PATHS = np.zeros(0, np.int64), (np.zeros((0, 4)), np.zeros((0, 4)), np.
 NOTHING = ManifoldDescents(NUMBERS, NUMBERS, NUMBERS, NUMBERS, PATHS, PATHS)
 
 
-def sets_at(configs: Array, loose: Families, asked: IntArray, size: float) -> IntArray:
+def sets_at(configs: Array, loose: Manifolds, asked: IntArray, size: float) -> IntArray:
     """The place among the asked of the first loose set in which each configuration (N, 4) lies, or -1."""
     out = np.empty(len(configs), np.int64)
     first_sets(configs, loose, asked, size, FALLS, out)

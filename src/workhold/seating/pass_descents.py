@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST
-from workhold.kernels.seating.following import free_until, take_up
+from workhold.kernels.seating.descent_paths import free_until, take_up
 from workhold.seating.closing import LONGEST_STEP, Closing
 from workhold.seating.descent_paths import descent_starts
 from workhold.seating.equilibria import Equilibria

@@ -90,7 +90,7 @@ class PegSubset:
 
     @cached_property
     def numbers_and_shift(self) -> tuple[float, ...]:
-        """The jaw, the names and the shift, as of ``kernels.seating.gathering``."""
+        """The jaw, the names and the shift, as of ``kernels.seating.subset_candidates``."""
         jaw = self.sides[0] if self.is_of_a_jaw else -1
         names = *self.numbers, *[-1] * (4 - len(self.numbers))
         return (jaw, *names, *self.shift[1:].tolist())

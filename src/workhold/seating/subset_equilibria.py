@@ -22,11 +22,11 @@ from workhold.kernels.seating.columns import (
     DEPTH,
     SEPARATION,
     Given,
-    Ways,
+    SelfMotions,
 )
 from workhold.kernels.seating.concentric import about_one_center
 from workhold.kernels.seating.four_contacts import third_of_jaw
-from workhold.kernels.seating.slides import slides_squared, slides_stopped
+from workhold.kernels.seating.slides import slides_blocked, slides_squared
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
 from workhold.seating.antipodal_contacts import antipodal_candidates
 from workhold.seating.closing import Closing
@@ -48,7 +48,7 @@ Array = NDArray[np.float64]
 MOST_KEPT, MOST_NODES = 1024, 600_000
 NONE = np.zeros((0, CANDIDATE_LENGTH))
 # Candidates of a subset and its self-motions, see ``SubsetEquilibria``.
-Found = tuple[Array, Ways]
+Found = tuple[Array, SelfMotions]
 
 
 @frozen(eq=False)
@@ -65,7 +65,7 @@ class SubsetEquilibria:
 
     first: int
     end: int
-    motions: Ways
+    motions: SelfMotions
     descents: DescentPaths
 
 
@@ -162,7 +162,7 @@ def jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> F
     roots = filled(ROOT_LENGTH, 1024, third_of_jaw, known.cells, known.middles, curves.sought, boundary.discs, stack)
     fixed = [
         filled(CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, curves.given, boundary.pocket_pieces),
-        filled(CANDIDATE_LENGTH, 256, slides_stopped, curves.slides, curves.given),
+        filled(CANDIDATE_LENGTH, 256, slides_blocked, curves.slides, curves.given),
     ]
     return np.concatenate(fixed), NO_MOTIONS
 

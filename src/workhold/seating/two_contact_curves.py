@@ -2,7 +2,7 @@
 
 Glossary
 -------- two-contact curve : all poses, up to the shift along x, in which two contacts of one jaw touch; a row
-of ``HOLDING_LENGTH``
+of ``PAIR_LENGTH``
     numbers, see ``kernels.seating.columns``. The contact space of two fingers: T. F. Allen, J. W. Burdick and
     E. Rimon, "Two-finger caging of polygonal objects using contact space search", IEEE Transactions on
     Robotics 31 (2015).
@@ -37,9 +37,9 @@ from workhold.kernels.seating.columns import (
     CELL_LENGTH,
     FIRST_PEG,
     HIGH,
-    HOLDING_LENGTH,
     KIND,
     LOW,
+    PAIR_LENGTH,
     PIVOT_X,
     PIVOT_Y,
     SECOND_PEG,
@@ -47,9 +47,9 @@ from workhold.kernels.seating.columns import (
     Given,
     JawCells,
 )
-from workhold.kernels.seating.holdings import make_cells
 from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
+from workhold.kernels.seating.two_contact_curves import make_cells
 from workhold.seating.growing_rows import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
@@ -61,7 +61,7 @@ Array = NDArray[np.float64]
 # Cells of the curves that are kept, of about 360 bytes with all that belongs to them; with more, all are
 # forgotten.
 MOST_KEPT = 250_000
-NO_CURVES = np.zeros((0, HOLDING_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
+NO_CURVES = np.zeros((0, PAIR_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
 NO_SLIDES = np.zeros((0, SLIDE_LENGTH))
 
 
@@ -101,7 +101,7 @@ class JawCurves:
                 # A chord from a piece to itself has all directions already, so its ends need no change of
                 # places.
                 kept = np.flatnonzero((first == one) | (whole[:, TAIL] != whole[:, HEAD]))
-                rows = np.zeros((len(kept), HOLDING_LENGTH))
+                rows = np.zeros((len(kept), PAIR_LENGTH))
                 rows[:, SOURCE], rows[:, FIRST_PEG], rows[:, SECOND_PEG] = kept + curves_before, first, second
                 rows[:, ANGLE] = angle
                 made.append(rows)
@@ -243,7 +243,7 @@ def pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:
         for pocket, (piece, _) in enumerate(boundary.pocket_pieces.tolist())
         if boundary.fits(side, piece)
     ]
-    rows = np.zeros((len(held), HOLDING_LENGTH))
+    rows = np.zeros((len(held), PAIR_LENGTH))
     rows[:, KIND], rows[:, SECOND_PEG] = 1.0, -1.0
     rows[:, [FIRST_PEG, SOURCE]] = np.array(held).reshape(-1, 2)
     rows[:, [PIVOT_X, PIVOT_Y]] = boundary.pockets[rows[:, SOURCE].astype(np.int64), :2]

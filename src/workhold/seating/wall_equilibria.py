@@ -27,8 +27,8 @@ from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
     CONTACTS,
     DEPTH,
-    HOLDING_LENGTH,
     MOTION,
+    PAIR_LENGTH,
     PEG,
     PIECE,
     PLACE_X,
@@ -135,7 +135,7 @@ class WallEquilibria:
 
     def given(self, pegs: Array) -> Given:
         """Pegs without two-contact curves, as kernels take them."""
-        none = np.zeros((0, HOLDING_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
+        none = np.zeros((0, PAIR_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
         return Given(*none, self.stood.rows, pegs, self.pattern.right, self.boundary.parts)
 
     def begun(self, theta: float, place: tuple[float, float], separation: float, contacts: list[Contact]) -> Array:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL, SAME_CENTER
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.columns import CONTACTS, PEG, PIECE, Families
+from workhold.kernels.seating.columns import CONTACTS, PEG, PIECE, Manifolds
 from workhold.seating.equilibrium_manifolds import ManifoldFinder
 from workhold.seating.hull import HullSide
 from workhold.seating.self_motions import SHORTEST, SLIDE_STEPS, SelfMotion, turning
@@ -21,13 +21,13 @@ __all__ = ["wall_manifolds"]
 Array = NDArray[np.float64]
 
 
-def wall_manifolds(finder: ManifoldFinder) -> list[Families]:
+def wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
     """All equilibrium manifolds on a wall."""
     wall = WallEquilibria(finder.boundary, finder.pattern)
     return sliding_on_wall(finder, wall) + turning_on_wall(finder, wall)
 
 
-def sliding_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Families]:
+def sliding_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
     """A hull edge on the wall and the tip on a face parallel to it, between the ends of the edge."""
     if wall.half_plane[0] <= 0.0:
         return []
@@ -67,9 +67,9 @@ def with_both_ends(row: Array, wall: WallEquilibria, side: HullSide) -> None:
         row[CONTACTS] = count + 1
 
 
-def turning_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Families]:
+def turning_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
     """Arcs of one centre on the wall and the tip, and on the locator if the tip is not square to the wall."""
-    out, (ux, uy, off) = list[Families](), wall.half_plane
+    out, (ux, uy, off) = list[Manifolds](), wall.half_plane
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
     hull = finder.boundary.hull.rows
     for group, piece in product(finder.boundary.concentric, range(len(hull))):

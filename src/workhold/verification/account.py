@@ -48,9 +48,9 @@ from workhold.model.notes import (
 from workhold.model.proof import Proof
 from workhold.verification.balls import PRECISIONS
 from workhold.verification.listing import Listing
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.repeats import Seen
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat_clamps import pairs_at
 from workhold.verification.undecided import undecided_faults
 
@@ -264,7 +264,7 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
     query, found = listing.query, sum(listing.found.values())
     if not query.toolkit.needs_pairs or query.listing != "all" or found != len(listing.fixtures):
         return
-    hardware = Hardware(query.toolkit)
+    hardware = ToolkitRules(query.toolkit)
     seen, at_seat = Seen(hardware), Counter[int]()
     for index, fixture in enumerate(listing.fixtures):
         if index not in refuted:
@@ -275,7 +275,7 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
     if not listing.complete or refuted:
         return
     with ctx.workprec(PRECISIONS[0]):
-        outline = Outline.of(query.workpiece)
+        outline = BallOutline.of(query.workpiece)
         for index, count in sorted(at_seat.items()):
             limits = pairs_at(listing.fixtures[index], query, hardware, outline)
             if limits is not None and not limits[0] <= count <= limits[1]:

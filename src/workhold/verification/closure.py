@@ -12,7 +12,7 @@ from attrs import frozen
 from flint import arb, arb_mat
 
 from workhold.verification.balls import Point, cross, dot, least, turned
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.tolerances import LEAST_CLAMPING, LEAST_SHARE, LEAST_SPAN
 
@@ -58,7 +58,7 @@ class Balance:
     clamp: arb
 
     @classmethod
-    def of(cls, contacts: Sequence[Contact], pose: Pose, clamping: int) -> Balance:
+    def of(cls, contacts: Sequence[BallContact], pose: BallPose, clamping: int) -> Balance:
         """The balance of four contacts; ``clamping`` is 1 where less travel clamps, -1 where more does."""
         points = tuple(contact.in_part(pose) for contact in contacts)
         normals = tuple(contact.outward(pose) for contact in contacts)
@@ -80,7 +80,7 @@ class Balance:
         """The closure margin."""
         return least(self.shares)
 
-    def inverse(self, contacts: Sequence[Contact], pose: Pose) -> list[list[arb]] | None:
+    def inverse(self, contacts: Sequence[BallContact], pose: BallPose) -> list[list[arb]] | None:
         """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None where there may be none."""
         rows = [
             [*normal, cross(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal)]

@@ -21,11 +21,11 @@ from workhold.model.flat import Flat
 from workhold.verification.balls import Point, cross, dot, turned
 from workhold.verification.sides import LineSide, Side
 
-__all__ = ["Contact", "Pose", "contact_system", "standoff"]
+__all__ = ["BallContact", "BallPose", "contact_system", "standoff"]
 
 
 @frozen(eq=False)
-class Pose:
+class BallPose:
     """Unknowns of a fixture: orientation in radians (cosine and sine with it), place and travels in mm."""
 
     theta: arb
@@ -36,18 +36,18 @@ class Pose:
     sine: arb
 
     @classmethod
-    def of(cls, theta: arb, x: arb, y: arb, *travels: arb) -> Pose:
+    def of(cls, theta: arb, x: arb, y: arb, *travels: arb) -> BallPose:
         """The pose with its cosine and sine."""
         return cls(theta, x, y, travels, theta.cos(), theta.sin())
 
     @classmethod
-    def written(cls, pose: model.Pose) -> Pose:
+    def written(cls, pose: model.Pose) -> BallPose:
         """The pose of a file as the numbers that it is, without any travel."""
         return cls.of(arb(pose.theta_deg) * arb.pi() / 180, arb(pose.x), arb(pose.y), arb(0))
 
 
 @frozen(eq=False)
-class Contact:
+class BallContact:
     """A peg that touches a side.
 
     Parameters
@@ -79,25 +79,25 @@ class Contact:
         """Of the side: the length of a straight one, an arc's radius; in mm."""
         return self.side.length if isinstance(self.side, LineSide) else self.side.radius
 
-    def outward(self, pose: Pose) -> Point:
+    def outward(self, pose: BallPose) -> Point:
         """The outward unit normal at the contact, in the workpiece's frame."""
         return self.side.outward(self.in_part(pose))
 
-    def from_origin(self, pose: Pose) -> Point:
+    def from_origin(self, pose: BallPose) -> Point:
         """Vector in the toolkit's frame from the workpiece's origin to the peg's centre, in mm."""
         x, y = self.place(pose)
         return x - pose.x, y - pose.y
 
-    def place(self, pose: Pose) -> Point:
+    def place(self, pose: BallPose) -> Point:
         """The peg's centre in the toolkit's frame, in mm."""
         travelled = pose.travels[self.travel]
         return self.hole[0] + self.way[0] * travelled, self.hole[1] + self.way[1] * travelled
 
-    def in_part(self, pose: Pose) -> Point:
+    def in_part(self, pose: BallPose) -> Point:
         """The peg's centre in the workpiece's frame, in mm."""
         return turned(self.from_origin(pose), pose.cosine, -pose.sine)
 
-    def equation(self, pose: Pose) -> tuple[arb, list[arb]]:
+    def equation(self, pose: BallPose) -> tuple[arb, list[arb]]:
         """Value of the contact equation, and its derivatives by theta, x, y and its travel."""
         u, side = self.from_origin(pose), self.side
         if isinstance(side, LineSide):
@@ -115,9 +115,9 @@ def standoff(side: Side, peg_radius: float, flat: Flat | None) -> arb:
     return arb(flat.distance if flat is not None and isinstance(side, LineSide) else peg_radius)
 
 
-def contact_system(contacts: Sequence[Contact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:
+def contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:
     """Values (N x 1) and Jacobian (N x N) of the contact equations on a box (N x 1) of angle, x, y and travels."""
-    pose = Pose.of(*unknowns.entries())
+    pose = BallPose.of(*unknowns.entries())
     values, rows = [], []
     for contact in contacts:
         value, (*slopes, along) = contact.equation(pose)

@@ -26,11 +26,11 @@ from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOA
 from workhold.model.query import Query
 from workhold.verification.balls import Point, cross, dot, exact_point, largest, least, norm, root
 from workhold.verification.closure import Balance
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.ends import Barrier, barriers, edge_distances, end_distance, length_of
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.seat import CLAMPS, LOCATORS, SeatBalance
 from workhold.verification.sides import ArcSide
 from workhold.verification.tolerances import (
@@ -112,7 +112,7 @@ class Measure:
     beside : the barriers on the contact feature of each face and radius, as far as they are known (``verification.ends``).
     """
 
-    outline: Outline
+    outline: BallOutline
     wrench_length: float
     diameter: float
     center: Point
@@ -129,7 +129,7 @@ class Measure:
     @classmethod
     def of(cls, wrench_length: float, diameter: float, query: Query) -> Measure:
         """The measure at the precision in force."""
-        outline, outer = Outline.of(query.workpiece), len(query.workpiece.loops[0])
+        outline, outer = BallOutline.of(query.workpiece), len(query.workpiece.loops[0])
         silhouette = [side for face, side in outline.faces.items() if face < outer]
         arcs = tuple(side for side in silhouette if isinstance(side, ArcSide) and side.sign > 0)
         joints = [side.start for side in outline.segments[:outer]]
@@ -149,7 +149,7 @@ class Measure:
         )
 
     def figures(
-        self, contacts: Sequence[Contact], faces: Sequence[int], pose: Pose, balance: Balance | SeatBalance
+        self, contacts: Sequence[BallContact], faces: Sequence[int], pose: BallPose, balance: Balance | SeatBalance
     ) -> Mapping[str, arb]:
         """The figures of a fixture by their keys; no load reaction without loads."""
         out = {"closure_margin": balance.margin, "clamp_amplification": largest(balance.forces)}
@@ -183,7 +183,7 @@ class Measure:
         out["penalty"] = penalty(out, self.peg + self.face, self.diameter, part)
         return out
 
-    def barriers(self, contact: Contact, face: int) -> list[Barrier]:
+    def barriers(self, contact: BallContact, face: int) -> list[Barrier]:
         """The barriers on the contact feature of a face that a peg touches."""
         key = face, float(contact.radius), float(contact.clear_radius)
         if key not in self.beside:
@@ -191,11 +191,11 @@ class Measure:
             self.beside[key] = barriers(contact.side, contact.radius, contact.clear_radius, others)
         return self.beside[key]
 
-    def end_distance(self, contact: Contact, face: int, center: Point) -> arb:
+    def end_distance(self, contact: BallContact, face: int, center: Point) -> arb:
         """Distance in mm of a peg on a face from the nearer end of its contact feature."""
         return end_distance(contact.side, contact.radius, self.barriers(contact, face), center)
 
-    def edge_distance(self, contact: Contact, face: int, center: Point) -> arb | None:
+    def edge_distance(self, contact: BallContact, face: int, center: Point) -> arb | None:
         """Distance in mm of a peg on a face from the nearer edge of its contact feature; None where there is none.
 
         A tangent joint is none, unless it is with a hollow that leaves a peg no way on. Where either is in doubt, any
@@ -313,7 +313,7 @@ def turns_right(a: Point, b: Point, c: Point) -> bool:
     return bool(cross((b[0] - a[0], b[1] - a[1]), (c[0] - b[0], c[1] - b[1])) < 0)
 
 
-def box_center(outline: Outline) -> Point:
+def box_center(outline: BallOutline) -> Point:
     """Centre in mm of the bounding box of a workpiece: of its joints, and of the arcs where they run along x or y."""
     middle = []
     for axis in (0, 1):

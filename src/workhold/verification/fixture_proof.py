@@ -16,11 +16,11 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.verification.balls import PRECISIONS, norm
 from workhold.verification.closure import Balance, closure_findings
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.figures import Measure, pair_numbers, written_numbers
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.placing import gap_findings, proven_pose, written_pose
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
 from workhold.verification.seat_clamps import Standing
 from workhold.verification.sides import ArcSide, LineSide
@@ -72,12 +72,12 @@ class Judge:
 
     query: Query
     measures: dict[int, Measure] = field(factory=dict, init=False)
-    hardware: Hardware = field(init=False)
+    hardware: ToolkitRules = field(init=False)
     diameter: float = field(init=False)
     wrench_length: float = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        hardware, diameter = Hardware.of(self.query), outline_diameter(self.query.workpiece)
+        hardware, diameter = ToolkitRules.of(self.query), outline_diameter(self.query.workpiece)
         object.__setattr__(self, "hardware", hardware)
         object.__setattr__(self, "diameter", diameter)
         object.__setattr__(self, "wrench_length", diameter / 2 + hardware.largest_radius)
@@ -133,7 +133,7 @@ class Judge:
         yield from self.force_findings(fixture, contacts, pose, measure, proven is not None)
 
     def force_findings(
-        self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose, measure: Measure, is_proven: bool
+        self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, measure: Measure, is_proven: bool
     ) -> Iterator[Finding]:
         """Whether the contacts of a fixture close at a pose, with the forces and figures that are written."""
         hardware, pair = self.hardware, fixture.pair
@@ -157,7 +157,7 @@ class Judge:
             yield from standing.pair_findings(fixture, pair, contacts, pose, balance)
 
 
-def flat_findings(fixture: Fixture, names: Sequence[str], contacts: Sequence[Contact]) -> Iterator[Finding]:
+def flat_findings(fixture: Fixture, names: Sequence[str], contacts: Sequence[BallContact]) -> Iterator[Finding]:
     """Whether flats look at the faces that they lie on, where the file says which way, and no others do."""
     for name, peg, contact in zip(names, fixture.pegs, contacts, strict=True):
         lies = contact.body is not None and isinstance(contact.side, LineSide)

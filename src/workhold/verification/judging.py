@@ -13,7 +13,7 @@ from math import atan2, ceil, degrees
 
 from flint import arb
 
-from workhold.verification.contacts import Pose
+from workhold.verification.contacts import BallPose
 from workhold.verification.sides import LineSide, Side
 from workhold.verification.tolerances import (
     GENTLE_PEG,
@@ -63,7 +63,7 @@ def main_direction(faces: Sequence[Side]) -> arb:
     return arb.atan2(along[1], along[0]) * 180 / arb.pi()
 
 
-def tilt(pose: Pose, direction: arb) -> arb:
+def tilt(pose: BallPose, direction: arb) -> arb:
     """Angle in degrees between the main direction and the nearest of the jaws' two; 0 where that counts as square."""
     angle = pose.theta * 180 / arb.pi() + direction
     off = abs(angle - 90 * round(float(angle.mid()) / 90))

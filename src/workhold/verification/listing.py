@@ -27,7 +27,7 @@ from workhold.model.result import Result
 from workhold.verification.claims import claim_of, with_claims
 from workhold.verification.columns import Columns, FixturesInColumns, columns_of
 from workhold.verification.reading import fixtures_of
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 
 __all__ = ["Listing", "listing_of", "read_listing"]
 
@@ -59,9 +59,9 @@ class Listing:
     seats: int | None = None
 
     @property
-    def hardware(self) -> Hardware:
+    def hardware(self) -> ToolkitRules:
         """The rules of its toolkit."""
-        return Hardware.of(self.query)
+        return ToolkitRules.of(self.query)
 
 
 def listing_of(result: Result) -> Listing:
@@ -96,7 +96,7 @@ def read_listing(path: str | Path) -> Listing:
         types = query.toolkit.types
         return Listing(
             query,
-            taken_in(taken, seatings, Hardware.of(query), query, path),
+            taken_in(taken, seatings, ToolkitRules.of(query), query, path),
             numbers_of(head.counts, "counts", types),
             numbers_of(head.found, "found", types, head.counts),
             numbers_of(head.distinct, "distinct", types, head.counts),
@@ -132,7 +132,7 @@ def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[A
 
 
 def taken_in(
-    fixtures: list[Fixture] | Columns, seatings: Sequence[Any], hardware: Hardware, query: Query, path: Path
+    fixtures: list[Fixture] | Columns, seatings: Sequence[Any], hardware: ToolkitRules, query: Query, path: Path
 ) -> Sequence[Fixture]:
     """Fixtures as they are read, of a kind of toolkit, and the seating of the first where it stands apart from them.
 

@@ -17,7 +17,7 @@ from workhold.model.quality import RANKED
 from workhold.model.query import Query
 from workhold.model.seating import Seating
 from workhold.verification.claims import Claim
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.stroke import WAYS, direction_of, directions_of, quarter_turns, seen_along_x
 from workhold.verification.tolerances import (
     CLOSE_READING,
@@ -41,7 +41,7 @@ Rank = tuple[list[int], float, list[int]]
 MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in RANKED}
 
 
-def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: Hardware) -> Iterator[str]:
+def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: ToolkitRules) -> Iterator[str]:
     """A fault when a fixture belongs before the one before it; none where the figures ranked by are not written."""
     off, usual = query.tolerance.peg + query.tolerance.face, query.without_seating.ranking
     if any(key not in fixture.quality for fixture in fixtures for key in usual):
@@ -108,7 +108,7 @@ def ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Ran
             yield two_digits(value - spare - HAIR), two_digits(value + spare + HAIR)
 
 
-def is_earlier(one: Fixture, other: Fixture, hardware: Hardware) -> bool:
+def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
     """Whether a fixture certainly comes before another one that is as good."""
     (holes, angle, faces), (others, angle_of_other, faces_of_other) = (
         rank(fixture, hardware) for fixture in (one, other)
@@ -118,7 +118,7 @@ def is_earlier(one: Fixture, other: Fixture, hardware: Hardware) -> bool:
     return (holes, faces) < (others, faces_of_other)
 
 
-def rank(fixture: Fixture, hardware: Hardware) -> Rank:
+def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
     """By what a fixture stands among those that are equally good.
 
     Without a wall and with one thing that moves it is seen as it clamps along -x: columns count from the first peg of each

@@ -12,11 +12,11 @@ from workhold.verification.balls import Point
 from workhold.verification.sides import ArcSide, Side, vertex_side, whole_face
 from workhold.verification.tolerances import TANGENT
 
-__all__ = ["Outline"]
+__all__ = ["BallOutline"]
 
 
 @frozen(eq=False)
-class Outline:
+class BallOutline:
     """All sides of a workpiece.
 
     Parameters
@@ -37,7 +37,7 @@ class Outline:
     neighbours: Mapping[int, tuple[Side, Side]]
 
     @classmethod
-    def of(cls, workpiece: Workpiece) -> Outline:
+    def of(cls, workpiece: Workpiece) -> BallOutline:
         """The outline at the precision in force."""
         segments: list[Side] = []
         before: list[int] = []

@@ -23,7 +23,7 @@ from math import radians
 from flint import arb, arb_mat, ctx
 
 from workhold.model import fixture as model
-from workhold.verification.contacts import Contact, Pose, contact_system
+from workhold.verification.contacts import BallContact, BallPose, contact_system
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.tolerances import AGREEMENT
 
@@ -68,14 +68,14 @@ def degree() -> arb:
     return arb.pi() / 180
 
 
-def written_pose(written: model.Pose, travels: Sequence[float]) -> Pose:
+def written_pose(written: model.Pose, travels: Sequence[float]) -> BallPose:
     """All poses that agree with the file's, with travels in mm that agree with some likewise."""
     off = arb(0, AGREEMENT)
     theta = (written.theta_deg + off) * degree()
-    return Pose.of(theta, written.x + off, written.y + off, *(travel + off for travel in travels))
+    return BallPose.of(theta, written.x + off, written.y + off, *(travel + off for travel in travels))
 
 
-def gap_findings(touching: Sequence[tuple[str, Contact, int]], around: Pose) -> Iterator[Finding]:
+def gap_findings(touching: Sequence[tuple[str, BallContact, int]], around: BallPose) -> Iterator[Finding]:
     """Whether any pose that agrees with the file's, and travels likewise, could touch all faces.
 
     The gaps are enclosed over all of them at once; one that certainly is not the peg radius refutes.
@@ -87,8 +87,8 @@ def gap_findings(touching: Sequence[tuple[str, Contact, int]], around: Pose) -> 
 
 
 def proven_pose(
-    contacts: Sequence[Contact], written: model.Pose, travels: Mapping[str, float]
-) -> tuple[Pose | None, list[Finding]]:
+    contacts: Sequence[BallContact], written: model.Pose, travels: Mapping[str, float]
+) -> tuple[BallPose | None, list[Finding]]:
     """The proven solution of the contact equations near the file's pose, if any, and what is wrong with it.
 
     ``travels`` in mm are those of the file, by what each is called.
@@ -106,4 +106,4 @@ def proven_pose(
         if not off < AGREEMENT:
             words = f"the {name} in the file is {number(off)} {unit} from the one that touches {touched}"
             findings += rule(AGREEMENT - off, words, words)
-    return Pose.of(*zero), findings
+    return BallPose.of(*zero), findings

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.workpiece import Workpiece
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.stroke import OPPOSITE, WAYS, direction_of, directions_of, is_along_x, line_of
 from workhold.verification.tolerances import SAME
 
@@ -112,14 +112,14 @@ class Seen:
         count once.
     """
 
-    hardware: Hardware
+    hardware: ToolkitRules
     rotations: Sequence[float] = ()
     center: tuple[float, float] = (0.0, 0.0)
     sets: dict[str, int] = field(factory=dict, init=False)
     known: dict[Key, list[tuple[int, Place]]] = field(factory=dict, init=False)
 
     @classmethod
-    def of(cls, turning: Turning, hardware: Hardware) -> Seen:
+    def of(cls, turning: Turning, hardware: ToolkitRules) -> Seen:
         """Nothing seen yet of fixtures of a workpiece that is carried onto itself in these ways."""
         return cls(hardware, turning.angles, turning.center)
 
@@ -147,7 +147,7 @@ class Seen:
         return place[0] - angle, self.center[0] + turned_x, self.center[1] + turned_y, *place[3:]
 
 
-def patterns(fixture: Fixture, hardware: Hardware) -> Iterator[tuple[Key, Place]]:
+def patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Key, Place]]:
     """Each pattern that names a fixture.
 
     There are two where a half turn of the toolkit leaves the holes as they are, and none where the pegs are
@@ -163,7 +163,7 @@ def patterns(fixture: Fixture, hardware: Hardware) -> Iterator[tuple[Key, Place]
     return ((key, place) for key, place in named if key == least)
 
 
-def pattern(fixture: Fixture, hardware: Hardware, sign: int) -> tuple[Key, Place]:
+def pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, Place]:
     """The pattern as it is (sign 1) or after half a turn of the toolkit (-1), which swaps two jaws.
 
     Columns count from the first of each carrier, rows from the lowest; beside a wall that and what stands

@@ -14,8 +14,8 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.model.restrictions import Zone
 from workhold.verification.balls import Point, cross, dot, exact_point, least, turned
-from workhold.verification.outline import Outline
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.outline import BallOutline
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.wall import WallContact
 from workhold.verification.sides import ArcSide, Side, vertex_side
 from workhold.verification.tolerances import AGREEMENT
@@ -23,7 +23,7 @@ from workhold.verification.tolerances import AGREEMENT
 __all__ = ["broken_restriction", "zone_distance"]
 
 
-def broken_restriction(fixture: Fixture, query: Query, hardware: Hardware) -> str:
+def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
     """The restriction that a fixture breaks, in one sentence without a full stop; empty when it keeps all."""
     restrictions = query.restrictions
     avoided = {face.number for face in query.workpiece.faces if set(face.segments) & set(restrictions.avoid)}
@@ -43,7 +43,7 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: Hardware) -> st
         return hardware.crowding(fixture)
     noun = hardware.wall.noun
     # Of a corner on a wall both faces are to be avoided.
-    for contact in hardware.contacts(fixture, Outline.of(query.workpiece)):
+    for contact in hardware.contacts(fixture, BallOutline.of(query.workpiece)):
         if isinstance(contact, WallContact) and avoided.issuperset(contact.faces):
             return f"the part lies on the {noun} with face {contact.faces[0]}, which is to be avoided"
     sine, cosine = (arb(theta) / 180).sin_cos_pi()

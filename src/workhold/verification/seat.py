@@ -26,18 +26,18 @@ from flint import arb
 
 from workhold.verification.balls import Point, cross, dot, largest, least, turned
 from workhold.verification.closure import inverted
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.tolerances import LEAST_PUSH, LEAST_SEAT, LEAST_SHARE, MOST_FORCE, NO_REACTION
 
-__all__ = ["CLAMPS", "LOCATORS", "Push", "Ratio", "Seat", "SeatBalance", "closure_margin", "ratio_of"]
+__all__ = ["CLAMPS", "LOCATORS", "Push", "Ratio", "LocatorWrenches", "SeatBalance", "closure_margin", "ratio_of"]
 
 LOCATORS = 3
 CLAMPS = ("clamp 1", "clamp 2")
 
 
 @frozen(eq=False)
-class Seat:
+class LocatorWrenches:
     """Three locators.
 
     Parameters
@@ -50,11 +50,11 @@ class Seat:
     normals: Sequence[Point]
 
     @classmethod
-    def of(cls, contacts: Sequence[Contact], pose: Pose) -> Seat:
+    def of(cls, contacts: Sequence[BallContact], pose: BallPose) -> LocatorWrenches:
         """The seat of three locators, or of the two ends of a wall's contact and one."""
         return cls([contact.in_part(pose) for contact in contacts], [contact.outward(pose) for contact in contacts])
 
-    def push(self, contact: Contact, pose: Pose) -> Push:
+    def push(self, contact: BallContact, pose: BallPose) -> Push:
         """What a clamp does here; it pushes along -n, and clamps against its way."""
         point = contact.in_part(pose)
         normal = contact.side.outward(point)
@@ -206,14 +206,14 @@ class SeatBalance:
 
     points: Sequence[Point]
     normals: Sequence[Point]
-    seat: Seat
+    seat: LocatorWrenches
     pushes: tuple[Push, Push]
     known_ratio: Ratio | None
 
     @classmethod
-    def of(cls, contacts: Sequence[Contact], pose: Pose) -> SeatBalance:
+    def of(cls, contacts: Sequence[BallContact], pose: BallPose) -> SeatBalance:
         """The balance of three contacts that stand still and then two clamps."""
-        seat = Seat.of(contacts[:LOCATORS], pose)
+        seat = LocatorWrenches.of(contacts[:LOCATORS], pose)
         first, second = (seat.push(contact, pose) for contact in contacts[LOCATORS:])
         points, normals = zip(*((contact.in_part(pose), contact.outward(pose)) for contact in contacts), strict=True)
         return cls(points, normals, seat, (first, second), ratio_of(first, second))
@@ -286,7 +286,7 @@ class SeatBalance:
         """The closure margin."""
         return closure_margin(*self.pushes)
 
-    def inverse(self, contacts: Sequence[Contact], pose: Pose) -> list[list[arb]] | None:
+    def inverse(self, contacts: Sequence[BallContact], pose: BallPose) -> list[list[arb]] | None:
         """The inverse of the locators' wrenches, which alone fix the part; None where there may be none."""
         return inverted([list(wrench) for wrench in self.seat.wrenches])
 

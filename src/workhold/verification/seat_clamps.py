@@ -18,15 +18,15 @@ from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.query import Query
 from workhold.model.toolkit import Carrier
 from workhold.verification.balls import Point, dot, exact_point, largest, turned
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.ends import on_line
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.placing import proven_pose
 from workhold.verification.restrictions import zone_distance
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.stroke import WAYS, direction_of, directions_of, line_of, pieces_apart
-from workhold.verification.seat import LOCATORS, Push, Seat, SeatBalance, closure_margin, ratio_of
+from workhold.verification.seat import LOCATORS, LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
 from workhold.verification.sides import ArcSide, LineSide, Side
 from workhold.verification.tolerances import (
     HAIR,
@@ -46,7 +46,7 @@ BESIDE = 1e-3
 
 
 @frozen(eq=False)
-class Hole:
+class BoltHole:
     """Where a clamp may be bolted.
 
     Parameters
@@ -81,7 +81,7 @@ class SeatClamp:
     face: int
     tip: Point
     push: Push
-    holes: Sequence[Hole]
+    holes: Sequence[BoltHole]
     sure: bool
 
 
@@ -107,29 +107,29 @@ class Standing:
     """
 
     query: Query
-    hardware: Hardware
-    outline: Outline
+    hardware: ToolkitRules
+    outline: BallOutline
     pegs: Sequence[Peg]
-    locators: Sequence[tuple[str, Contact]]
-    pose: Pose
-    seat: Seat
+    locators: Sequence[tuple[str, BallContact]]
+    pose: BallPose
+    seat: LocatorWrenches
 
     @classmethod
     def of(
         cls,
         fixture: Fixture,
-        contacts: Sequence[Contact],
-        pose: Pose,
+        contacts: Sequence[BallContact],
+        pose: BallPose,
         query: Query,
-        hardware: Hardware,
-        outline: Outline,
+        hardware: ToolkitRules,
+        outline: BallOutline,
     ) -> Standing:
         """The seat of a fixture in a pose."""
         named = zip(hardware.names, fixture.pegs[:LOCATORS], contacts, strict=False)
         held = [(name, peg, contact) for name, peg, contact in named if not peg.is_on_wall]
         locators = [(name, contact) for name, _, contact in held]
-        still = Pose.of(pose.theta, pose.x, pose.y, arb(0))
-        seat = Seat.of(contacts[:LOCATORS], still)
+        still = BallPose.of(pose.theta, pose.x, pose.y, arb(0))
+        seat = LocatorWrenches.of(contacts[:LOCATORS], still)
         return cls(query, hardware, outline, [peg for _, peg, _ in held], locators, still, seat)
 
     @property
@@ -210,11 +210,11 @@ class Standing:
                 continue
             x, y = turned(point, self.pose.cosine, self.pose.sine)
             tip = x + self.pose.x, y + self.pose.y
-            clamp = self.clamp(Contact(tip, way, side, radius), face, line, direction)
+            clamp = self.clamp(BallContact(tip, way, side, radius), face, line, direction)
             if clamp is not None:
                 yield clamp
 
-    def clamp(self, contact: Contact, face: int, line: int, direction: str) -> SeatClamp | None:
+    def clamp(self, contact: BallContact, face: int, line: int, direction: str) -> SeatClamp | None:
         """A clamp whose tip is where a contact is; None where it certainly breaks a rule of its own."""
         margin = self.query.contact_margin
         touches = verdict(touching_findings("a clamp", contact, face, self.pose, self.outline, margin))
@@ -235,14 +235,14 @@ class Standing:
         holes = list(self.holes(contact, line, direction))
         return SeatClamp(direction, line, face, contact.hole, push, holes, all(sure)) if holes else None
 
-    def holes(self, contact: Contact, line: int, direction: str) -> Iterator[Hole]:
+    def holes(self, contact: BallContact, line: int, direction: str) -> Iterator[BoltHole]:
         """Where a clamp may be bolted whose tip is where a contact is, whatever the other clamp does."""
         upright, rules = direction.endswith("y"), self.hardware.stroke
         if rules.span is None:
             stands = verdict(rules.findings("a clamp", self.locators, contact, self.pose, self.outline))
             if stands is not False:
                 column, row = (line, None) if upright else (None, line)
-                yield Hole(column, row, contact.hole, arb(0), stands is True)
+                yield BoltHole(column, row, contact.hole, arb(0), stands is True)
             return
         (pitch_x, pitch_y), (x, y) = self.lattice.pitch, self.lattice.offset
         tip, sign = contact.hole[int(upright)] - (y if upright else x), sum(WAYS[direction])
@@ -255,9 +255,9 @@ class Standing:
             bolted, pose = evolve(contact, hole=place), evolve(self.pose, travels=(-stroke,))
             stands = verdict(rules.findings("a clamp", self.locators, bolted, pose, self.outline))
             if stands is not False:
-                yield Hole(column, row, place, stroke, stands is True)
+                yield BoltHole(column, row, place, stroke, stands is True)
 
-    def choices(self, one: SeatClamp, other: SeatClamp) -> Iterator[tuple[Hole, Hole, bool]]:
+    def choices(self, one: SeatClamp, other: SeatClamp) -> Iterator[tuple[BoltHole, BoltHole, bool]]:
         """The holes in which two clamps may be bolted together, and whether they certainly may."""
         apart = arb(self.radius(one.direction)) + self.radius(other.direction) - HAIR
         for first, second in product(one.holes, other.holes):
@@ -270,7 +270,7 @@ class Standing:
                 yield first, second, first.sure and second.sure and bool(clear > 0)
 
     def pair_findings(
-        self, fixture: Fixture, pair: Pair, contacts: Sequence[Contact], pose: Pose, balance: SeatBalance
+        self, fixture: Fixture, pair: Pair, contacts: Sequence[BallContact], pose: BallPose, balance: SeatBalance
     ) -> Iterator[Finding]:
         """Whether the clamps are bolted in the holes of the least total travel, and stand for all pairs that they are to."""
         if self.hardware.stroke.span is not None:
@@ -280,7 +280,7 @@ class Standing:
         elif pair.count != 1:
             yield Finding(True, f"it stands for {pair.count} pairs of clamps, and all are listed")
 
-    def stroke_findings(self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose) -> Iterator[Finding]:
+    def stroke_findings(self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose) -> Iterator[Finding]:
         """Whether the clamps are bolted in the holes of the least total travel that have a place together."""
         clamps = []
         for peg, contact in zip(fixture.pegs[LOCATORS:], contacts[LOCATORS:], strict=True):
@@ -315,7 +315,7 @@ def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -
     yield from rule(2 * HAIR - (widest - margin), words, words)
 
 
-def pairs_at(fixture: Fixture, query: Query, hardware: Hardware, outline: Outline) -> tuple[int, int] | None:
+def pairs_at(fixture: Fixture, query: Query, hardware: ToolkitRules, outline: BallOutline) -> tuple[int, int] | None:
     """How many pairs of clamps there are at a fixture's seat, at least and at most; None where its place is not proven."""
     contacts = hardware.contacts(fixture, outline)
     pose, _ = proven_pose(contacts, fixture.pose, hardware.travels(fixture))

@@ -28,12 +28,12 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.verification.balls import Point, exact_point, norm, turned
 from workhold.verification.claims import Claim
-from workhold.verification.contacts import Pose
-from workhold.verification.outline import Outline
+from workhold.verification.contacts import BallPose
+from workhold.verification.outline import BallOutline
 from workhold.verification.part_in_floats import FloatOutline
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.stroke import travelled
-from workhold.verification.seating_contacts import Touching, stop_of, touching_faults, touching_wall
+from workhold.verification.seating_contacts import StatedContact, stop_of, touching_faults, touching_wall
 from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
 __all__ = ["Judged", "SeatingJudge"]
@@ -55,14 +55,14 @@ class SeatingJudge:
     query: Query
 
     @cached_property
-    def hardware(self) -> Hardware:
+    def hardware(self) -> ToolkitRules:
         """The rules of the toolkit."""
-        return Hardware(self.query.toolkit)
+        return ToolkitRules(self.query.toolkit)
 
     @cached_property
-    def outline(self) -> Outline:
+    def outline(self) -> BallOutline:
         """The part in balls."""
-        return Outline.of(self.query.workpiece)
+        return BallOutline.of(self.query.workpiece)
 
     @cached_property
     def rough(self) -> FloatOutline:
@@ -186,7 +186,7 @@ class Judged:
     def ends(self) -> list[Point]:
         """Where each peg of the fixture, or an end of its wall, touches; not every form of a file says it of a wall."""
         contacts = self.judge.hardware.contacts(self.fixture, self.judge.outline)
-        return [contact.place(Pose.written(self.fixture.pose)) for contact in contacts]
+        return [contact.place(BallPose.written(self.fixture.pose)) for contact in contacts]
 
     def kind_of(self, seat: Mapping[str, Any]) -> str:
         """What a seat is called with its contacts."""
@@ -276,7 +276,7 @@ class Judged:
         if high < MOST_FRICTION and not self.sticks(contacts, own["pose"], high):
             yield "the part cannot stick at the sticking friction"
 
-    def sticks(self, contacts: Sequence[Touching], pose: Mapping[str, float], friction: float) -> bool:
+    def sticks(self, contacts: Sequence[StatedContact], pose: Mapping[str, float], friction: float) -> bool:
         """Whether three of four contacts balance inside their cones."""
         edges = np.hstack([self.wrenches(contacts, pose, False, sign * friction) for sign in (1.0, -1.0)])
         for three in combinations(range(4), 3):
@@ -310,7 +310,9 @@ class Judged:
         away = self.judge.rough.farthest(seat["pose"], seat["mirrored"], vars_of(self.fixture))
         return None if SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE else away < SAME_PLACE
 
-    def touching(self, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool, apart: float) -> Touching:
+    def touching(
+        self, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool, apart: float
+    ) -> StatedContact:
         """A contact in a pose, in balls."""
         number = contact["peg"]
         if number in self.on_wall:
@@ -324,7 +326,7 @@ class Judged:
         face = contact.get("face")
         side = outline.faces.get(contact["corner"] if face is None else face)
         if side is None:
-            return Touching(number, exact_point(x, y), exact_point(0.0, 0.0), float("inf"), False)
+            return StatedContact(number, exact_point(x, y), exact_point(0.0, 0.0), float("inf"), False)
         if face is None:
             way, inside = (local[0] - side.start[0], local[1] - side.start[1]), True
             off = abs(norm(way) - radius)
@@ -335,10 +337,10 @@ class Judged:
         normal = way[0] / size, way[1] / size
         normal = turned((-normal[0], normal[1]) if mirrored else normal, cosine, sine)
         at = arb(x) - radius * normal[0], arb(y) - radius * normal[1]
-        return Touching(number, at, normal, float(off.upper()), inside)
+        return StatedContact(number, at, normal, float(off.upper()), inside)
 
     def wrenches(
-        self, contacts: Sequence[Touching], pose: Mapping[str, float], mirrored: bool, friction: float = 0.0
+        self, contacts: Sequence[StatedContact], pose: Mapping[str, float], mirrored: bool, friction: float = 0.0
     ) -> Array:
         """Wrenches (4, K) of contacts that press along their normals, and by friction along their tangents."""
         cx, cy = self.place(self.judge.query.workpiece.center, pose, mirrored)
@@ -353,13 +355,13 @@ class Judged:
         return np.array(columns).reshape(-1, 4).T
 
     def balance(
-        self, contacts: Sequence[Touching], pose: Mapping[str, float], mirrored: bool, forces: Sequence[float]
+        self, contacts: Sequence[StatedContact], pose: Mapping[str, float], mirrored: bool, forces: Sequence[float]
     ) -> bool:
         """Whether forces balance, those of the pegs that move adding up to one."""
         left = self.wrenches(contacts, pose, mirrored) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
         return bool(np.abs(left).max() < BALANCED * (1.0 + sum(forces)) and min(forces) > -PRESSES)
 
-    def can_balance(self, contacts: Sequence[Touching], pose: Mapping[str, float], mirrored: bool) -> bool:
+    def can_balance(self, contacts: Sequence[StatedContact], pose: Mapping[str, float], mirrored: bool) -> bool:
         """Whether some forces do."""
         return balances(self.wrenches(contacts, pose, mirrored), BALANCED)
 

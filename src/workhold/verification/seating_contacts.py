@@ -11,18 +11,18 @@ from flint import arb
 from workhold.model.fixture import Peg
 from workhold.model.toolkit import Toolkit
 from workhold.verification.balls import Point, exact_point, turned
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.sides import ArcSide
 from workhold.verification.tolerances import AGREEMENT
 
-__all__ = ["Touching", "stop_of", "touching_faults", "touching_wall"]
+__all__ = ["StatedContact", "stop_of", "touching_faults", "touching_wall"]
 
 # mm. A tip may be in a locator by this much: rounding.
 APART = 1e-6
 
 
 @frozen
-class Touching:
+class StatedContact:
     """A contact of a seat or a pass.
 
     Parameters
@@ -41,7 +41,9 @@ class Touching:
     is_inside: bool
 
 
-def touching_wall(outline: Outline, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool) -> Touching:
+def touching_wall(
+    outline: BallOutline, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool
+) -> StatedContact:
     """A contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc above it."""
     number, down, is_corner = contact["peg"], exact_point(0.0, -1.0), "corner" in contact
     side = outline.faces.get(contact["corner" if is_corner else "face"])
@@ -54,13 +56,13 @@ def touching_wall(outline: Outline, contact: Mapping[str, int], pose: Mapping[st
         local = side.center[0] + side.radius * x, side.center[1] + side.radius * y
         off = side.distance(local)
     else:
-        return Touching(number, exact_point(0.0, 0.0), down, float("inf"), False)
+        return StatedContact(number, exact_point(0.0, 0.0), down, float("inf"), False)
     x, y = turned((-local[0], local[1]) if mirrored else local, cosine, sine)
     at = x + pose["x"], y + pose["y"]
-    return Touching(number, at, down, float(abs(at[1]).upper()), bool(off < AGREEMENT))
+    return StatedContact(number, at, down, float(abs(at[1]).upper()), bool(off < AGREEMENT))
 
 
-def touching_faults(contacts: Sequence[Touching], on_wall: Sequence[int], wall: str) -> Iterator[str]:
+def touching_faults(contacts: Sequence[StatedContact], on_wall: Sequence[int], wall: str) -> Iterator[str]:
     """Contacts that do not touch what they are said to touch, or stand there twice, or lack the wall's first end.
 
     The pegs ``on_wall`` are ends of the contact with what is called ``wall``.

@@ -30,9 +30,9 @@ from collections.abc import Iterator, Sequence
 from flint import arb
 
 from workhold.verification.balls import Point, dot, norm, turned
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.sides import LineSide, Side
 from workhold.verification.tolerances import HAIR, TANGENT
 
@@ -44,7 +44,7 @@ SHORTEST = HAIR / 1024
 
 
 def touching_findings(
-    name: str, contact: Contact, face: int, pose: Pose, outline: Outline, margin: float
+    name: str, contact: BallContact, face: int, pose: BallPose, outline: BallOutline, margin: float
 ) -> Iterator[Finding]:
     """Whether a peg touches a face, ``margin`` mm inside the ends of its feature, and nothing else."""
     center = contact.in_part(pose)
@@ -80,7 +80,7 @@ def touching_findings(
             yield Finding(clear is False, close if clear is False else edge)
 
 
-def along_feature(contact: Contact, center: Point, step: arb) -> Point:
+def along_feature(contact: BallContact, center: Point, step: arb) -> Point:
     """The point a length in mm along the contact feature from a peg's centre."""
     side = contact.side
     if isinstance(side, LineSide):
@@ -90,13 +90,13 @@ def along_feature(contact: Contact, center: Point, step: arb) -> Point:
     return side.center[0] + x, side.center[1] + y
 
 
-def runs_alongside(contact: Contact, center: Point, side: Side) -> bool:
+def runs_alongside(contact: BallContact, center: Point, side: Side) -> bool:
     """Whether a side runs alongside a peg's face where the peg is."""
     one, two = (side.distance(along_feature(contact, center, arb(step))) for step in (-HAIR, HAIR))
     return bool(abs(one - two) < 2 * HAIR * TANGENT)
 
 
-def clear_within(contact: Contact, center: Point, sides: Sequence[Side], reach: float) -> bool | None:
+def clear_within(contact: BallContact, center: Point, sides: Sequence[Side], reach: float) -> bool | None:
     """Whether a peg stays clear of some sides within a reach in mm along its feature; None if undecided.
 
     Pieces of the feature that are not seen to be clear are halved.
@@ -127,7 +127,7 @@ def clear_within(contact: Contact, center: Point, sides: Sequence[Side], reach: 
     return True if decided and not pieces else None
 
 
-def steepness(contact: Contact, side: Side, around: Point) -> arb:
+def steepness(contact: BallContact, side: Side, around: Point) -> arb:
     """Bound, 1 or less, on how much a side's clearance changes per mm that the peg slides, its centre in a box.
 
     It is the cosine between the peg's way and the way from the side's nearest point to the peg's centre.

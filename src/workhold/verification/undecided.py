@@ -24,7 +24,7 @@ from workhold.model.toolkit import Arrangement, Carrier
 from workhold.verification.balls import PRECISIONS, Point, cross, dot, norm, turned
 from workhold.verification.contacts import standoff
 from workhold.verification.ends import on_circle, on_line
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.rules.stroke import quarter_turns, seen_along_x
 from workhold.verification.seat import LOCATORS
 from workhold.verification.sides import ArcSide, LineSide, Side
@@ -42,7 +42,7 @@ REASONS = (AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED)
 
 
 @frozen(eq=False)
-class Touching:
+class TouchingPeg:
     """A peg that touches a side: the side, how far in mm its centre is from that, the step to it from the first peg in the
     workpiece's frame in mm, its column, and how far in mm it may be off."""
 
@@ -58,7 +58,7 @@ def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str
     if not entries:
         return
     with ctx.workprec(PRECISIONS[0]):
-        outline = Outline.of(query.workpiece)
+        outline = BallOutline.of(query.workpiece)
         for number, entry in enumerate(entries, 1):
             parts = single_entries(entry, query) if query.toolkit.needs_pairs else ((entry, query),)
             fault = next(filter(None, (entry_fault(*part, outline) for part in parts)), "")
@@ -66,7 +66,7 @@ def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str
                 yield f"undecided candidate {number} of the proof {fault}"
 
 
-def entry_fault(entry: Undecided, query: Query, outline: Outline) -> str:
+def entry_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     """What is wrong with an entry of four contacts or two chords; empty when nothing is."""
     fault = written_fault(entry, query, outline)
     if query.toolkit.wall is None:
@@ -131,7 +131,7 @@ def groups_of(entry: Undecided, query: Query) -> list[list[int]]:
     return [list(range(first)), list(range(first, 4))]
 
 
-def written_fault(entry: Undecided, query: Query, outline: Outline) -> str:
+def written_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     """What is wrong with the whole numbers and the words of an entry; empty when nothing is."""
     if entry.type not in [one.title for one in query.toolkit.arrangements if one.name in query.arrangements]:
         return f"is of type {entry.type}, which is not asked for"
@@ -162,7 +162,7 @@ def holes_fault(entry: Undecided, query: Query) -> str:
     return ""
 
 
-def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
+def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     """What is wrong with the place of an entry; empty when nothing is, and where that is not certain."""
     if entry.reach_deg is None and not is_of_chords(entry):
         return ""
@@ -181,7 +181,7 @@ def place_fault(entry: Undecided, query: Query, outline: Outline) -> str:
         turns = [turned(step, cosine, -sine) for step in steps]
         radii = [standoff(side, carriers[group[0]].peg_radius, carriers[group[0]].flat) for side in sides]
         columns = [entry.columns[k] for k in group]
-        pegs.append([Touching(*one, loose) for one in zip(sides, radii, turns, columns, strict=True)])
+        pegs.append([TouchingPeg(*one, loose) for one in zip(sides, radii, turns, columns, strict=True)])
     held = [first_pegs(group) if len(group) > 1 else None for group in pegs]
     if any(places is not None and not places for places in held):
         return "is no place where its pegs touch their faces"
@@ -213,7 +213,7 @@ def outline_size(query: Query) -> float:
     return hypot(x1 - x0, y1 - y0) + 2.0 * max(carrier.peg_radius for carrier in query.toolkit.carriers)
 
 
-def first_pegs(group: Sequence[Touching]) -> list[Point] | None:
+def first_pegs(group: Sequence[TouchingPeg]) -> list[Point] | None:
     """Where the first peg of a jaw may be when all its pegs touch; None when that may be anywhere along a way."""
     one = group[0]
     other = next((peg for peg in group[1:] if are_across(one, peg)), None)
@@ -230,7 +230,7 @@ def first_pegs(group: Sequence[Touching]) -> list[Point] | None:
     return [point for point in points if all(may_touch(peg, point) for peg in group)]
 
 
-def are_across(one: Touching, other: Touching) -> bool:
+def are_across(one: TouchingPeg, other: TouchingPeg) -> bool:
     """Whether the ways of two pegs of one jaw certainly are no nearly parallel lines and no nearly concentric circles."""
     a, b = one.side, other.side
     if isinstance(a, LineSide) and isinstance(b, LineSide):
@@ -241,7 +241,7 @@ def are_across(one: Touching, other: Touching) -> bool:
     return True
 
 
-def may_slide_with(one: Touching, other: Touching) -> bool:
+def may_slide_with(one: TouchingPeg, other: TouchingPeg) -> bool:
     """Whether two pegs whose ways run parallel may touch both at once."""
     a, b = one.side, other.side
     if isinstance(a, ArcSide):
@@ -251,7 +251,7 @@ def may_slide_with(one: Touching, other: Touching) -> bool:
     return not abs(b.gap(point) - other.radius) > one.loose + PARALLEL * (a.length + norm(other.step))
 
 
-def may_touch(peg: Touching, first: Point) -> bool:
+def may_touch(peg: TouchingPeg, first: Point) -> bool:
     """Whether a peg may touch its side inside its ends, with the first peg of its jaw at a place."""
     side, point = peg.side, (first[0] + peg.step[0], first[1] + peg.step[1])
     if isinstance(side, ArcSide) and not side.reach(peg.radius) > 0:
@@ -261,7 +261,7 @@ def may_touch(peg: Touching, first: Point) -> bool:
     return not any(slack < -peg.loose for slack in side.slacks(point, peg.radius))
 
 
-def on_row(moved: Touching, tail: Point, up: arb, turn: Point) -> list[Point] | None:
+def on_row(moved: TouchingPeg, tail: Point, up: arb, turn: Point) -> list[Point] | None:
     """Where a peg may be that stands ``up`` mm above another in the toolkit; None where its side runs along."""
     side, across = moved.side, turned((arb(0), arb(1)), turn[0], -turn[1])
     if isinstance(side, LineSide):

@@ -18,7 +18,7 @@ from workhold.verification.order import order_faults
 from workhold.verification.patterns import pattern_faults
 from workhold.verification.repeats import Seen, Turning
 from workhold.verification.restrictions import broken_restriction
-from workhold.verification.rules.hardware import Hardware
+from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seating import SeatingJudge
 
 __all__ = ["Unproven", "Verification", "no_progress", "not_shown", "verify", "verify_file", "verify_listing"]
@@ -86,7 +86,7 @@ def not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
     """What a result in a toolkit, perhaps with seating, alone cannot show; answering its query again does."""
     left_out = "seats" if toolkit.needs_pairs else "fixtures"
     yield f"whether {left_out} were left out, with all counts adjusted"
-    yield f"whether the query was wider: what is listed also meets one with {Hardware(toolkit).wider_words}"
+    yield f"whether the query was wider: what is listed also meets one with {ToolkitRules(toolkit).wider_words}"
     if is_seated:
         yield "whether a fixture has further seats, or a lower pass, and how far its way out, cage, placing and depths go"
     yield from NOT_SHOWN

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields, written
 from workhold.geometry.segment import Arc, Segment
+from workhold.model.carrier import Carrier
 from workhold.model.clamp import ShownClamp
 from workhold.model.contact_kind import WALL_END
 from workhold.model.explanation import Explanation
@@ -22,7 +23,7 @@ from workhold.model.result import FixtureTable, fixture_at
 from workhold.model.setting import settings_of
 from workhold.model.shown import Shown, shown
 from workhold.model.tightening import order_words
-from workhold.model.toolkit import Carrier, Toolkit
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite
 

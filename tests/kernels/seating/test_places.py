@@ -9,7 +9,7 @@ import pytest
 
 from loose_sets import laid_out, straight
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP, GAVE_UP
-from workhold.kernels.seating.columns import Families
+from workhold.kernels.seating.columns import Manifolds
 from workhold.kernels.seating.places import OUTSIDE, STOP, leads_out, write_places
 
 NO_SEATS = np.zeros((0, 4))
@@ -18,7 +18,7 @@ NO_SEATS = np.zeros((0, 4))
 def told(
     ends: np.ndarray,
     how: list[int],
-    families: Families,
+    families: Manifolds,
     falling: list[tuple[int, np.ndarray]] = (),
     seats: np.ndarray = NO_SEATS,
     numbers: list[int] = (),

@@ -8,12 +8,11 @@ from math import cos, hypot, sin
 import numpy as np
 import pytest
 
-from seating_examples import cells_by_holding, solved
+from seating_examples import cells_by_pair, solved
 from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.curves.columns import HEAD, TAIL
-from workhold.kernels.seating.columns import DEPTH, FIRST_PEG, HIGH, HOLDING, KIND, LOW, SOURCE, VAGUE
-from workhold.kernels.seating.holdings import held
-from workhold.kernels.seating.middles import held_in, ray_in
+from workhold.kernels.seating.columns import DEPTH, FIRST_PEG, HIGH, KIND, LOW, PAIR, SOURCE, VAGUE
+from workhold.kernels.seating.middles import pair_in, ray_in
 from workhold.kernels.seating.pieces import foot, on_piece, share_normals
 from workhold.kernels.seating.three_contacts import (
     ROOT_LENGTH,
@@ -24,6 +23,7 @@ from workhold.kernels.seating.three_contacts import (
     may_balance,
     three_contacts,
 )
+from workhold.kernels.seating.two_contact_curves import pair_at
 from workhold.seating.growing_rows import filled
 from workhold.seating.pattern import Pattern
 from workhold.seating.two_contact_curves import TwoContactCurves
@@ -34,31 +34,31 @@ STILL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def cells_of(number):
-    """An example's part and holdings, and every cell over which its ray is known, with its middle."""
+    """An example's part and curves, and every cell over which its ray is known, with its middle."""
     solver, fixture, _ = solved(number)
     pattern = Pattern.of(fixture, solver.toolkit)
     boundary = solver.closing(pattern, False).boundary
-    holdings = TwoContactCurves.of(boundary, pattern)
-    kinds = holdings.given.holdings[:, KIND]
+    curves = TwoContactCurves.of(boundary, pattern)
+    kinds = curves.given.pairs[:, KIND]
     kept = [
         (cell, middle)
-        for side in holdings.jaws
-        for cell, middle in zip(*cells_by_holding(holdings, side), strict=True)
-        if cell[VAGUE] == 0.0 and kinds[int(cell[HOLDING])] == 0.0 and ray_in(middle)[0] > 0.0
+        for side in curves.jaws
+        for cell, middle in zip(*cells_by_pair(curves, side), strict=True)
+        if cell[VAGUE] == 0.0 and kinds[int(cell[PAIR])] == 0.0 and ray_in(middle)[0] > 0.0
     ]
     assert len(kept) > 200
-    return boundary, holdings, kept
+    return boundary, curves, kept
 
 
 @pytest.mark.parametrize("number", range(3))
 def test_instant_centers_are_on_their_ray(number):
     """As far off as told, in about its direction, the first contact no farther from its place in the middle than told."""
-    _, holdings, kept = cells_of(number)
-    given = holdings.sought
+    _, curves, kept = cells_of(number)
+    given = curves.sought
     for cell, middle in kept:
-        (least, most, rx, ry, drift, turn, _), known = ray_in(middle), held_in(middle)
+        (least, most, rx, ry, drift, turn, _), known = ray_in(middle), pair_in(middle)
         for psi in np.linspace(cell[LOW], cell[HIGH], 7)[1:-1]:
-            s = held(given.holdings[int(cell[HOLDING])], given, psi)
+            s = pair_at(given.pairs[int(cell[PAIR])], given, psi)
             px, py = s[6] - s[0], s[7] - s[1]
             far = hypot(px, py)
             assert least * (1.0 - SHARE) - ROUNDING <= far <= most * (1.0 + SHARE) + ROUNDING
@@ -69,12 +69,12 @@ def test_instant_centers_are_on_their_ray(number):
 @pytest.mark.parametrize("number", range(3))
 def test_where_a_third_peg_balances_it_is_found(number):
     """Pegs of the other jaw are put level with the foot of P at an orientation in a cell, if the three forces balance."""
-    boundary, holdings, kept = cells_of(number)
-    given, random, count = holdings.sought, np.random.default_rng(number), 0
+    boundary, curves, kept = cells_of(number)
+    given, random, count = curves.sought, np.random.default_rng(number), 0
     work = np.empty((DEPTH, 2)), np.empty((5, len(boundary.discs)))
     for cell, middle in kept:
-        holding, psi = given.holdings[int(cell[HOLDING])], random.uniform(cell[LOW], cell[HIGH])
-        tail, curve, s = int(holding[FIRST_PEG]), int(holding[SOURCE]), held(holding, given, psi)
+        pair, psi = given.pairs[int(cell[PAIR])], random.uniform(cell[LOW], cell[HIGH])
+        tail, curve, s = int(pair[FIRST_PEG]), int(pair[SOURCE]), pair_at(pair, given, psi)
         others, (x, y) = given.right != given.right[tail], (cos(psi), sin(psi))
         push = 1.0 if given.right[tail] == 0 else -1.0
         for piece, side in product(range(len(given.rows)), (1.0, -1.0)):

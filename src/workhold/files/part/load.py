@@ -27,9 +27,16 @@ from workhold.files.outline.nesting import DrawnPart, chosen_part, nest, refuse_
 from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
 from workhold.files.part.builtin import builtin_parts, builtin_path
 from workhold.files.part.finding import found, kind_of, read_bytes
-from workhold.files.part.not_asked import refuse_axis, refuse_fit, refuse_layers
 from workhold.files.part.objects import drawing_of_object
-from workhold.files.questions import DRAWING_UNIT, PART_NUMBER, UnitAskedError, worded
+from workhold.files.questions import (
+    DRAWING_UNIT,
+    PART_NUMBER,
+    UnitAskedError,
+    refuse_axis,
+    refuse_fit,
+    refuse_layers,
+    worded,
+)
 from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
 

@@ -21,12 +21,13 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.files.result.rounding import LENGTH_STEPS, as_told, known_figures, rounded, significant
+from workhold.model.arrangement import Arrangement
 from workhold.model.carrier import Carrier
 from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN
 from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES, Figure
 from workhold.model.result import FixtureTable, flat_angles, peg_places
-from workhold.model.toolkit import Arrangement, Toolkit
+from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["fixture_lines", "fixture_rows"]
@@ -136,9 +137,10 @@ class Told:
         return range(self.toolkit.peg_count)
 
     @property
-    def on_walls(self) -> list[int]:
-        """The numbers of the contacts that are ends of walls."""
-        return [k for ends in self.toolkit.ends_on_walls for k in self.contacts[ends]]
+    def placed(self) -> list[int]:
+        """The numbers of the contacts that are no ends of walls."""
+        on_walls = [k for ends in self.toolkit.ends_on_walls for k in self.contacts[ends]]
+        return [k for k in self.contacts if k not in on_walls]
 
     @property
     def pose(self) -> list[list[Any]]:
@@ -150,8 +152,8 @@ class Told:
         """A column of the flats' angles in degrees, of all pegs in places of their own, where there are any."""
         if FLAT_PIN not in self.toolkit.contacts:
             return []
-        angles = flat_angles(self.table, self.toolkit, self.workpiece)
-        return [[[angle for k, angle in enumerate(row) if k not in self.on_walls] for row in angles]]
+        angles, placed = flat_angles(self.table, self.toolkit, self.workpiece), self.placed
+        return [[[row[k] for k in placed] for row in angles]]
 
     def row_columns(self) -> list[list[Any]]:
         """The columns of :func:`fixture_rows`."""
@@ -177,7 +179,7 @@ class Told:
             walls += [array[:, k] for k in several for array in (self.x, self.y)]
             walls += [table.face[:, k] for k in several]
             walls += [part for k in several for part in force[:, k].T]
-        for k in (k for k in self.contacts if k not in self.on_walls):
+        for k in self.placed:
             times = 2 if k >= len(self.contacts) - tips else 1
             pegs += [*[table.column[:, k], table.row[:, k]] * times, self.x[:, k], self.y[:, k], table.face[:, k]]
             pegs += [*force[:, k].T]

@@ -1,1 +1,1 @@
-"""Kernels of seating: what pegs can do with a part besides holding it in a fixture's pose."""
+"""Kernels of seating: what pegs can do with a part besides pair it in a fixture's pose."""

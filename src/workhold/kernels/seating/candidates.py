@@ -1,4 +1,4 @@
-"""From roots to configurations with contacts, and whether forces balance there."""
+"""Candidates of equilibria, made from roots, and whether forces balance there."""
 
 from __future__ import annotations
 
@@ -32,11 +32,10 @@ from workhold.kernels.seating.columns import (
     THETA,
     Given,
 )
-from workhold.kernels.seating.holdings import END, Held, held, is_on_its_pieces
 from workhold.kernels.seating.pieces import Foot, clearance, distance_to, foot, normal_at, on_piece
 from workhold.kernels.seating.three_contacts import (
     ROOT_DOUBT,
-    ROOT_HOLDING,
+    ROOT_PAIR,
     ROOT_PEG,
     ROOT_PIECE,
     ROOT_PSI,
@@ -44,6 +43,7 @@ from workhold.kernels.seating.three_contacts import (
     center_velocity,
     slope_over,
 )
+from workhold.kernels.seating.two_contact_curves import END, PairState, is_on_its_pieces, pair_at
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -52,19 +52,20 @@ IntArray = NDArray[np.int64]
 SINGULAR = 1e-14
 # mm. Pegs farther than this from what they are said to touch do not touch it.
 MISFIT = 1e-6
-# No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left so.
+# No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left
+# so.
 BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
-# What is told of a candidate: it is no equilibrium, it is one, or one that is in doubt.
+# Verdicts on a candidate: it is no equilibrium, it is one, or it is in doubt.
 NO_BALANCE, IN_BALANCE, DOUBTFUL = 0, 1, 2
 
 
 @inner
-def write_holding(row: Array, at: int, holding: Array, given: Given, pocket_pieces: IntArray) -> None:
-    """Write the two contacts of a holding to a candidate as its contacts ``at`` and the next."""
-    k = int(holding[SOURCE])
-    row[PEG + at], row[PEG + at + 1] = holding[FIRST_PEG], holding[SECOND_PEG]
-    if holding[KIND] == 1.0:
-        row[PEG + at + 1] = holding[FIRST_PEG]
+def write_pair(row: Array, at: int, pair: Array, given: Given, pocket_pieces: IntArray) -> None:
+    """Writes the two contacts of a pair to a candidate as its contacts ``at`` and the next."""
+    k = int(pair[SOURCE])
+    row[PEG + at], row[PEG + at + 1] = pair[FIRST_PEG], pair[SECOND_PEG]
+    if pair[KIND] == 1.0:
+        row[PEG + at + 1] = pair[FIRST_PEG]
         row[PIECE + at], row[PIECE + at + 1] = pocket_pieces[k, 0], pocket_pieces[k, 1]
     else:
         row[PIECE + at], row[PIECE + at + 1] = given.curves[k, TAIL], given.curves[k, HEAD]
@@ -72,7 +73,7 @@ def write_holding(row: Array, at: int, holding: Array, given: Given, pocket_piec
 
 @inner
 def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> None:
-    """Begin a candidate anew with a place of the part and no contacts."""
+    """Begins a candidate anew with a place of the part and no contacts."""
     for k in range(CANDIDATE_LENGTH):
         row[k] = 0.0
     for k in range(4):
@@ -82,15 +83,15 @@ def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> N
 
 @inner
 def slope_of_miss(
-    holding: Array, piece: Array, side: float, s: Held, f: Foot, cosine: float, sine: float, psi: float, given: Given
+    pair: Array, piece: Array, side: float, s: PairState, f: Foot, cosine: float, sine: float, psi: float, given: Given
 ) -> float:
     """The derivative of MISS in mm per radian; infinite, or no number, where that of P is not known.
 
     Not by differences: beside a tangency a curve may end within any step.
     """
     motion = ((0.0, 0.0), (0.0, 0.0))
-    if holding[KIND] == 0.0:
-        k, alpha = int(holding[SOURCE]), psi + holding[ANGLE]
+    if pair[KIND] == 0.0:
+        k, alpha = int(pair[SOURCE]), psi + pair[ANGLE]
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
         sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
         motion = center_velocity(a, b, given.reals[k], alpha, alpha, sign)
@@ -100,30 +101,30 @@ def slope_of_miss(
 
 @compiled
 def complete_three(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
-    """Write the candidates of three contacts at roots of MISS (R, 6) to ``out``; return their number.
+    """Writes the candidates of three contacts at roots of MISS (R, 6) to ``out``; returns their number.
 
-    With beta how far the third contact is from the foot of P, along the face, S' = beta / (n . x) and so, at the foot,
-    S'' = beta' / (n . x); beta is the height missed over -(n . x), times 1 + kappa (P - foot) . n on an arc of curvature
-    kappa. Of a left third peg the sign is the other.
+    With beta how far the third contact is from the foot of P, along the face, S' = beta / (n . x). So at the
+    foot S'' = beta' / (n . x). Here beta is the height missed over -(n . x), times 1 + kappa (P - foot) . n
+    on an arc of curvature kappa. For a third peg that stands still the sign is the other.
     """
     count = 0
     for r in range(roots.shape[0]):
         root = roots[r]
-        holding, piece = given.holdings[int(root[ROOT_HOLDING])], given.rows[int(root[ROOT_PIECE])]
-        third, psi, tail = int(root[ROOT_PEG]), root[ROOT_PSI], int(holding[FIRST_PEG])
-        s = held(holding, given, psi)
+        pair, piece = given.pairs[int(root[ROOT_PAIR])], given.rows[int(root[ROOT_PIECE])]
+        third, psi, tail = int(root[ROOT_PEG]), root[ROOT_PSI], int(pair[FIRST_PEG])
+        s = pair_at(pair, given, psi)
         f = foot(piece, s[6], s[7], root[ROOT_SIDE])
-        if not (on_piece(piece, f[0], f[1], END) and is_on_its_pieces(holding, given, psi, s[0], s[1])):
+        if not (on_piece(piece, f[0], f[1], END) and is_on_its_pieces(pair, given, psi, s[0], s[1])):
             continue
         cosine, sine = cos(psi), sin(psi)
         x = given.pegs[tail, 0] - (cosine * s[0] + sine * s[1])
         y = given.pegs[tail, 1] - (cosine * s[1] - sine * s[0])
         row = out[count]
         write_pose(row, -psi, x, y, 3)
-        write_holding(row, 0, holding, given, pocket_pieces)
+        write_pair(row, 0, pair, given, pocket_pieces)
         row[PEG + 2], row[PIECE + 2], row[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
         place_third(row, cosine * f[0] + sine * f[1], third, given)
-        slope = slope_of_miss(holding, piece, root[ROOT_SIDE], s, f, cosine, sine, psi, given)
+        slope = slope_of_miss(pair, piece, root[ROOT_SIDE], s, f, cosine, sine, psi, given)
         if not abs(slope) < inf:
             slope, row[DOUBT] = 0.0, 1.0
         bend = 0.0 if piece[IS_ARC] == 0.0 else piece[SIGN] / piece[RADIUS]
@@ -140,8 +141,10 @@ def complete_three(roots: Array, given: Given, pocket_pieces: IntArray, out: Arr
 
 @inner
 def place_third(row: Array, along: float, peg: int, given: Given) -> None:
-    """Write the separation at which a peg of the other jaw is at x ``along`` from the part's place; of a right jaw's holding
-    the place, written for separation 0, moves with it."""
+    """Writes the separation at which a peg of the other jaw is at x ``along`` from the part's place.
+
+    The place of a pair of the moving jaw, written for separation 0, moves with it.
+    """
     if given.right[peg] == 1:
         row[SEPARATION] = row[PLACE_X] + along - given.pegs[peg, 0]
     else:
@@ -151,12 +154,15 @@ def place_third(row: Array, along: float, peg: int, given: Given) -> None:
 
 @compiled
 def complete_two(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
-    """Write the candidates of four contacts, two of each jaw, at roots of APART (R, 6) to ``out``; return their number."""
+    """Writes the candidates of four contacts, two of each jaw, at roots of APART (R, 6).
+
+    Returns their number.
+    """
     count = 0
     for r in range(roots.shape[0]):
         psi = roots[r, ROOT_PSI]
-        one, two = given.holdings[int(roots[r, ROOT_HOLDING])], given.holdings[int(roots[r, ROOT_PIECE])]
-        s, t = held(one, given, psi), held(two, given, psi)
+        one, two = given.pairs[int(roots[r, ROOT_PAIR])], given.pairs[int(roots[r, ROOT_PIECE])]
+        s, t = pair_at(one, given, psi), pair_at(two, given, psi)
         if not (is_on_its_pieces(one, given, psi, s[0], s[1]) and is_on_its_pieces(two, given, psi, t[0], t[1])):
             continue
         cosine, sine = cos(psi), sin(psi)
@@ -165,8 +171,8 @@ def complete_two(roots: Array, given: Given, pocket_pieces: IntArray, out: Array
         row = out[count]
         write_pose(row, -psi, x, y, 4)
         row[SEPARATION] = x - (given.pegs[q, 0] - (cosine * t[0] + sine * t[1]))
-        write_holding(row, 0, one, given, pocket_pieces)
-        write_holding(row, 2, two, given, pocket_pieces)
+        write_pair(row, 0, one, given, pocket_pieces)
+        write_pair(row, 2, two, given, pocket_pieces)
         row[DOUBT] = roots[r, ROOT_DOUBT]
         count += 1
     return count
@@ -174,10 +180,11 @@ def complete_two(roots: Array, given: Given, pocket_pieces: IntArray, out: Array
 
 @inner
 def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) -> int:
-    """Write candidates of a part that three contacts fix to a jaw, with each piece that a peg of the other meets at its
-    height.
+    """Writes candidates of a part that three contacts fix to a jaw, with each piece that another peg meets.
 
-    fixed : candidate with three contacts, its place that at separation 0. Return the new count, or -1.
+    The other pegs are those of the other jaw, at their heights.
+
+    fixed : candidate with three contacts, its place that at separation 0. Returns the new count, or -1.
     """
     theta = fixed[THETA]
     cosine, sine = cos(theta), sin(theta)
@@ -215,18 +222,20 @@ def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) ->
 
 @compiled
 def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, out: Array) -> int:
-    """Write the candidates of three contacts of a jaw, at roots of GAP (R, 6), to ``out``, their place that at separation 0;
-    return their number."""
+    """Writes the candidates of three contacts of a jaw, at roots of GAP (R, 6); returns their number.
+
+    Their place is that at separation 0.
+    """
     count = 0
     for r in range(roots.shape[0]):
         root = roots[r]
-        holding, psi = given.holdings[int(root[ROOT_HOLDING])], root[ROOT_PSI]
-        third, piece, tail = int(root[ROOT_PEG]), given.rows[int(root[ROOT_PIECE])], int(holding[FIRST_PEG])
-        s = held(holding, given, psi)
+        pair, psi = given.pairs[int(root[ROOT_PAIR])], root[ROOT_PSI]
+        third, piece, tail = int(root[ROOT_PEG]), given.rows[int(root[ROOT_PIECE])], int(pair[FIRST_PEG])
+        s = pair_at(pair, given, psi)
         cosine, sine = cos(psi), sin(psi)
         ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]
         if not (
-            is_on_its_pieces(holding, given, psi, s[0], s[1])
+            is_on_its_pieces(pair, given, psi, s[0], s[1])
             and on_piece(piece, s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy, END)
         ):
             continue
@@ -234,7 +243,7 @@ def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, out: Arr
         y = given.pegs[tail, 1] - (cosine * s[1] - sine * s[0])
         row = out[count]
         write_pose(row, -psi, x, y, 3)
-        write_holding(row, 0, holding, given, pocket_pieces)
+        write_pair(row, 0, pair, given, pocket_pieces)
         row[PEG + 2], row[PIECE + 2], row[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
         count += 1
     return count
@@ -242,7 +251,7 @@ def complete_third(roots: Array, given: Given, pocket_pieces: IntArray, out: Arr
 
 @compiled
 def fourths(fixed: Array, jaw: int, given: Given, out: Array) -> int:
-    """See ``add_fourths``, for a part that three contacts fix to a jaw in several places (N, 24)."""
+    """Writes what ``add_fourths`` does, of a part that three contacts fix to a jaw in places (N, 24)."""
     count = 0
     for n in range(fixed.shape[0]):
         count = add_fourths(fixed[n], jaw, given, out, count)
@@ -253,7 +262,7 @@ def fourths(fixed: Array, jaw: int, given: Given, out: Array) -> int:
 
 @compiled
 def settle(candidates: Array, given: Given, size: float, balance: Array, normal: Array) -> None:
-    """Write the forces of candidates (N, 24), how well they balance, and the clearance of the pegs that do not touch.
+    """Writes the forces of candidates (N, 24), how well they balance, and the clearance of all other pegs.
 
     Forces, moments over ``size`` in mm and the jaw give four equations; they are met by least squares.
 
@@ -303,8 +312,8 @@ def settle(candidates: Array, given: Given, size: float, balance: Array, normal:
 
 
 @compiled
-def tell_balance(candidates: Array, slack: float, slack_in_doubt: float, told: NDArray[np.int8]) -> None:
-    """Write of settled candidates (N, 24) whether all contacts press and forces balance: NO_BALANCE, IN_BALANCE or DOUBTFUL.
+def judge_balance(candidates: Array, slack: float, slack_in_doubt: float, verdicts: NDArray[np.int8]) -> None:
+    """Writes whether all contacts of candidates (N, 24) press and balance, or whether that is in doubt.
 
     Parameters
     ----------
@@ -312,18 +321,18 @@ def tell_balance(candidates: Array, slack: float, slack_in_doubt: float, told: N
     """
     for number in range(candidates.shape[0]):
         row = candidates[number]
-        pressed, told[number] = True, NO_BALANCE
+        pressed, verdicts[number] = True, NO_BALANCE
         for k in range(int(row[CONTACTS])):
             pressed = pressed and row[FORCE + k] > LEAST_FORCE
         if pressed and row[DOUBT] == 0.0 and row[RESIDUAL] < BALANCED and row[CLEAR] > -slack:
-            told[number] = IN_BALANCE
+            verdicts[number] = IN_BALANCE
         elif pressed and row[DOUBT] != 0.0 and row[RESIDUAL] < BALANCED_IN_DOUBT and row[CLEAR] > -slack_in_doubt:
-            told[number] = DOUBTFUL
+            verdicts[number] = DOUBTFUL
 
 
 @inner
 def solve(balance: Array, normal: Array, n: int) -> bool:
-    """Bring the normal equations of n forces to diagonal form; whether that is possible."""
+    """Brings the normal equations of n forces to diagonal form; returns whether that is possible."""
     for i in range(n):
         for j in range(n):
             normal[i, j] = 0.0

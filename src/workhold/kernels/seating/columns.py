@@ -1,22 +1,40 @@
 """The rows that kernels of seating hand each other, and what all of them are given.
 
-A holding is two contacts of one jaw, as a curve over psi, the orientation of the pegs seen from the part (= -theta): a chord
-curve, or one peg in a pocket, about which the part turns. KIND (0 chord, 1 pocket), SOURCE (number of the curve or the
-pocket), FIRST_PEG and SECOND_PEG (tail and head of a chord, the second -1 of a pocket), ANGLE (of the chord in the vise
-frame, so that alpha = psi + angle), PIVOT_X and PIVOT_Y (of a pocket).
+A pair is two contacts of one jaw, a two-contact curve over psi, which is the orientation of the pegs seen
+from the part (= -theta). It is a chord curve, or one peg in a pocket, about which the part turns.
 
-A cell is a part of a holding's range: LOW and HIGH (psi), SPEED (bound of how fast the instant centre moves, in mm per
-radian), BOTTOM and TOP (bounds of the height), HOLDING (number), VAGUE (1 beside a tangency, where the speed is unbounded).
+- KIND : 0 for a chord, 1 for a pocket.
+- SOURCE : number of the curve or the pocket.
+- FIRST_PEG, SECOND_PEG : tail and head of a chord; the second is -1 for a pocket.
+- ANGLE : of the chord in the vise frame, so that alpha = psi + angle.
+- PIVOT_X, PIVOT_Y : of a pocket.
 
-A candidate is a configuration that may be an equilibrium: THETA, PLACE_X, PLACE_Y, SEPARATION, CONTACTS (how many),
-four pegs from PEG on, four pieces from PIECE on, four forces from FORCE on (per unit of jaw force; of contacts there
-are fewer), SECOND (second derivative of the separation along what is left free, in any positive measure; 0 of four
-contacts), the direction of that motion from MOTION on (theta, x, y), DOUBT (1 where bounds did not decide that it
-exists), CLEAR (least clearance in mm of the pegs that do not touch), RESIDUAL (how far the forces are from a balance).
+A cell is a part of a pair's range.
 
-A node is a configuration on a way down (theta, x, y, S), with STEP and STEP_ALONG (how long the next steps from it are in
-mm, of linear programs and along both faces), COSINE and SINE (of theta), TURNED and MOVED (how far in radians and in mm the
-way has turned and moved since it began, all of it counted).
+- LOW, HIGH : of psi.
+- SPEED : bound of how fast the instant centre moves, in mm per radian.
+- BOTTOM, TOP : bounds of the height.
+- PAIR : its number.
+- VAGUE : 1 beside a tangency, where the speed is unbounded.
+
+A candidate is a configuration that may be an equilibrium.
+
+- THETA, PLACE_X, PLACE_Y, SEPARATION : the configuration.
+- CONTACTS : how many; four pegs from PEG on, four pieces from PIECE on, and four forces from FORCE on, per
+unit
+  of jaw force, have room for them.
+- SECOND : second derivative of the separation along what is left free, in any positive measure; 0 of four
+  contacts. The direction of that motion is from MOTION on (theta, x, y).
+- DOUBT : 1 where bounds did not decide that it exists.
+- CLEAR : least clearance in mm of the pegs that do not touch.
+- RESIDUAL : how far the forces are from a balance.
+
+A node is a configuration (theta, x, y, S) on a descent path.
+
+- STEP, STEP_ALONG : how long the next steps are in mm, of linear programs and along both faces.
+- COSINE, SINE : of theta.
+- TURNED, MOVED : how far in radians and in mm the path has turned and moved since it began, all of it
+counted.
 """
 
 from __future__ import annotations
@@ -28,8 +46,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 KIND, SOURCE, FIRST_PEG, SECOND_PEG, ANGLE, PIVOT_X, PIVOT_Y = range(7)
-HOLDING_LENGTH = 7
-LOW, HIGH, SPEED, BOTTOM, TOP, HOLDING, VAGUE = range(7)
+PAIR_LENGTH = 7
+LOW, HIGH, SPEED, BOTTOM, TOP, PAIR, VAGUE = range(7)
 CELL_LENGTH = 7
 THETA, PLACE_X, PLACE_Y, SEPARATION, CONTACTS, PEG = range(6)
 PIECE, FORCE, SECOND, MOTION = 9, 13, 17, 18
@@ -44,19 +62,20 @@ DEPTH = 128
 
 
 class Given(NamedTuple):
-    """What is held by what.
+    """What is pair_at by what.
 
     Parameters
     ----------
-    holdings : (H, 7), see above.
+    pairs : (H, 7), see above.
     curves, reals : (C, 7) and (C, 14) of the chord curves, see ``curves.columns``.
     rows : (N, 10) pieces of the boundary on which the pegs' centres lie.
     pegs : (4, 2) places of the pegs at jaw separation 0, in mm.
     right : (4,) 1 for pegs of the right jaw, which moves along x, 0 for others.
-    parts : (2, 2) first and past-the-last number of the pieces that pegs of the left jaw, and of the right one, touch.
+    parts : (2, 2) first and past-the-last number of the pieces that pegs of the left jaw, and of the right
+        one, touch.
     """
 
-    holdings: NDArray[np.float64]
+    pairs: NDArray[np.float64]
     curves: NDArray[np.int64]
     reals: NDArray[np.float64]
     rows: NDArray[np.float64]
@@ -70,9 +89,9 @@ class JawCells(NamedTuple):
 
     Parameters
     ----------
-    cells : (C, 7), ordered by their lowest orientation; those that reach beyond a turn stand there a second time, a turn
-        lower.
-    before : how many holdings of the pattern stand before its own.
+    cells : (C, 7), ordered by their lowest orientation; those that reach beyond a turn stand there a second
+        time, a turn lower.
+    before : how many pairs of the pattern stand before its own.
     height : of its first peg in the pattern, in mm.
     """
 
@@ -87,14 +106,15 @@ class Obstacles(NamedTuple):
     Parameters
     ----------
     rows : (N, 10) pieces.
-    spans : (N, 4) lowest and highest parameter at which each counts: past a pocket it counts a little further; and of arcs
-        the cosines of both.
+    spans : (N, 4) lowest and highest parameter at which each counts: past a pocket it counts a little
+        further; and of arcs the cosines of both.
     discs : (N, 3) in which they lie, as far as they count: middle and radius in mm.
     pegs, right, parts : as of ``Given``.
     size : of the part in mm, by which turns are compared with shifts.
     stop : the smallest jaw separation, in mm.
     hull : (H, 6) what may touch a wall, see ``seating.walls``; none where there is no wall.
-    wall : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall is.
+    half_plane : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall
+        is.
     most : the largest jaw separation, in mm.
     """
 
@@ -107,20 +127,20 @@ class Obstacles(NamedTuple):
     size: float
     stop: float
     hull: NDArray[np.float64]
-    wall: NDArray[np.float64]
+    half_plane: NDArray[np.float64]
     most: float = inf
 
 
-class Ways(NamedTuple):
-    """Ways that a part can go with one separation while some contacts stay, one after the other.
+class SelfMotions(NamedTuple):
+    """Self-motions of a part, with one separation while some contacts stay, one after the other.
 
     Parameters
     ----------
     configs, counts : (M, 4) along all, and how many of them are of each: (W,).
     closed : (W,) 1 where the last one is beside the first.
-    across : see ``Families``.
-    pegs, pieces : (W, 4) numbers of the pegs between which they lead, of which a wall is the last, and the piece that each
-        has to touch; -1 of none.
+    across : see ``Manifolds``.
+    pegs, pieces : (W, 4) numbers of the pegs between which they lead, of which a wall is the last, and the
+        piece that each has to touch; -1 of none.
     clear : (M, 4) clearances of these pegs in mm, -inf first where one of them hinders.
     """
 
@@ -133,27 +153,28 @@ class Ways(NamedTuple):
     clear: NDArray[np.float64]
 
     @classmethod
-    def room(cls, count: int, configs: int) -> Ways:
+    def room(cls, count: int, configs: int) -> SelfMotions:
         """Room for so many, and for so many configurations along them; of nothing is known whose it is."""
         numbers = np.full((2, count, 4), -1)
         made = np.empty((configs, 4)), np.zeros(count, np.int64), np.zeros(count, np.int8), np.empty((count, 2))
         return cls(*made, numbers[0], numbers[1], np.zeros((configs, 4)))
 
-    def first(self, count: int) -> Ways:
+    def first(self, count: int) -> SelfMotions:
         """The first ones, in arrays of their own."""
         along = int(self.counts[:count].sum())
         configs, clear = np.array(self.configs[:along]), np.array(self.clear[:along])
         whole = np.array(self.counts[:count]), np.array(self.closed[:count]), np.array(self.across[:count])
-        return Ways(configs, *whole, np.array(self.pegs[:count]), np.array(self.pieces[:count]), clear)
+        return SelfMotions(configs, *whole, np.array(self.pegs[:count]), np.array(self.pieces[:count]), clear)
 
 
-class Families(NamedTuple):
+class Manifolds(NamedTuple):
     """Loose sets: connected sets of equilibria with one separation.
 
     Parameters
     ----------
     rows : (F, 24) candidates: of each the middle of where the most pegs touch, and what they touch.
-    configs, begins : (M, 4) along all, one after the other, and where those of each begin and, last, end: (F + 1,).
+    configs, begins : (M, 4) along all, one after the other, and where those of each begin and, last, end: (F
+        + 1,).
     closed : (F,) 1 for a whole turn, which has no ends.
     across : (F, 2) direction in which the part gives way to both sides, NaN where it does not.
     """
@@ -165,20 +186,20 @@ class Families(NamedTuple):
     across: NDArray[np.float64]
 
     @classmethod
-    def room(cls, count: int, configs: int) -> Families:
+    def room(cls, count: int, configs: int) -> Manifolds:
         """Room for so many, and for so many configurations along them."""
         begins = np.zeros(count + 1, np.int64)
         made = np.empty((count, CANDIDATE_LENGTH)), np.empty((configs, 4)), begins
         return cls(*made, np.empty(count, np.int8), np.empty((count, 2)))
 
-    def first(self, count: int) -> Families:
+    def first(self, count: int) -> Manifolds:
         """The first ones."""
         begins = self.begins[: count + 1]
         kept = self.rows[:count], self.configs[: begins[-1]], begins
-        return Families(*kept, self.closed[:count], self.across[:count])
+        return Manifolds(*kept, self.closed[:count], self.across[:count])
 
 
-class WorkSpace(NamedTuple):
+class DescentWorkSpace(NamedTuple):
     """Room for the linear programs of a step.
 
     Parameters
@@ -187,10 +208,10 @@ class WorkSpace(NamedTuple):
     basis, triangle : (5, 4) and (5, 6).
     step, way, trial : (4,).
     members : (8,).
-    known : (4, 4) for each peg a place on the part and the clearance there in mm, a disc in which it is free, and the piece
-        that is the nearest there.
-    lists, counts, places : (4, N) and (4,) pieces near each peg and how many, as far as they are within a reach, in mm,
-        of a place: (4, 3).
+    known : (4, 4) for each peg a place on the part, the clearance there in mm, and the nearest piece there.
+        The first two are a disc in which the peg is free.
+    lists, counts : (4, N) and (4,) pieces near each peg, and how many.
+    places : (4, 3) place about which they were listed, and reach in mm.
     """
 
     near: NDArray[np.float64]
@@ -206,7 +227,7 @@ class WorkSpace(NamedTuple):
     places: NDArray[np.float64]
 
     @classmethod
-    def for_pieces(cls, count: int) -> WorkSpace:
+    def for_pieces(cls, count: int) -> DescentWorkSpace:
         """Room about a part with so many pieces."""
         step, way, trial = np.empty(4), np.empty(4), np.empty(4)
         listed = np.empty((4, count), np.int64), np.empty(4, np.int64), np.empty((4, 3))

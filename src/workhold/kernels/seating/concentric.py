@@ -1,9 +1,9 @@
-"""Three pegs whose forces meet in the common centre of two arcs: a peg of each jaw on the arcs, and a further one where the
-normal of its piece goes through the centre.
+"""Three pegs whose forces meet in the common centre of two arcs.
 
-No chord tells of them: the normals of the two arcs meet in the centre wherever they are touched, and so do not tell where
-the third is. But of the pegs of one jaw one is as far from the centre as its arc's radius, and the other as the foot of the
-centre on its piece: that places the centre, and turns the part.
+A peg of each jaw is on the arcs, and a further one where the normal of its piece goes through the centre. No
+chord shows where: the normals of the two arcs meet in the centre wherever they are touched. But of the pegs
+of one jaw one is as far from the centre as its arc's radius, and the other as the foot of the centre on its
+piece. That places the centre, and turns the part.
 """
 
 from __future__ import annotations
@@ -17,18 +17,19 @@ from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import MOTION, PEG, PIECE, SECOND, SEPARATION, Given
-from workhold.kernels.seating.holdings import END
 from workhold.kernels.seating.pieces import foot, length, on_piece, share_normals
+from workhold.kernels.seating.two_contact_curves import END
 
 Array = NDArray[np.float64]
 
-# mm. Feet nearer to the centre than this have no direction from it; centres nearer to the line of two pegs are on it.
+# mm. Feet nearer to the centre than this have no direction from it; centres nearer to the line of two pegs
+# are on it.
 NEAREST = 1e-6
 
 
 @inner
 def is_touched(piece: Array, theta: float, dx: float, dy: float) -> bool:
-    """Whether an arc is there where it is touched, in the direction of a vector from its centre in the frame of the pegs."""
+    """Whether an arc is there in the direction of a vector from its centre, in the frame of the pegs."""
     c, s, scale = cos(theta), sin(theta), piece[RADIUS] / length(dx, dy)
     return on_piece(piece, piece[X] + scale * (c * dx + s * dy), piece[Y] + scale * (c * dy - s * dx), END)
 
@@ -48,8 +49,12 @@ def add_about(
     out: Array,
     at: int,
 ) -> int:
-    """Write the candidates of peg p on arc a and b on piece f, of one jaw, and q of the other on arc c, which has the centre
-    of a, with the foot of the centre on a side of f; return the new count, or -1 where they do not fit."""
+    """Writes the candidates of pegs on arcs of one centre, and on a piece whose normal goes through it.
+
+    Peg p is on arc a and peg b on piece f, both of one jaw. Peg q of the other jaw is on arc c, which has the
+    centre of a, and the foot of the centre is on a side of f. Returns the new count, or -1 where they do not
+    fit.
+    """
     arc, other, piece = given.rows[a], given.rows[c], given.rows[f]
     cx, cy = arc[X], arc[Y]
     touched = foot(piece, cx, cy, side)
@@ -64,8 +69,8 @@ def add_about(
     if square < NEAREST * NEAREST:
         return at
     moving = 1.0 if given.right[q] == 1 else -1.0
-    # How fast b's piece goes away from the centre as the part turns: of a line as far as it is, of an arc m / radius times
-    # that, with a centre m away, or where the foot is on the far side minus that.
+    # How fast b's piece goes away from the centre as the part turns: of a line as far as it is, of an arc m /
+    # radius times that, with a centre m away, or where the foot is on the far side minus that.
     bend = far if piece[IS_ARC] == 0.0 else side * touched[4] / piece[RADIUS] * far
     for way in range(4):
         off = (1.0 - 2.0 * (way % 2)) * sqrt(square)
@@ -90,7 +95,8 @@ def add_about(
         row[SEPARATION] = s
         row[PEG], row[PEG + 1], row[PEG + 2] = p, b, q
         row[PIECE], row[PIECE + 1], row[PIECE + 2] = a, f, c
-        # The centre stays as the part turns; to second order it moves across p, as b's piece goes away or comes nearer.
+        # The centre stays as the part turns; to second order it moves across p, as b's piece goes away or
+        # comes nearer.
         pull = -bend * far / (bx * -py + by * px)
         row[SECOND] = moving * pull * (qx * -py + qy * px) / qx
         row[MOTION], row[MOTION + 1], row[MOTION + 2] = 1.0, turned_y, -turned_x
@@ -100,8 +106,11 @@ def add_about(
 
 @compiled
 def about_one_center(given: Given, stop: float, widest: float, out: Array) -> int:
-    """Write the candidates (N, 24) of all pegs p and b of one jaw and q of the other on two arcs of one centre, of p and q,
-    and a piece whose normal goes through it; return their number, or -1 where they do not fit."""
+    """Writes the candidates (N, 24) of pegs on two arcs of one centre and a piece with a normal through it.
+
+    The arcs are those of pegs p and q of both jaws, the piece that of peg b of p's jaw. Returns their number,
+    or -1 where they do not fit.
+    """
     count = 0
     for p in range(given.pegs.shape[0]):
         first, end = given.parts[given.right[p], 0], given.parts[given.right[p], 1]

@@ -1,9 +1,9 @@
-"""Where two holdings of the two jaws have one height, and where another peg of a holding's own jaw touches: four contacts.
+"""Four contacts: pairs of both jaws at one height, or a further peg of a pair's own jaw that touches.
 
-Both are roots of functions (``roots.APART``, ``roots.GAP``) whose first derivative is known at a place and whose second is
-bounded over a cell by the speed of the instant centres. A range is dropped where the function cannot vanish, solved
-where its derivative keeps its sign, and halved otherwise; what is too narrow to be halved is told as in doubt. (At a
-double root, which cannot be told from two or none, nothing clamps.)
+Both are roots of functions (``roots.APART``, ``roots.GAP``) whose first derivative is known at a place and
+whose second is bounded over a cell by the speed of the instant centres. A range is dropped where the function
+cannot vanish, solved where its derivative keeps its sign, and halved otherwise. What is too narrow to be
+halved is in doubt. (At a double root, which looks like two or none, nothing clamps.)
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from workhold.kernels.seating.columns import (
     CELL_LENGTH,
     FIRST_PEG,
     HIGH,
-    HOLDING,
     LOW,
+    PAIR,
     SECOND_PEG,
     SPEED,
     TOP,
@@ -29,11 +29,11 @@ from workhold.kernels.seating.columns import (
     Given,
     JawCells,
 )
-from workhold.kernels.seating.holdings import END, Held, height, held
-from workhold.kernels.seating.middles import COSINE, SINE, held_in
+from workhold.kernels.seating.middles import COSINE, SINE, pair_in
 from workhold.kernels.seating.pieces import length
 from workhold.kernels.seating.roots import APART, GAP, gap, have_no_root, is_level, root_between
 from workhold.kernels.seating.three_contacts import HALVES, MAYBE, NOTHING, write_root
+from workhold.kernels.seating.two_contact_curves import END, PairState, height, pair_at
 
 Array = NDArray[np.float64]
 
@@ -44,16 +44,17 @@ ROUNDING, SAME = 2e-12, 1e-7
 
 
 @inner
-def told_of_two(p: Array, q: Array, low: float, high: float, given: Given) -> int:
-    """What is told of a range of two cells: NOTHING there, HALVES to look at, or one root (MAYBE)."""
-    one, two = given.holdings[int(p[HOLDING])], given.holdings[int(q[HOLDING])]
+def verdict_on_two(p: Array, q: Array, low: float, high: float, given: Given) -> int:
+    """The verdict on a range of two cells: NOTHING there, HALVES to look at, or one root (MAYBE)."""
+    one, two = given.pairs[int(p[PAIR])], given.pairs[int(q[PAIR])]
     psi, reach = (low + high) / 2.0, (high - low) / 2.0
-    s, t = held(one, given, psi), held(two, given, psi)
+    s, t = pair_at(one, given, psi), pair_at(two, given, psi)
     cosine, sine = cos(psi), sin(psi)
     f = height(two, given, t[0], t[1], cosine, sine) - height(one, given, s[0], s[1], cosine, sine)
     gx, gy, speed = t[6] - s[6], t[7] - s[7], p[SPEED] + q[SPEED]
     apart = length(gx, gy)
-    # Two pegs in one place, and holdings that turn about one centre: the first cannot be, the second are loose throughout.
+    # Two pegs in one place, and pairs that turn about one centre: the first cannot be, the second are loose
+    # throughout.
     if (length(t[0] - s[0], t[1] - s[1]) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
         return NOTHING
     slope, bend = abs(cosine * gx + sine * gy), apart + speed * (1.0 + reach)
@@ -63,23 +64,23 @@ def told_of_two(p: Array, q: Array, low: float, high: float, given: Given) -> in
 
 
 @inner
-def told_of_third(cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: Given) -> int:
-    """What is told of a range in which a peg (ox, oy) from the first may touch a piece; see ``told_of_two``."""
+def verdict_on_third(cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: Given) -> int:
+    """The verdict on a range in which a peg (ox, oy) from the first may touch a piece."""
     psi = (low + high) / 2.0
-    s = held(given.holdings[int(cell[HOLDING])], given, psi)
+    s = pair_at(given.pairs[int(cell[PAIR])], given, psi)
     x, y = place_of(s, cos(psi), sin(psi), ox, oy)
-    return told_of_place(cell, s, x, y, piece, (high - low) / 2.0)
+    return verdict_on_place(cell, s, x, y, piece, (high - low) / 2.0)
 
 
 @inner
-def place_of(s: Held, cosine: float, sine: float, ox: float, oy: float) -> tuple[float, float]:
+def place_of(s: PairState, cosine: float, sine: float, ox: float, oy: float) -> tuple[float, float]:
     """Place on the part of a peg (ox, oy) from the first in the vise frame."""
     return (s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy)
 
 
 @inner
-def told_of_place(cell: Array, s: Held, x: float, y: float, piece: Array, reach: float) -> int:
-    """The same by what is in the middle of the range: the holding, and the peg's place (x, y)."""
+def verdict_on_place(cell: Array, s: PairState, x: float, y: float, piece: Array, reach: float) -> int:
+    """The verdict on a range by what is in its middle: the pair, and the peg's place (x, y)."""
     gx, gy = x - s[6], y - s[7]
     speed = (length(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
     bend = speed + cell[SPEED]
@@ -107,8 +108,11 @@ def told_of_place(cell: Array, s: Held, x: float, y: float, piece: Array, reach:
 def roots_between(
     kind: float, p: Array, q: Array, peg: int, number: int, given: Given, stack: Array, out: Array, count: int
 ) -> int:
-    """Write the roots of a function over two cells (APART), or one cell, a peg and a piece (GAP); the new count, or -1."""
-    one, two = given.holdings[int(p[HOLDING])], given.holdings[int(q[HOLDING])]
+    """Writes the roots over two cells (APART), or over a cell, a peg and a piece (GAP).
+
+    Returns the new count or -1.
+    """
+    one, two = given.pairs[int(p[PAIR])], given.pairs[int(q[PAIR])]
     vague = p[VAGUE] != 0.0 or q[VAGUE] != 0.0
     piece, ox, oy, least = given.rows[0], 0.0, 0.0, ROUNDING
     if kind == GAP:
@@ -120,17 +124,17 @@ def roots_between(
         depth -= 1
         low, high = stack[depth, 0], stack[depth, 1]
         psi = (low + high) / 2.0
-        told = MAYBE
+        verdict = MAYBE
         if not vague:
-            told = (
-                told_of_two(p, q, low, high, given)
+            verdict = (
+                verdict_on_two(p, q, low, high, given)
                 if kind == APART
-                else told_of_third(p, ox, oy, piece, low, high, given)
+                else verdict_on_third(p, ox, oy, piece, low, high, given)
             )
-        if told == NOTHING:
+        if verdict == NOTHING:
             continue
         doubt = 0.0
-        if told == MAYBE:
+        if verdict == MAYBE:
             found, psi = root_between(kind, one, two, piece, ox, oy, given, low, high)
             if not found:
                 continue
@@ -143,7 +147,7 @@ def roots_between(
             if is_level(kind, one, two, piece, ox, oy, given, low, high, least):
                 continue
             doubt = 1.0
-        count = write_root(out, count, p[HOLDING], peg, number if kind == GAP else int(q[HOLDING]), 0.0, psi, doubt)
+        count = write_root(out, count, p[PAIR], peg, number if kind == GAP else int(q[PAIR]), 0.0, psi, doubt)
         if count < 0:
             return -1
     return count
@@ -151,31 +155,38 @@ def roots_between(
 
 @inner
 def write_in_pattern(number: int, jaw: JawCells, out: Array) -> None:
-    """Write a cell of a jaw as one of the pattern, in which heights are counted from where the first peg is."""
+    """Writes a cell of a jaw as one of the pattern, whose heights count from another peg."""
     for k in range(CELL_LENGTH):
         out[k] = jaw.cells[number, k]
     out[BOTTOM] -= jaw.height
     out[TOP] -= jaw.height
-    out[HOLDING] += jaw.before
+    out[PAIR] += jaw.before
 
 
 @compiled
-def two_holdings(
-    left: JawCells, right: JawCells, given: Given, pair: Array, stack: Array, reaching: NDArray[np.int64], out: Array
+def two_pairs(
+    left: JawCells,
+    right: JawCells,
+    given: Given,
+    two_cells: Array,
+    stack: Array,
+    reaching: NDArray[np.int64],
+    out: Array,
 ) -> int:
-    """Orientations at which a holding of the left jaw and one of the right have one height; how many, or -1.
+    """Orientations at which a pair of the left jaw and one of the right have one height; how many, or -1.
 
     Parameters
     ----------
-    pair, stack : (2, 7) and (DEPTH, 2) work space.
+    two_cells, stack : (2, 7) and (DEPTH, 2) work space.
     reaching : as many as right cells: work space.
-    out : (N, 6) roots, written here: the right holding stands in the column of the piece.
+    out : (N, 6) roots, written here: the right pair stands in the column of the piece.
     """
-    p, others, lifted = pair[0], right.cells, right.height
+    p, others, lifted = two_cells[0], right.cells, right.height
     count = known = begun = 0
     for i in range(left.cells.shape[0]):
         write_in_pattern(i, left, p)
-        # The right cells that began before this one and reach into it are few; then come those that begin in it.
+        # The right cells that began before this one and reach into it are few; then come those that begin in
+        # it.
         kept = 0
         for k in range(known):
             if others[reaching[k], HIGH] >= p[LOW]:
@@ -193,8 +204,8 @@ def two_holdings(
                 break
             if others[number, BOTTOM] - lifted > p[TOP] or others[number, TOP] - lifted < p[BOTTOM]:
                 continue
-            write_in_pattern(number, right, pair[1])
-            count = roots_between(APART, p, pair[1], -1, -1, given, stack, out, count)
+            write_in_pattern(number, right, two_cells[1])
+            count = roots_between(APART, p, two_cells[1], -1, -1, given, stack, out, count)
             if count < 0:
                 return -1
     return count
@@ -202,7 +213,9 @@ def two_holdings(
 
 @compiled
 def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack: Array, out: Array) -> int:
-    """Orientations at which a third peg of a holding's own jaw touches a piece; how many, or -1. See ``two_holdings``.
+    """Writes orientations at which a third peg of a pair's own jaw touches a piece.
+
+    Returns how many, or -1.
 
     Parameters
     ----------
@@ -212,11 +225,11 @@ def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack
     count = 0
     for number in range(cells.shape[0]):
         cell, middle = cells[number], middles[number]
-        holding = given.holdings[int(cell[HOLDING])]
-        tail, head = int(holding[FIRST_PEG]), int(holding[SECOND_PEG])
-        reach, s, at_low, at_high = (cell[HIGH] - cell[LOW]) / 2.0, held_in(middle), held_in(middle), held_in(middle)
+        pair = given.pairs[int(cell[PAIR])]
+        tail, head = int(pair[FIRST_PEG]), int(pair[SECOND_PEG])
+        reach, s, at_low, at_high = (cell[HIGH] - cell[LOW]) / 2.0, pair_in(middle), pair_in(middle), pair_in(middle)
         if cell[VAGUE] != 0.0:
-            at_low, at_high = held(holding, given, cell[LOW]), held(holding, given, cell[HIGH])
+            at_low, at_high = pair_at(pair, given, cell[LOW]), pair_at(pair, given, cell[HIGH])
         for third in range(given.pegs.shape[0]):
             if given.right[third] != given.right[tail] or third in (tail, head):
                 continue
@@ -234,7 +247,7 @@ def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack
                         continue
                 else:
                     dx, dy, far = x - discs[piece, 0], y - discs[piece, 1], discs[piece, 2] + play
-                    if dx * dx + dy * dy > far * far or told_of_place(cell, s, x, y, row, reach) == NOTHING:
+                    if dx * dx + dy * dy > far * far or verdict_on_place(cell, s, x, y, row, reach) == NOTHING:
                         continue
                 count = roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
                 if count < 0:

@@ -1,4 +1,4 @@
-"""Where pegs and a wall leave a part free along a way that it can go, and candidates that are one."""
+"""Where pegs and a wall leave a part free along a self-motion, and candidates that are one."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from workhold.kernels.seating.columns import (
     PLACE_Y,
     SEPARATION,
     THETA,
-    Families,
+    Manifolds,
     Obstacles,
-    Ways,
+    SelfMotions,
 )
 from workhold.kernels.seating.pieces import nearest_piece, on_piece, place_on_part
 from workhold.kernels.seating.roots import gap
@@ -38,10 +38,12 @@ EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
 @inner
 def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
-    """Clearance of a peg in mm in a configuration (4,); -inf where it is not on a piece that it has to touch (-1: none).
+    """The clearance of a peg in mm in a configuration (4,); -inf where it is off a piece that it has to touch.
 
-    Where none, as far as ``seen`` (4,) tells, a place on the part, its clearance and the nearest piece there: no nearer than
-    that, and on its side.
+    Piece -1 is none.
+
+    Where none, as far as ``seen`` (4,) has it, a place on the part, its clearance and the nearest piece
+    there: no nearer than that, and on its side.
     """
     x, y = place_on_part(config, around, peg)
     if piece >= 0 and not on_piece(around.rows[piece], x, y, END_SLACK):
@@ -57,8 +59,11 @@ def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array)
 
 @inner
 def write_clearances(config: Array, touched: IntArray, known: int, around: Obstacles, seen: Array, out: Array) -> bool:
-    """Write the clearances of all pegs from a number on, and last of a wall, in a configuration; whether all leave the part
-    free and those that have to touch pieces (K,) do. Where one does not, what follows it is not written."""
+    """Writes the clearances of all pegs from a number on, and last of a wall, in a configuration.
+
+    Returns whether all leave the part free, and those that have to touch pieces (K,) do. Where one does not,
+    what follows it is not written.
+    """
     pegs = around.pegs.shape[0]
     # What stays on its piece seldom hinders.
     for late in range(2):
@@ -75,40 +80,41 @@ def write_clearances(config: Array, touched: IntArray, known: int, around: Obsta
 
 @inner
 def nothing_seen(seen: Array) -> None:
-    """Begin anew with what is seen of pegs (K, 4)."""
+    """Begins anew with what is seen of pegs (K, 4)."""
     for k in range(seen.shape[0]):
         seen[k, 0], seen[k, 1], seen[k, 2], seen[k, 3] = 0.0, 0.0, 0.0, 0.0
 
 
 @compiled
-def keep_free(ways: Ways, around: Obstacles, seen: Array) -> int:
-    """Write the clearances of all pegs along ways, or less where they are large; move those along which a part is free
-    somewhere to the front, and return how many they are.
+def keep_free(motions: SelfMotions, around: Obstacles, seen: Array) -> int:
+    """Moves the self-motions along which a part is free somewhere to the front; returns how many they are.
+
+    Writes the clearances of all pegs along them, or less where these are large.
 
     Parameters
     ----------
     seen : (P, 4) work space, of so many pegs.
     """
     count, begin, at = 0, 0, 0
-    for w in range(ways.counts.shape[0]):
+    for w in range(motions.counts.shape[0]):
         nothing_seen(seen)
-        length, good = ways.counts[w], 0
+        length, good = motions.counts[w], 0
         for n in range(begin, begin + length):
-            if write_clearances(ways.configs[n], ways.pieces[w], 0, around, seen, ways.clear[n]):
+            if write_clearances(motions.configs[n], motions.pieces[w], 0, around, seen, motions.clear[n]):
                 good += 1
             else:
-                ways.clear[n, 0] = -inf
+                motions.clear[n, 0] = -inf
         if good > 0:
             for n in range(length):
                 for j in range(4):
-                    ways.configs[at + n, j], ways.clear[at + n, j] = (
-                        ways.configs[begin + n, j],
-                        ways.clear[begin + n, j],
+                    motions.configs[at + n, j], motions.clear[at + n, j] = (
+                        motions.configs[begin + n, j],
+                        motions.clear[begin + n, j],
                     )
             for j in range(4):
-                ways.pegs[count, j], ways.pieces[count, j] = ways.pegs[w, j], ways.pieces[w, j]
-            ways.across[count, 0], ways.across[count, 1] = ways.across[w, 0], ways.across[w, 1]
-            ways.counts[count], ways.closed[count] = length, ways.closed[w]
+                motions.pegs[count, j], motions.pieces[count, j] = motions.pegs[w, j], motions.pieces[w, j]
+            motions.across[count, 0], motions.across[count, 1] = motions.across[w, 0], motions.across[w, 1]
+            motions.counts[count], motions.closed[count] = length, motions.closed[w]
             count, at = count + 1, at + length
         begin += length
     return count
@@ -116,8 +122,9 @@ def keep_free(ways: Ways, around: Obstacles, seen: Array) -> int:
 
 @inner
 def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, seen: Array, clear: Array) -> None:
-    """Move the first of two configurations (2, 4), which is free, along the straight way to the second, which is not, to the
-    last free one.
+    """Moves the first of two configurations (2, 4), which is free, straight towards the second, which is not.
+
+    It ends in the last free one.
 
     Parameters
     ----------
@@ -127,7 +134,8 @@ def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, s
     for attempt in range(EDGE_ROUNDS):
         last, end = 0, EDGE_PARTS
         while last + 1 < end:
-            # From the first where all of a step is looked at, in the middle where freedom surely ends but once.
+            # From the first where all of a step is looked at, in the middle where freedom surely ends but
+            # once.
             part = last + 1 if attempt == 0 else (last + end) // 2
             for k in range(4):
                 trial[k] = ends[0, k] + part / EDGE_PARTS * (ends[1, k] - ends[0, k])
@@ -156,7 +164,7 @@ def middle_of(clear: Array, begin: int, length: int, first: int, count: int) -> 
 
     Parameters
     ----------
-    clear : (M, K) clearances along all ways.
+    clear : (M, K) clearances along all motions.
     begin, length : of the way.
     first, count : of the run; it goes on from the last configuration to the first.
     """
@@ -193,8 +201,10 @@ def touched_piece(config: Array, peg: int, around: Obstacles) -> int:
 
 @inner
 def write_touching(config: Array, clear: Array, touched: IntArray, around: Obstacles, row: Array) -> None:
-    """Write a configuration as a candidate (24,), with the pegs, and last a wall, whose clearances (K,) are none, and the
-    pieces that they have to touch (P,), or that are nearest."""
+    """Writes a configuration as a candidate (24,) of the pegs, and a wall, whose clearances (K,) are none.
+
+    The pieces are those that they have to touch (P,), or the nearest ones.
+    """
     for j in range(row.shape[0]):
         row[j] = config[j] if j < CONTACTS else 0.0
     for j in range(4):
@@ -222,7 +232,7 @@ def write_edge(
     clear: Array,
     out: Array,
 ) -> None:
-    """Write the last free configuration (4,) from one that is free on to the next of the same way, if there is one."""
+    """Writes the last free configuration (4,) between a free one and the next of its self-motion, if any."""
     for j in range(4):
         work[0, j] = configs[inside, j]
     if begin <= outside < end:
@@ -235,27 +245,30 @@ def write_edge(
 
 @inner
 def write_clear(
-    ways: Ways, w: int, begin: int, touched: IntArray, around: Obstacles, seen: Array, clear: Array
+    motions: SelfMotions, w: int, begin: int, touched: IntArray, around: Obstacles, seen: Array, clear: Array
 ) -> tuple[int, int]:
-    """Write the clearances (M, K) of all pegs along a way, -inf first where the part is not free, and the pieces (P,) that
-    they have to touch; how many configurations are free, and the first that is not, -1 where none is."""
+    """Writes the clearances (M, K) of all pegs along a self-motion, -inf first where the part is not free.
+
+    Writes the pieces (P,) that they have to touch, too. Returns how many configurations are free, and the
+    first that is not, or -1.
+    """
     bits, bad, good = 0, -1, 0
     for peg in range(touched.shape[0]):
         touched[peg] = -1
     for j in range(4):
-        peg = ways.pegs[w, j]
+        peg = motions.pegs[w, j]
         if peg >= 0:
             bits |= 1 << peg
             if peg < touched.shape[0]:
-                touched[peg] = ways.pieces[w, j]
+                touched[peg] = motions.pieces[w, j]
     nothing_seen(seen)
-    for n in range(begin, begin + ways.counts[w]):
-        free = ways.clear[n, 0] != -inf
+    for n in range(begin, begin + motions.counts[w]):
+        free = motions.clear[n, 0] != -inf
         if free:
             for j in range(4):
-                if ways.pegs[w, j] >= 0:
-                    clear[n, ways.pegs[w, j]] = ways.clear[n, j]
-            free = write_clearances(ways.configs[n], touched, bits, around, seen, clear[n])
+                if motions.pegs[w, j] >= 0:
+                    clear[n, motions.pegs[w, j]] = motions.clear[n, j]
+            free = write_clearances(motions.configs[n], touched, bits, around, seen, clear[n])
         if free:
             good += 1
         else:
@@ -266,7 +279,7 @@ def write_clear(
 
 @inner
 def write_along(
-    ways: Ways,
+    motions: SelfMotions,
     w: int,
     begin: int,
     first: int,
@@ -275,29 +288,29 @@ def write_along(
     around: Obstacles,
     work: Array,
     seen: Array,
-    out: Families,
+    out: Manifolds,
     number: int,
 ) -> None:
-    """Write the configurations along a run of a way, and those of its ends."""
-    at, length = out.begins[number], ways.counts[w]
-    end, is_closed = begin + length, ways.closed[w] != 0
+    """Writes the configurations along a run of a self-motion, and those of its ends."""
+    at, length = out.begins[number], motions.counts[w]
+    end, is_closed = begin + length, motions.closed[w] != 0
     if not is_closed:
-        write_edge(ways.configs, first, first - 1, begin, end, touched, around, work, seen, work[3], out.configs[at])
+        write_edge(motions.configs, first, first - 1, begin, end, touched, around, work, seen, work[3], out.configs[at])
         at += 1
     for i in range(count):
         for j in range(4):
-            out.configs[at, j] = ways.configs[begin + (first - begin + i) % length, j]
+            out.configs[at, j] = motions.configs[begin + (first - begin + i) % length, j]
         at += 1
     if not is_closed:
         last = first + count - 1
-        write_edge(ways.configs, last, last + 1, begin, end, touched, around, work, seen, work[3], out.configs[at])
+        write_edge(motions.configs, last, last + 1, begin, end, touched, around, work, seen, work[3], out.configs[at])
         at += 1
     out.begins[number + 1], out.closed[number] = at, 1 if is_closed and count == length else 0
 
 
 @compiled
 def free_runs(
-    ways: Ways,
+    motions: SelfMotions,
     low: float,
     high: float,
     around: Obstacles,
@@ -305,24 +318,25 @@ def free_runs(
     seen: Array,
     touched: IntArray,
     work: Array,
-    out: Families,
+    out: Manifolds,
 ) -> int:
-    """Write the runs of ways in which a part is free, and return how many there are.
+    """Writes the runs of motions in which a part is free, and returns how many there are.
 
     Parameters
     ----------
-    low, high : in mm, between which the separations of ways are that count.
-    clear, seen, touched, work : (M, K), (P, 4), (P,) and (4, 4) work space, of so many pegs and, last, a wall.
+    low, high : in mm, between which the separations of motions are that count.
+    clear, seen, touched, work : (M, K), (P, 4), (P,) and (4, 4) work space, of so many pegs and, last, a
+        wall.
     out : with room for all, written here.
     """
     count, begin = 0, 0
-    for w in range(ways.counts.shape[0]):
-        size = ways.counts[w]
-        if low < ways.configs[begin, 3] < high:
-            good, bad = write_clear(ways, w, begin, touched, around, seen, clear)
+    for w in range(motions.counts.shape[0]):
+        size = motions.counts[w]
+        if low < motions.configs[begin, 3] < high:
+            good, bad = write_clear(motions, w, begin, touched, around, seen, clear)
             start, length = begin, 0
             # Of what is closed the last and the first are neighbours.
-            shift = bad - begin if ways.closed[w] != 0 and bad >= 0 else 0
+            shift = bad - begin if motions.closed[w] != 0 and bad >= 0 else 0
             for i in range(size + 1 if good > 0 else 0):
                 n = begin + (i + shift) % size
                 if i < size and clear[n, 0] != -inf:
@@ -330,9 +344,9 @@ def free_runs(
                     length += 1
                 elif length > 0:
                     middle = middle_of(clear, begin, size, start, length)
-                    write_touching(ways.configs[middle], clear[middle], touched, around, out.rows[count])
-                    write_along(ways, w, begin, start, length, touched, around, work, seen, out, count)
-                    out.across[count, 0], out.across[count, 1] = ways.across[w, 0], ways.across[w, 1]
+                    write_touching(motions.configs[middle], clear[middle], touched, around, out.rows[count])
+                    write_along(motions, w, begin, start, length, touched, around, work, seen, out, count)
+                    out.across[count, 0], out.across[count, 1] = motions.across[w, 0], motions.across[w, 1]
                     count, length = count + 1, 0
         begin += size
     return count
@@ -340,7 +354,7 @@ def free_runs(
 
 @compiled
 def first_of_each(rows: Array, turn: float, shift: float, kept: IntArray) -> int:
-    """Write the numbers of candidates (N, 24) that are none of those before them; how many they are.
+    """Writes the numbers of candidates (N, 24) that are none of those before them; how many they are.
 
     Parameters
     ----------

@@ -1,9 +1,10 @@
-"""All roots of a function over a range, from its value in the middle and its derivative over all of it, both enclosed.
+"""All roots of a function over a range, from enclosures of its value in the middle and its derivative throughout.
 
-A range is dropped where the mean value theorem leaves no root, cut by the interval Newton method where the function is
-monotone, and halved otherwise. What is too narrow to be halved, or hardly steep, is told as in doubt.
+A range is dropped where the mean value theorem leaves no root, cut by the interval Newton method where the
+function is monotone, and halved otherwise. What is too narrow to be halved, or hardly steep, is in doubt.
 
-Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, SIAM 2009, chapter 8.
+Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, SIAM 2009, chapter
+8.
 """
 
 from __future__ import annotations
@@ -16,11 +17,13 @@ from workhold.kernels.base.interval import Interval, idivide, ineg, ishift
 
 __all__ = ["HALVES", "NONE", "ROOT", "has_none", "judged", "meet", "to_look_at"]
 
-# Radians. Ranges narrower than the first are not halved, and a root known to less than the second is in doubt.
+# Radians. Ranges narrower than the first are not halved, and a root known to less than the second is in
+# doubt.
 NARROWEST, KNOWN = 2e-8, 1e-8
 # Ranges that are looked at of one function; what is left then is in doubt.
 MOST_RANGES = 20000
-# What may be told of a range: to be left, to be looked at in halves or as far as it is left, a root, or one in doubt.
+# Verdicts on a range: to be left, to be looked at in halves or as far as it is left, a root, or one
+# in doubt.
 NONE, HALVES, REST, ROOT, IN_DOUBT = range(5)
 
 
@@ -38,7 +41,7 @@ def has_none(values: Interval) -> bool:
 
 @inner
 def judged(turn: Interval, middle: float, value: Interval, slope: Interval) -> tuple[int, Interval]:
-    """What is told of a range by a function's value in its middle and its derivative, and what is left of it."""
+    """The verdict on a range by a function's value in its middle and its slope, and what is left of it."""
     reach = (turn[1] - turn[0]) / 2.0
     off = reach * max(-slope[0], slope[1])
     if value[0] > off or value[1] < -off:
@@ -56,7 +59,10 @@ def judged(turn: Interval, middle: float, value: Interval, slope: Interval) -> t
 
 @inner
 def to_look_at(verdict: int, turn: Interval, looked: int, stack: NDArray[np.float64], depth: int) -> int:
-    """Write what is to be looked at of a range after others; the new depth, or -1 where it is neither halved nor cut."""
+    """Writes what is left of a range after others.
+
+    Returns the new depth, or -1 where it is neither halved nor cut.
+    """
     if verdict == REST:
         stack[depth, 0], stack[depth, 1] = turn
         return depth + 1

@@ -1,8 +1,8 @@
-"""Whether a part can be taken straight away from all pegs, jaws as they stand: exactly, not for some directions only.
+"""Whether a part can be taken straight away from all pegs, jaws as they stand, in any direction at all.
 
-Seen from a peg's centre, the directions in which it meets a piece of the boundary, from outside, are a range; so are those
-that lead into a piece that it touches. Where all ranges of all pegs, and of a wall, leave any direction, they leave the end
-of one of them.
+Seen from a peg's centre, the directions in which it meets a piece of the boundary from outside are a range.
+So are those that lead into a piece that it touches. Where the ranges of all pegs, and of a wall, leave any
+direction, they leave the end of one of them.
 """
 
 from __future__ import annotations
@@ -19,12 +19,14 @@ from workhold.kernels.seating.pieces import length, normal_at, on_piece, place_o
 from workhold.kernels.seating.roots import gap
 
 Array = NDArray[np.float64]
-# mm. A peg this near to a piece touches it, and one that is this deep in the part, as it may be where a way down begins.
+# mm. A peg this near to a piece touches it, and one that is this deep in the part, as it may be where a way
+# down begins.
 TOUCHED, ENTERED = 1e-4, 0.01
-# mm. So far a peg is taken off what it touches, so that the way along that is seen to be free as far as it is.
+# mm. So far a peg is taken off what it touches, so that the way along that is seen to be free as far as it
+# is.
 LIFTED = 1e-6
-# Radians. Ways that pass an end by less meet it, and those that lead into what is touched by less go along it; one range
-# begins where another ends if no more is between: rounding.
+# Radians. Directions that pass an end by less meet it, and those that lead into what is touched by less go
+# along it; one range begins where another ends if no more is between: rounding.
 HAIR, ROUNDING = 1e-9, 1e-12
 TURN = 2.0 * pi
 # The most ranges that a peg and a piece have: into what is touched, and what is seen of an arc on each turn.
@@ -33,7 +35,7 @@ RANGES = 4
 
 @inner
 def add_range(low: float, sweep: float, ranges: Array, count: int) -> int:
-    """Write a range, its first direction and how far it goes on counter-clockwise, after others; the new count."""
+    """Writes a range, its first direction and how far it goes on counter-clockwise; returns the new count."""
     ranges[count, 0], ranges[count, 1] = low, sweep
     return count + 1
 
@@ -46,7 +48,7 @@ def is_touched(row: Array, x: float, y: float) -> bool:
 
 @inner
 def add_line(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
-    """Write the directions in which a point meets a line; see ``add_piece``."""
+    """Writes the directions in which a point meets a line; see ``add_piece``."""
     off = gap(row, x, y)
     if off <= 0.0:
         return count
@@ -57,22 +59,28 @@ def add_line(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
 
 @inner
 def seen_outside(radius: float, away: float, angle: float) -> float:
-    """Direction to a place of a circle from a point outside it, told from that to the centre; the angle is told from the
-    direction of the point."""
+    """The direction to a place of a circle from a point outside it, less that to the centre.
+
+    The angle is the place's, from the direction of the point.
+    """
     return atan2(-radius * sin(angle), away - radius * cos(angle))
 
 
 @inner
 def seen_inside(radius: float, away: float, angle: float) -> float:
-    """Direction to a place of a circle from a point inside it, told as the angle is from the direction of the point: never a
-    quarter turn from it, so that it goes on with it beyond half turns."""
+    """The direction to a place of a circle from a point inside it, from the direction of the point.
+
+    It is never a quarter turn from the angle of the place, so that it goes on with it past half turns.
+    """
     return angle + atan2(away * sin(angle), radius - away * cos(angle))
 
 
 @inner
 def add_side(row: Array, away: float, toward: float, near: bool, ranges: Array, count: int) -> int:
-    """Write the directions in which a point outside an arc's circle, ``away`` from its centre in a direction, meets the near
-    side of the arc, or the far one."""
+    """Writes the directions in which a point outside an arc's circle meets its near or its far side.
+
+    The point is ``away`` from the centre in a direction.
+    """
     seen = acos(row[RADIUS] / away)
     first, last = (-seen, seen) if near else (seen, TURN - seen)
     middle = atan2(row[AXIS_Y], row[AXIS_X]) - toward
@@ -88,8 +96,7 @@ def add_side(row: Array, away: float, toward: float, near: bool, ranges: Array, 
 
 @inner
 def add_concave(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
-    """Write the directions in which a point meets a concave arc, from within its circle or through the opening; see
-    ``add_piece``."""
+    """Writes the directions in which a point meets a concave arc, from inside or through the opening."""
     dx, dy, radius = x - row[X], y - row[Y], row[RADIUS]
     away, toward = length(dx, dy), atan2(dy, dx)
     if is_touched(row, x, y):
@@ -108,8 +115,10 @@ def add_concave(row: Array, x: float, y: float, ranges: Array, count: int) -> in
 
 @inner
 def add_piece(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
-    """Write the ranges of directions in which a point that moves straight away meets a piece, coming from outside; the new
-    count."""
+    """Writes the directions in which a point that moves straight meets a piece from outside.
+
+    Returns the new count.
+    """
     if row[IS_ARC] == 0.0:
         return add_line(row, x, y, ranges, count)
     if row[SIGN] < 0.0:
@@ -121,8 +130,11 @@ def add_piece(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
 
 @inner
 def add_peg(x: float, y: float, rows: Array, first: int, end: int, ranges: Array, count: int) -> int:
-    """Write the ranges of a peg at a place, for the pieces of its boundary: into those that it touches, and seen from beside
-    them all others; the new count."""
+    """Writes the ranges of directions in which a peg meets the pieces of its boundary; returns the new count.
+
+    Of pieces that it touches they are those into them, and of all others those seen from beside what it
+    touches.
+    """
     beside_x, beside_y = x, y
     for k in range(first, end):
         if is_touched(rows[k], x, y) and (rows[k, IS_ARC] == 0.0 or rows[k, SIGN] > 0.0):
@@ -138,8 +150,11 @@ def add_peg(x: float, y: float, rows: Array, first: int, end: int, ranges: Array
 
 @inner
 def way_left(ranges: Array, count: int) -> float:
-    """A direction in none of some ranges, each without its ends, or NaN: from the end of one to that of another which goes
-    on farthest, until none goes on or all has been gone around."""
+    """A direction in none of some open ranges, or NaN.
+
+    The search goes from the end of one to that of another which goes on farthest, until none does or all has
+    been gone around.
+    """
     if count == 0:
         return 0.0
     at, gone = ranges[0, 0] + ranges[0, 1], 0.0
@@ -160,11 +175,13 @@ def way_left(ranges: Array, count: int) -> float:
 
 @inner
 def way_away(config: Array, obstacles: Obstacles, ranges: Array) -> float:
-    """See ``leave``, of one configuration."""
+    """The direction that ``leave`` writes, of one configuration."""
     count = 0
-    if obstacles.wall[0] != 0.0 or obstacles.wall[1] != 0.0:
+    if obstacles.half_plane[0] != 0.0 or obstacles.half_plane[1] != 0.0:
         # The part moves the other way than pegs do on it, and nothing moves toward the wall.
-        count = add_range(atan2(obstacles.wall[1], obstacles.wall[0]) - config[0] - pi / 2.0, pi, ranges, count)
+        count = add_range(
+            atan2(obstacles.half_plane[1], obstacles.half_plane[0]) - config[0] - pi / 2.0, pi, ranges, count
+        )
     for peg in range(obstacles.pegs.shape[0]):
         (x, y), side = place_on_part(config, obstacles, peg), obstacles.right[peg]
         count = add_peg(x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1], ranges, count)
@@ -173,9 +190,10 @@ def way_away(config: Array, obstacles: Obstacles, ranges: Array) -> float:
 
 @compiled
 def leave(configs: Array, obstacles: Obstacles, ranges: Array, out: Array) -> None:
-    """A direction in radians, in the part's frame, along which all pegs can move away from a part in configurations (N, 4)
-    without entering it, and the part comes no nearer to a wall; NaN where there is none. Written to ``out`` (N,), in which
-    NaN stands where it is not asked.
+    """Writes a direction (N,) along which all pegs can leave a part in configurations (N, 4), or NaN.
+
+    It is in radians in the part's frame; no peg enters the part, which comes no nearer to a wall. Entries
+    that are NaN already are left as they are.
 
     Parameters
     ----------

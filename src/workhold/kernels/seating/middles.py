@@ -1,7 +1,8 @@
-"""What is known of a cell from its middle: worked out once for all third pegs that may press against a holding.
+"""The middle of each cell, computed once for all third pegs that may press against its pair.
 
-Columns of a middle: COSINE and SINE of the orientation, ten numbers from HELD on (``holdings.Held``), and seven from RAY on
-(``rays.Ray``), which stand for nothing in a cell of a pocket or beside a tangency.
+Columns of a middle: COSINE and SINE of the orientation, ten numbers from HELD on
+(``two_contact_curves.PairState``), and seven from RAY on (``rays.Ray``). The last stand for nothing in a cell
+of a pocket or beside a tangency.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.curves.columns import HEAD, TAIL
-from workhold.kernels.seating.columns import HIGH, HOLDING, KIND, LOW, SOURCE, SPEED, VAGUE, Given
-from workhold.kernels.seating.holdings import Held, held
+from workhold.kernels.seating.columns import HIGH, KIND, LOW, PAIR, SOURCE, SPEED, VAGUE, Given
 from workhold.kernels.seating.rays import Ray, ray_of
+from workhold.kernels.seating.two_contact_curves import PairState, pair_at
 
-__all__ = ["COSINE", "MIDDLE_LENGTH", "SINE", "held_in", "ray_in", "ray_over", "write_middles"]
+__all__ = ["COSINE", "MIDDLE_LENGTH", "SINE", "pair_in", "ray_in", "ray_over", "write_middles"]
 
 Array = NDArray[np.float64]
 
@@ -26,23 +27,23 @@ MIDDLE_LENGTH = 19
 
 
 @inner
-def ray_over(holding: Array, given: Given, s: Held, speed: float, reach: float) -> Ray:
-    """The ray of a holding of two contacts; see ``rays.ray_of``."""
-    k = int(holding[SOURCE])
+def ray_over(pair: Array, given: Given, s: PairState, speed: float, reach: float) -> Ray:
+    """The ray of a pair of two contacts; see ``rays.ray_of``."""
+    k = int(pair[SOURCE])
     a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
     return ray_of(given.reals[k], a, b, s, speed, reach)
 
 
 @compiled
 def write_middles(cells: Array, given: Given, out: Array) -> None:
-    """Write the middles (C, 19) of cells (C, 7)."""
+    """Writes the middles (C, 19) of cells (C, 7)."""
     for number in range(cells.shape[0]):
         cell, row = cells[number], out[number]
-        holding = given.holdings[int(cell[HOLDING])]
+        pair = given.pairs[int(cell[PAIR])]
         psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
-        s, ray = held(holding, given, psi), (0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
-        if holding[KIND] == 0.0 and cell[VAGUE] == 0.0:
-            ray = ray_over(holding, given, s, cell[SPEED], reach)
+        s, ray = pair_at(pair, given, psi), (0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
+        if pair[KIND] == 0.0 and cell[VAGUE] == 0.0:
+            ray = ray_over(pair, given, s, cell[SPEED], reach)
         row[COSINE], row[SINE] = cos(psi), sin(psi)
         for k in range(10):
             row[HELD + k] = s[k]
@@ -51,8 +52,8 @@ def write_middles(cells: Array, given: Given, out: Array) -> None:
 
 
 @inner
-def held_in(middle: Array) -> Held:
-    """The holding in the middle of a cell."""
+def pair_in(middle: Array) -> PairState:
+    """The pair in the middle of a cell."""
     h = middle[HELD:RAY]
     return (h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8], h[9])
 

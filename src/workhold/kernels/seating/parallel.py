@@ -27,12 +27,14 @@ Array = NDArray[np.float64]
 
 # Radians by which the orientation is changed to see on which side a chord goes on.
 STEP = 1e-6
-# No unit. Faces whose normals have less along x are level: no closing presses them. mm: forces this near are in one line.
+# No unit. Faces whose normals have less along x are level: no closing presses them. mm: forces this near are
+# in one line.
 LEVEL, SHORTEST = 1e-9, 1e-6
-# Columns of tangencies: line and arc, tail of the chord on the line, direction of the chord on the part in radians.
+# Columns of tangencies: line and arc, tail of the chord on the line, direction of the chord on the part in
+# radians.
 ON_LINE, ON_ARC, TAIL_X, TAIL_Y, ALPHA = range(5)
-# Columns of what slides on three faces: number of the slide, third peg and its face, orientation, S, parameters between
-# which the first peg slides.
+# Columns of what slides on three faces: number of the slide, third peg and its face, orientation, S,
+# parameters between which the first peg slides.
 OF_SLIDE, THIRD, ON_THIRD, AT_THETA, AT_SEPARATION, AT_LOW, AT_HIGH = range(7)
 THREE_FACES = 7
 
@@ -47,8 +49,11 @@ def are_parallel(one: Array, two: Array) -> bool:
 
 @compiled
 def tangent_chords(rows: Array, first: int, end: int, d: float, out: Array) -> int:
-    """Write the tangencies (C, 5) of chords of length d from lines to arcs, both of pieces ``first`` to ``end``: the arc's
-    normal at the head is the line's. Return their number, or -1 where they do not fit."""
+    """Writes the tangencies (C, 5) of chords of length d from lines to arcs; returns their number, or -1.
+
+    Both are pieces from ``first`` to ``end``, and the arc's normal at the head is the line's. -1 means that
+    they do not fit.
+    """
     count = 0
     for a in range(first, end):
         line = rows[a]
@@ -79,7 +84,7 @@ def tangent_chords(rows: Array, first: int, end: int, d: float, out: Array) -> i
 
 @inner
 def separation_on(theta: float, line: Array, other: Array, first: int, third: int, given: Given) -> tuple[bool, float]:
-    """Whether parallel lines are not level at an orientation, and S at which two pegs, of both jaws, lie on them."""
+    """Whether parallel lines are not level at an orientation, and S at which pegs of both jaws lie on them."""
     nx = cos(theta) * line[AXIS_Y] + sin(theta) * line[AXIS_X]
     ny = sin(theta) * line[AXIS_Y] - cos(theta) * line[AXIS_X]
     moving = nx * (given.right[third] - given.right[first])
@@ -92,8 +97,11 @@ def separation_on(theta: float, line: Array, other: Array, first: int, third: in
 
 @compiled
 def at_tangencies(first: int, second: int, chords: Array, stop: float, widest: float, given: Given, out: Array) -> int:
-    """Write the candidates of two pegs of one jaw at tangencies (C, 5) of their chord, with a third peg of the other jaw on
-    a line parallel to the first's, or on the same; return their number, or -1 where they do not fit."""
+    """Writes the candidates of two pegs of one jaw at tangencies (C, 5) of their chord, with a third peg.
+
+    The third peg, of the other jaw, is on a line parallel to the first's, or on the same. Returns their
+    number, or -1 where they do not fit.
+    """
     count = 0
     dx, dy = given.pegs[second, 0] - given.pegs[first, 0], given.pegs[second, 1] - given.pegs[first, 1]
     d = hypot(dx, dy)
@@ -109,8 +117,8 @@ def at_tangencies(first: int, second: int, chords: Array, stop: float, widest: f
                 other = given.rows[number]
                 if not are_parallel(line, other):
                     continue
-                told, s = separation_on(theta, line, other, first, third, given)
-                if not told or not (stop < s < widest):
+                known, s = separation_on(theta, line, other, first, third, given)
+                if not known or not (stop < s < widest):
                     continue
                 run = given.pegs[third, 0] - given.pegs[first, 0] + s * (given.right[third] - given.right[first])
                 rise = given.pegs[third, 1] - given.pegs[first, 1]
@@ -135,8 +143,8 @@ def at_tangencies(first: int, second: int, chords: Array, stop: float, widest: f
                     wx, wy = d * cos(alpha), d * sin(alpha)
                     if abs((line[X] + wx - arc[X]) * nx + (line[Y] + wy - arc[Y]) * ny) < arc[RADIUS]:
                         turn = step
-                told, after = separation_on(theta + turn, line, other, first, third, given)
-                row[SECOND] = (after - s) / STEP if told else 0.0
+                known, after = separation_on(theta + turn, line, other, first, third, given)
+                row[SECOND] = (after - s) / STEP if known else 0.0
                 row[MOTION + 1] = c * line[AXIS_X] - e * line[AXIS_Y]
                 row[MOTION + 2] = e * line[AXIS_X] + c * line[AXIS_Y]
                 count += 1
@@ -145,7 +153,7 @@ def at_tangencies(first: int, second: int, chords: Array, stop: float, widest: f
 
 @inner
 def is_between(p: float, q: float, r: float, one: float, two: float, three: float) -> bool:
-    """Whether of parallel forces at p, q and r, of signs one to three, the middle one is against the outer two."""
+    """Whether the middle one of parallel forces at p, q and r, of signs 1 to 3, is against the others."""
     if p > q:
         p, q, one, two = q, p, two, one
     if q > r:
@@ -157,8 +165,11 @@ def is_between(p: float, q: float, r: float, one: float, two: float, three: floa
 
 @compiled
 def on_three_faces(slides: Array, given: Given, stop: float, widest: float, out: Array) -> int:
-    """Write what slides on three parallel faces, two pegs of one jaw on a slide (S, 7) and one of the other, the middle one
-    of the three against the outer two; return their number, or -1 where they do not fit."""
+    """Writes the self-motions on three parallel faces, the middle one against the outer two.
+
+    Two pegs of one jaw are on a slide (S, 7), and one of the other jaw is the third. Returns their number, or
+    -1 where they do not fit.
+    """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]

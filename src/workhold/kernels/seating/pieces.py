@@ -20,8 +20,7 @@ Foot = tuple[float, float, float, float, float]
 
 @inner
 def length(x: float, y: float) -> float:
-    """That of a vector in mm, of which no square is too large or too small for a number: in a third of the time of
-    ``hypot``."""
+    """The length of a vector in mm whose squares are in range, in a third of the time of ``hypot``."""
     return sqrt(x * x + y * y)
 
 
@@ -42,7 +41,7 @@ def angle_from_middle(row: Array, dx: float, dy: float) -> float:
 
 @inner
 def on_piece(row: Array, x: float, y: float, slack: float) -> bool:
-    """Whether a point of a piece's carrier lies on the piece, or past its end by no more than a slack in mm."""
+    """Whether a point of a piece's carrier lies on the piece, or past its end by at most a slack in mm."""
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         return abs(dx * row[AXIS_X] + dy * row[AXIS_Y]) <= row[HALF_EXTENT] + slack
@@ -88,7 +87,7 @@ def share_normals(a: Array, b: Array) -> bool:
 
 @inner
 def distance_to(row: Array, x: float, y: float) -> float:
-    """Distance in mm of a point from a piece, negative where the nearest point of the piece is seen from the part's side."""
+    """The distance in mm of a point from a piece, negative where the piece is seen from the part's side."""
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         across = dx * row[AXIS_Y] - dy * row[AXIS_X]
@@ -109,11 +108,13 @@ def distance_to(row: Array, x: float, y: float) -> float:
 
 @inner
 def nearest_piece(x: float, y: float, rows: Array, first: int, end: int, guess: int) -> tuple[float, int]:
-    """Distance in mm of a peg's centre from the boundary of which its pieces are some, negative where it is in the part, and
-    the nearest piece. It is found the sooner the nearer the one is that is guessed, which need not be one of them.
+    """The distance in mm of a peg's centre from pieces of the boundary, and the nearest piece.
 
-    Where the nearest point is an inner corner, in which two pieces end, the centre is in the part, though it may lie on the
-    outer side of one of them; so of two as near the one that says so counts.
+    The distance is negative where the peg is in the part. A guess of the nearest piece saves time; it need
+    not be one of them.
+
+    Where the nearest point is an inner corner, in which two pieces end, the centre is in the part. It may lie
+    on the outer side of one of them, so that of two as near the one on whose inner side it is counts.
     """
     best, nearest = inf, first
     if first <= guess < end:
@@ -138,6 +139,6 @@ def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
 
 @compiled
 def clearances(points: Array, rows: Array, first: int, end: int, out: Array) -> None:
-    """Distances in mm (M,) of peg centres (M, 2) from the boundary of pieces ``first`` to ``end``, written to ``out``."""
+    """Writes the distances in mm (M,) of peg centres (M, 2) from pieces ``first`` to ``end``."""
     for k in range(points.shape[0]):
         out[k] = clearance(points[k, 0], points[k, 1], rows, first, end)

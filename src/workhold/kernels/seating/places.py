@@ -1,4 +1,4 @@
-"""The places that ways down end in, and the pass at which one leads to another."""
+"""The places that descent paths end in, and the pass at which one leads to another."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
-from workhold.kernels.seating.columns import SEPARATION, Families
-from workhold.kernels.seating.loose import first_of, lies_in
+from workhold.kernels.seating.columns import SEPARATION, Manifolds
+from workhold.kernels.seating.equilibrium_manifolds import first_of, lies_in
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 # Places that are none of the part's: all pegs left behind, and what moves at its stop.
 OUTSIDE, STOP, UNKNOWN = -1, -2, -3
-# mm. A way down that ends this near to a seat, with a separation this near, ended in it.
+# mm. A descent path that ends this near to a seat, with a separation this near, ended in it.
 AT_SEAT, SAME_LEVEL = 0.05, 1e-3
-# mm. What ends lower than a loose set by this much fell off it; what is not settled is one as near as the second.
+# mm. What ends lower than a loose set by this much fell off it; what is not settled is one as near as the
+# second.
 FALLS, ONE_DOUBT = 1e-6, 10.0 * AT_SEAT
 
 
@@ -32,8 +33,7 @@ def apart(config: Array, other: Array, size: float) -> float:
 
 @inner
 def seat_at(config: Array, seats: Array, size: float) -> int:
-    """The number of the nearest of some configurations (M, 4), ordered by S, that is a configuration's seat; -1 where none
-    is."""
+    """The number of the nearest seat of some (M, 4), ordered by S, in which a configuration is, or -1."""
     nearest, number, low, high = AT_SEAT, -1, 0, seats.shape[0]
     while low < high:
         middle = (low + high) // 2
@@ -50,13 +50,15 @@ def seat_at(config: Array, seats: Array, size: float) -> int:
 
 
 @inner
-def fall_at(config: Array, how: int, families: Families, falling: IntArray, size: float) -> int:
-    """Which of the loose sets off which ways lead a way ended on; -1 where on none. On flat faces no step leads down; the
-    way goes on, lower, where the part slides off them."""
+def fall_at(config: Array, how: int, manifolds: Manifolds, falling: IntArray, size: float) -> int:
+    """The falling manifold on which a path ended, or -1.
+
+    On flat faces no step leads down; the path goes on, lower, where the part slides off them.
+    """
     if how == AT_REST:
         for k in range(falling.shape[0]):
-            is_above = config[3] >= families.rows[falling[k], SEPARATION] - FALLS
-            if is_above and lies_in(config, families, falling[k], size, SAME_LEVEL):
+            is_above = config[3] >= manifolds.rows[falling[k], SEPARATION] - FALLS
+            if is_above and lies_in(config, manifolds, falling[k], size, SAME_LEVEL):
                 return k
     return -1
 
@@ -66,14 +68,17 @@ def rest_at(
     config: Array,
     how: int,
     leaves: int,
-    families: Families,
+    manifolds: Manifolds,
     lying: IntArray,
     seats: Array,
     numbers: IntArray,
     first: int,
     size: float,
 ) -> int:
-    """The place of the end of a way that does not lead on, or ``UNKNOWN``; arguments as of ``write_places``."""
+    """The place of the end of a path that does not lead on, or ``UNKNOWN``.
+
+    Arguments as of ``write_places``.
+    """
     if how == AT_THE_STOP:
         return OUTSIDE if leaves != 0 else STOP
     if how != AT_REST:
@@ -81,13 +86,13 @@ def rest_at(
     seat = seat_at(config, seats, size)
     if seat >= 0:
         return numbers[seat]
-    loose = first_of(config, families, lying, size, SAME_LEVEL)
+    loose = first_of(config, manifolds, lying, size, SAME_LEVEL)
     return first - lying.shape[0] + loose if loose >= 0 else UNKNOWN
 
 
 @inner
 def doubt_at(config: Array, doubtful: Array, count: int, size: float) -> int:
-    """The number of the nearest of so many configurations that are not settled, or how many there are where none is near."""
+    """The number of the nearest of ``count`` configurations that are not settled, or ``count``."""
     nearest, number = inf, count
     for k in range(count):
         away = apart(doubtful[k], config, size)
@@ -101,7 +106,7 @@ def write_places(
     ends: Array,
     how: NDArray[np.int8],
     leaves: NDArray[np.int8],
-    families: Families,
+    manifolds: Manifolds,
     lying: IntArray,
     falling: IntArray,
     seats: Array,
@@ -113,18 +118,20 @@ def write_places(
     fallen: IntArray,
     out: IntArray,
 ) -> int:
-    """Write the places that ways down end in, and return how many configurations are not settled then.
+    """Writes the places that descent paths end in, and returns how many configurations are not settled then.
 
     Parameters
     ----------
-    ends, how, leaves : (N + G, 4) and (N + G,) where ways end, how, and 1 where a part can be taken away; the last are ways
-        off loose sets, one of each of those from which ways lead down.
-    families, lying, falling : loose sets, the numbers (L,) of those from which none leads down, whose places are those
-        before ``first``, and of the others (G,).
+    ends, how, leaves : (N + G, 4) and (N + G,) where paths end, how, and 1 where a part can be taken away.
+        The last G are one path off each falling manifold.
+    manifolds : equilibrium manifolds.
+    lying, falling : (L,) numbers of manifolds off which no path leads, with the places before ``first``, and
+        (G,) of the others.
     seats, numbers : (M, 4) configurations of seats, ordered by S, and their places.
     first : the place of the first that is not settled.
     size : of the part in mm, by which turns are counted.
-    doubtful, count : configurations that are not settled, the first so many before and with room for N + G more.
+    doubtful, count : configurations that are not settled, the first so many before and with room for N + G
+        more.
     fallen : (G,) work space.
     out : (N,) written here.
     """
@@ -133,14 +140,14 @@ def write_places(
         fallen[k] = UNKNOWN
     for n in range(ways):
         # From set to set, each lower than the one before, to what is known or leads no further.
-        last, fall = n, fall_at(ends[n], how[n], families, falling, size)
+        last, fall = n, fall_at(ends[n], how[n], manifolds, falling, size)
         while fall >= 0 and fallen[fall] == UNKNOWN:
             last = ways + fall
-            fall = fall_at(ends[last], how[last], families, falling, size)
+            fall = fall_at(ends[last], how[last], manifolds, falling, size)
         if fall >= 0:
             place = fallen[fall]
         else:
-            place = rest_at(ends[last], how[last], leaves[last], families, lying, seats, numbers, first, size)
+            place = rest_at(ends[last], how[last], leaves[last], manifolds, lying, seats, numbers, first, size)
             if place == UNKNOWN:
                 number = doubt_at(ends[last], doubtful, count, size)
                 if number == count:
@@ -150,15 +157,14 @@ def write_places(
                 place = first + number
         out[n], at = place, n
         while at != last:
-            fall = fall_at(ends[at], how[at], families, falling, size)
+            fall = fall_at(ends[at], how[at], manifolds, falling, size)
             fallen[fall], at = place, ways + fall
     return count
 
 
 @compiled
 def leads_out(joins: IntArray, place: int, groups: IntArray) -> int:
-    """The number of the first of some passes, in the order of their separations, from which on a place is joined with the
-    outside; -1 where there is none.
+    """The number of the first pass, by separation, from which on a place is joined with the outside, or -1.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
 """A part on a wall with the tip in a pocket: where the locator touches it too.
 
-The part turns about the centre of the piece of its hull on the wall, and how far the locator is from another piece, or from
-its circle by squares, is a trigonometric polynomial of second degree; its derivatives are bounded by its coefficients. Where
-the wall is along the tip's way, the tip's height alone tells the orientation, by one of the first degree.
+The part turns about the centre of the piece of its hull on the wall. The distance of the locator from another
+piece, or from its circle by squares, is a trigonometric polynomial of second degree, whose derivatives are
+bounded by its coefficients. Where the wall is along the tip's travel, the orientation follows from the tip's
+height alone, by a polynomial of the first degree.
 """
 
 from __future__ import annotations
@@ -39,8 +40,9 @@ def value_of(waves: Waves, theta: float) -> tuple[float, float]:
 
 @inner
 def zeros(waves: Waves, low: float, high: float, stack: Array, found: Array) -> int:
-    """Write where a polynomial vanishes between two orientations (N, 2), and 1 where that is in doubt; their number. Of one
-    that all but vanishes everywhere some are told.
+    """Writes where a polynomial vanishes between two orientations (N, 2), and 1 where that is in doubt.
+
+    Returns their number. If it all but vanishes everywhere, only some are written.
 
     Parameters
     ----------
@@ -74,8 +76,9 @@ def zeros(waves: Waves, low: float, high: float, stack: Array, found: Array) -> 
 
 @inner
 def off_piece(row: Array, ox: float, oy: float, dx: float, dy: float, along: float, above: float) -> Waves:
-    """How far the locator is from a line, or from a circle by squares over its diameter, as the part turns about a point
-    (ox, oy) of it.
+    """The distance of the locator from a line, or its square from a circle over the diameter, as waves.
+
+    The part turns about its point (ox, oy).
 
     Parameters
     ----------
@@ -108,15 +111,18 @@ def off_piece(row: Array, ox: float, oy: float, dx: float, dy: float, along: flo
 def write_pocketed(
     stood: Stood, m: int, pocket: Array, pieces: NDArray[np.int64], found: Array, row: Array
 ) -> tuple[float, float]:
-    """Write the candidate of a part with the tip in a pocket at an orientation that was found, its place that at separation
-    0, or on an upright wall, its first contact still to come; return where the centre of the piece on the wall is."""
+    """Writes the candidate of a part with the tip in a pocket at an orientation that was found.
+
+    Its place is that at separation 0, or on an upright wall; its first contact comes later. Returns where the
+    centre of the piece on the wall is.
+    """
     piece, theta = int(stood.runs[m, 0]), found[0]
     c, s = cos(theta), sin(theta)
     hx, hy = c * stood.hull[piece, 0] - s * stood.hull[piece, 1], s * stood.hull[piece, 0] + c * stood.hull[piece, 1]
     ahead, up = c * pocket[0] - s * pocket[1], s * pocket[0] + c * pocket[1]
     x, y = stood.pegs[TIP, 0] - ahead, stood.pegs[TIP, 1] - up
     at = 0
-    if stood.wall[0] != 0.0:
+    if stood.half_plane[0] != 0.0:
         x, at = heights(stood, piece)[0] - hx, 1
     write_pose(row, theta, x, y, 3)
     row[SEPARATION], row[DOUBT] = x + ahead - stood.pegs[TIP, 0], found[1]
@@ -130,17 +136,19 @@ def write_pocketed(
 def tip_in_pocket(
     stood: Stood, pockets: Array, pieces: NDArray[np.int64], stack: Array, found: Array, out: Array
 ) -> int:
-    """Write the candidates (N, 24) of a part on a wall with the tip in a pocket; their number, or -1 where they do not fit.
+    """Writes the candidates (N, 24) of a part on a wall with the tip in a pocket; returns their number or -1.
 
-    Where the wall is upright the locator touches, too; else the tip and the wall fix all but how far along the wall the part
-    is, its place is that at separation 0, and the locator is still to come.
+    -1 means that they do not fit.
+
+    Where the wall is upright the locator touches, too. Else the tip and the wall fix all but how far along
+    the wall the part is. Then its place is that at separation 0, and the locator is still to come.
 
     Parameters
     ----------
     pockets, pieces : (V, 2) places on the part, and (V, 2) pieces, of those of the tip.
     stack, found : (DEPTH, 2) and (64, 2) work space.
     """
-    count, upright = 0, stood.wall[0] != 0.0
+    count, upright = 0, stood.half_plane[0] != 0.0
     for m in range(stood.runs.shape[0]):
         piece, low, last = int(stood.runs[m, 0]), stood.runs[m, 1], stood.runs[m, 2]
         ox, oy, high = stood.hull[piece, 0], stood.hull[piece, 1], heights(stood, piece)

@@ -1,13 +1,13 @@
-"""The ray of a holding: from its first contact along the normal there, on which the instant centre P lies.
+"""The ray of a pair: from its first contact along the normal there, on which the instant centre P lies.
 
 With r_a and r_b the unit normals at both contacts, w from the first contact u to the second, of length d,
 
     P = u + p r_a,    p = cross(w, r_b) / cross(r_a, r_b).
 
-Beside a tangency P runs off and its speed tells little. But both cross products change no faster than the directions in them
-turn, so that p is bounded by their quotient: from below, and from above where the divisor cannot vanish. Seen from the part,
-what is far off is in a direction that hardly changes. To either side of its middle a range moves u by max(p) times half its
-width at most.
+Beside a tangency P runs off, and its speed is of little use. But both cross products change no faster than
+the directions in them turn. So p is bounded by their quotient from below, and from above where the divisor
+cannot vanish. Seen from the part, what is far off is in a direction that hardly changes. To either side of
+its middle a range moves u by max(p) times half its width at most.
 
 What rounding does to a computed chord is bounded in ``chord.evaluation``.
 """
@@ -23,22 +23,25 @@ from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.chord.coincidences import NONE
 from workhold.kernels.curves.columns import BACKWARD_ERROR, COINCIDENCE, KAPPA, LENGTH
-from workhold.kernels.seating.holdings import END, Held
 from workhold.kernels.seating.pieces import angle_from_middle, length
+from workhold.kernels.seating.two_contact_curves import END, PairState
 
 __all__ = ["Ray", "foot_is_off", "ray_of"]
 
 Array = NDArray[np.float64]
-# Least and largest distance of P from the first contact in mm, the ray's unit vector in the middle of the range, how far the
-# contact moves to either side of its place there in mm, and by how much the normals at both contacts turn, in radians.
+# Least and largest distance of P from the first contact in mm, the ray's unit vector in the middle of the
+# range, how far the contact moves to either side of its place there in mm, and by how much the normals at
+# both contacts turn, in radians.
 Ray = tuple[float, float, float, float, float, float, float]
 # No unit. Rounding of a unit vector; and of quotients and products of bounds, generously counted.
 OF_DIRECTION, OF_BOUND = 1e-15, 1e-9
 
 
 @inner
-def ray_of(curve: Array, a: Array, b: Array, s: Held, speed: float, reach: float) -> Ray:
-    """The ray over a range, in the middle of which the holding is ``s``; with distances 0 and inf where nothing is known.
+def ray_of(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach: float) -> Ray:
+    """The ray over a range in whose middle the pair is ``s``.
+
+    Its distances are 0 and inf where nothing is known.
 
     Parameters
     ----------
@@ -77,10 +80,20 @@ def ray_of(curve: Array, a: Array, b: Array, s: Held, speed: float, reach: float
 
 @inner
 def foot_is_off(
-    piece: Array, side: float, push: float, above: float, cosine: float, sine: float, s: Held, ray: Ray, reach: float
+    piece: Array,
+    side: float,
+    push: float,
+    above: float,
+    cosine: float,
+    sine: float,
+    s: PairState,
+    ray: Ray,
+    reach: float,
 ) -> bool:
-    """Whether the foot of P on a piece is off the piece over a range, or not level with the third peg, or the force there
-    cannot balance the other two; see ``three_contacts``."""
+    """Whether over a range the foot of P is off a piece, off the third peg's level, or without balance.
+
+    There is no balance where the force there cannot balance the other two; see ``three_contacts``.
+    """
     least, most, rx, ry, drift, turn_a, turn_b = ray
     if least <= 0.0:
         return False

@@ -1,7 +1,8 @@
-"""How far a part can be turned or shifted with S below a bound: ways on which no peg enters it, step by small step.
+"""How far a part can be turned or shifted with S below a bound: paths on which no peg enters it.
 
-A step leads farthest along the aim within a box and the linearized clearances, of which the bound of S is one, as a step of
-``closing`` leads farthest down. So a way is connected, and where it ends something holds the part back.
+A step leads farthest along the aim within a box and the linearized clearances, of which the bound of S is
+one, as a step of ``closing`` leads farthest down. So a path is connected, and where it ends something holds
+the part back.
 """
 
 from __future__ import annotations
@@ -12,22 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.seating.closing import (
-    LEAST_GAIN,
-    LEAST_STEP,
-    WIDER,
-    Four,
-    add_node,
-    ahead,
-    best_step,
-    look_around,
-    push_out,
-)
-from workhold.kernels.seating.columns import Obstacles, WorkSpace
+from workhold.kernels.seating.closing import LEAST_GAIN, LEAST_STEP, WIDER, add_node, ahead, look_around, push_out
+from workhold.kernels.seating.columns import DescentWorkSpace, Obstacles
+from workhold.kernels.seating.linear_program import Four, best_step
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-# Steps of one way.
+# Steps of one path.
 MOST_STEPS = 600
 
 
@@ -45,11 +37,14 @@ def reach_one(
     trust: float,
     most: float,
     obstacles: Obstacles,
-    work: WorkSpace,
+    work: DescentWorkSpace,
     nodes: Array,
     at: int,
 ) -> int:
-    """Move a configuration along an aim, in place, until nothing leads on; the number after that of the last node."""
+    """Moves a configuration along an aim, in place, until nothing leads on.
+
+    Returns the next number of a node.
+    """
     trial, first, won = work.trial, at, 0.0
     at = add_node(config, trust, trust, nodes, first, at)
     count = push_out(config, obstacles, ahead(trust, most), work)
@@ -91,18 +86,18 @@ def reach_out(
     trust: float,
     most: float,
     obstacles: Obstacles,
-    work: WorkSpace,
+    work: DescentWorkSpace,
     begins: IntArray,
     nodes: Array,
 ) -> None:
-    """Move configurations (N, 4) of theta, x, y and S, in place, along aims as far as they lead.
+    """Moves configurations (N, 4) of theta, x, y and S, in place, along aims as far as they lead.
 
     Parameters
     ----------
     aims : (N, 4) unit vectors of (theta size, x, y, S), in mm.
     far : (N,) how far along them in mm a way ends at the latest.
     trust, most : how long the first steps and all of them are at most, in mm.
-    begins : (N + 1,) where the nodes of each way begin and, last, end, written here.
+    begins : (N + 1,) where the nodes of each path begin and, last, end, written here.
     nodes : (M, 10) configurations after each step, as of ``closing.close_jaws``, as far as there is room.
     """
     count = 0

@@ -1,8 +1,8 @@
 """The three functions of the orientation whose roots are equilibria, and how a root between two signs is found.
 
-MISS : height of the foot of the instant centre P on a third peg's piece, less the third peg's own height. Zero where the
-    third normal goes through P. Its derivative is x . (P - foot) + y . foot'.
-APART : difference of the heights of two holdings. Zero where both hold the part.
+MISS : height of the foot of the instant centre P on a third peg's piece, less the third peg's own height.
+    Zero where the third normal goes through P. Its derivative is x . (P - foot) + y . foot'.
+APART : difference of the heights of two pairs. Zero where both hold the part.
 GAP : distance of another peg of the same jaw from a piece. Zero where it touches.
 """
 
@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Given
-from workhold.kernels.seating.holdings import height, held
 from workhold.kernels.seating.pieces import foot, length
+from workhold.kernels.seating.two_contact_curves import height, pair_at
 
 Array = NDArray[np.float64]
 
@@ -35,15 +35,15 @@ def value(
 
     Parameters
     ----------
-    one, two : holdings; the second is asked for APART only.
+    one, two : pairs; the second is asked for APART only.
     piece : row; asked for MISS and GAP.
-    first, second : of MISS the height of the third peg above the first, and the side of the foot; of GAP the other peg's
-        place in the vise frame from the first.
+    first, second : for MISS the height of the third peg above the first, and the side of the foot. For GAP
+        the other peg's place in the closing frame, from the first.
     """
-    s = held(one, given, psi)
+    s = pair_at(one, given, psi)
     cosine, sine = cos(psi), sin(psi)
     if kind == APART:
-        t = held(two, given, psi)
+        t = pair_at(two, given, psi)
         return height(two, given, t[0], t[1], cosine, sine) - height(one, given, s[0], s[1], cosine, sine)
     if kind == MISS:
         f = foot(piece, s[6], s[7], second)
@@ -62,7 +62,7 @@ def gap(piece: Array, x: float, y: float) -> float:
 
 @inner
 def have_no_root(f_low: float, f_high: float) -> bool:
-    """Whether a function's values at two orientations tell of no root between them."""
+    """Whether a function's values at two orientations leave no root between them."""
     return f_low * f_high > 0.0 and min(abs(f_low), abs(f_high)) > AT_END
 
 

@@ -1,4 +1,4 @@
-"""Whether a part covers the place that it covers elsewhere, see ``seating.place``."""
+"""Whether a part covers the place that it covers elsewhere, see ``seating.silhouette``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 @inner
 def is_near(x: float, y: float, row: Array, most: float) -> bool:
-    """Whether a point is within a distance of a segment. Most are not, which their carrier tells."""
+    """Whether a point is within a distance of a segment. The carrier decides of most that they are not."""
     if not is_shallow(row):
         dx, dy = x - row[X], y - row[Y]
         off = hypot(dx, dy) - row[RADIUS] if row[IS_ARC] != 0.0 else dx * row[AXIS_Y] - dy * row[AXIS_X]
@@ -28,7 +28,7 @@ def is_near(x: float, y: float, row: Array, most: float) -> bool:
 
 @inner
 def covers_same(one: Array, other: Array, sign: float, rows: Array, points: Array, most: float) -> bool:
-    """See ``cover_same``, of one configuration; ``sign`` is -1 where the part is turned over."""
+    """Whether a part covers in two configurations the same place; ``sign`` is -1 for one turned over."""
     turn = other[0] - one[0]
     cosine, sine, c, s = cos(turn), sin(turn), cos(one[0]), sin(one[0])
     dx, dy = other[1] - one[1], other[2] - one[2]
@@ -55,7 +55,7 @@ def cover_same(
     most: float,
     out: NDArray[np.int8],
 ) -> None:
-    """Whether a part covers in configurations (N, 4) the place that it covers in one (4,), written to ``out`` (N,).
+    """Writes whether a part covers in configurations (N, 4) the place that it covers in one (4,).
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
-"""Equilibria of parts that slide on two pegs of one jaw, on parallel faces or equal arcs, until other pegs stop them.
+"""Equilibria of parts that slide on two pegs of one jaw, on parallel faces or equal arcs, until pegs block them.
 
-A row of slides: the pegs SLIDE_FIRST and SLIDE_SECOND, the pieces SLIDE_ONE and SLIDE_TWO that they touch, the parameters of
-the first on its piece SLIDE_LOW and SLIDE_HIGH, and SLIDE_PSI, the orientation of the pegs seen from the part in radians.
-Where a slide is stopped has two parameters at most, on a circle each of them up to whole turns: NaN where there is none.
+Columns of a slide: the pegs SLIDE_FIRST and SLIDE_SECOND, the pieces SLIDE_ONE and SLIDE_TWO that they touch,
+and the parameters SLIDE_LOW and SLIDE_HIGH of the first on its piece. SLIDE_PSI is the orientation of the
+pegs seen from the part, in radians. A slide is blocked at two parameters at most, on a circle up to whole
+turns: NaN where there is none.
 """
 
 from __future__ import annotations
@@ -16,15 +17,15 @@ from workhold.conventions import END_SLACK
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.curves.columns import FROM, TO
-from workhold.kernels.seating.candidates import place_third, write_holding, write_pose
+from workhold.kernels.seating.candidates import place_third, write_pair, write_pose
 from workhold.kernels.seating.columns import (
     ANGLE,
     FIRST_PEG,
     HIGH,
-    HOLDING,
     KIND,
     LOW,
     MOTION,
+    PAIR,
     PEG,
     PIECE,
     SECOND,
@@ -32,8 +33,8 @@ from workhold.kernels.seating.columns import (
     Given,
     JawCells,
 )
-from workhold.kernels.seating.holdings import TURN, height, held, is_on_its_pieces
 from workhold.kernels.seating.pieces import on_piece
+from workhold.kernels.seating.two_contact_curves import TURN, height, is_on_its_pieces, pair_at
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -88,7 +89,7 @@ def track_crossing(row: Array, middle: float, nx: float, ny: float, level: float
 
 @inner
 def begin(out: Array, slide: Array, x: float, y: float, contacts: int, given: Given) -> None:
-    """Begin a candidate with the two contacts of a slide, the first at (x, y), its place that at separation 0."""
+    """Begins a candidate with both contacts of a slide, the first at (x, y), placed as at separation 0."""
     c, s = cos(slide[SLIDE_PSI]), sin(slide[SLIDE_PSI])
     first = int(slide[SLIDE_FIRST])
     px, py = given.pegs[first, 0] - (c * x + s * y), given.pegs[first, 1] - (c * y - s * x)
@@ -99,7 +100,7 @@ def begin(out: Array, slide: Array, x: float, y: float, contacts: int, given: Gi
 
 @inner
 def square_to(slide: Array, row: Array, middle: float, piece: Array, side: float, above: float) -> Two:
-    """Parameters at which a third peg, ``above`` mm over the first, is on a piece and has the normal of both contacts."""
+    """The parameters at which a third peg, ``above`` mm over the first, is on a piece of parallel normal."""
     ux, uy = -sin(slide[SLIDE_PSI]), cos(slide[SLIDE_PSI])
     if row[IS_ARC] == 0.0:
         if piece[IS_ARC] == 0.0:
@@ -134,8 +135,10 @@ def met_at(slide: Array, row: Array, middle: float, piece: Array, side: float, a
 
 @compiled
 def slides_squared(slides: Array, given: Given, out: Array) -> int:
-    """Write the candidates of slides (S, 7) with a third peg, of the other jaw, whose normal is parallel: on an arc or, of a
-    part that goes round, on a line too. Return their number, or -1 where they do not fit."""
+    """Writes the candidates of slides (S, 7) with a third peg, of the other jaw, whose normal is parallel.
+
+    It is on an arc or, if the part goes round, on a line. Returns their number, or -1 where they do not fit.
+    """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
@@ -147,8 +150,8 @@ def slides_squared(slides: Array, given: Given, out: Array) -> int:
             above = given.pegs[third, 1] - given.pegs[first, 1]
             for number in range(given.parts[given.right[third], 0], given.parts[given.right[third], 1]):
                 piece = given.rows[number]
-                # The part moves on a circle of one radius while the peg stays on one of the other: their sum tells the
-                # curvature.
+                # The part moves on a circle of one radius while the peg stays on one of the other: their sum
+                # gives the curvature.
                 total = piece[SIGN] * piece[RADIUS] if piece[IS_ARC] != 0.0 else 0.0
                 total += row[SIGN] * row[RADIUS] if row[IS_ARC] != 0.0 else 0.0
                 ts = NONE
@@ -178,12 +181,12 @@ def slides_squared(slides: Array, given: Given, out: Array) -> int:
 
 
 @inner
-def inside(holding: Array, given: Given, psi: float) -> float:
-    """An orientation moved by whole turns into the range of a holding."""
-    if holding[KIND] == 1.0:
+def inside(pair: Array, given: Given, psi: float) -> float:
+    """An orientation moved by whole turns into the range of a pair."""
+    if pair[KIND] == 1.0:
         return psi
-    k = int(holding[SOURCE])
-    low, high = given.reals[k, FROM] - holding[ANGLE], given.reals[k, TO] - holding[ANGLE]
+    k = int(pair[SOURCE])
+    low, high = given.reals[k, FROM] - pair[ANGLE], given.reals[k, TO] - pair[ANGLE]
     return min(max(psi + TURN * ceil((low - BESIDE - psi) / TURN), low), high)
 
 
@@ -191,8 +194,10 @@ def inside(holding: Array, given: Given, psi: float) -> float:
 def slides_held(
     slides: Array, left: JawCells, right: JawCells, given: Given, pocket_pieces: IntArray, out: Array
 ) -> int:
-    """Write the candidates of slides (S, 7) at the height at which the other jaw holds the part at their orientation: four
-    contacts. Return their number, or -1 where they do not fit."""
+    """Writes the candidates of slides (S, 7) with two contacts of the other jaw at their height.
+
+    Returns their number, or -1 where they do not fit.
+    """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
@@ -205,12 +210,12 @@ def slides_held(
                 break
             if cell[HIGH] + BESIDE < within:
                 continue
-            holding = given.holdings[int(cell[HOLDING]) + jaw.before]
-            exact = inside(holding, given, psi)
-            there = held(holding, given, exact)
-            if not is_on_its_pieces(holding, given, exact, there[0], there[1]):
+            pair = given.pairs[int(cell[PAIR]) + jaw.before]
+            exact = inside(pair, given, psi)
+            there = pair_at(pair, given, exact)
+            if not is_on_its_pieces(pair, given, exact, there[0], there[1]):
                 continue
-            level = height(holding, given, there[0], there[1], cos(exact), sin(exact)) + given.pegs[first, 1]
+            level = height(pair, given, there[0], there[1], cos(exact), sin(exact)) + given.pegs[first, 1]
             ts = track_crossing(row, middle, -s, c, level)
             for way in range(6):
                 t = turned_in(slide, row, ts[way // 3], way % 3 - 1)
@@ -220,14 +225,14 @@ def slides_held(
                     return -1
                 one = out[count]
                 begin(one, slide, *track_at(row, middle, t), 4, given)
-                place_third(one, c * there[0] + s * there[1], int(holding[FIRST_PEG]), given)
-                write_holding(one, 2, holding, given, pocket_pieces)
+                place_third(one, c * there[0] + s * there[1], int(pair[FIRST_PEG]), given)
+                write_pair(one, 2, pair, given, pocket_pieces)
                 count += 1
     return count
 
 
 @inner
-def stopped(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Two:
+def blocked(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Two:
     """Parameters at which a peg (ox, oy) from the first is on the carrier of a piece."""
     if piece[IS_ARC] == 0.0:
         nx, ny = piece[AXIS_Y], -piece[AXIS_X]
@@ -248,9 +253,11 @@ def stopped(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Tw
 
 
 @compiled
-def slides_stopped(slides: Array, given: Given, out: Array) -> int:
-    """Write candidates of slides (S, 7) with the third contact where another peg of their own jaw stops them, their place
-    that at separation 0. Return their number, or -1 where they do not fit."""
+def slides_blocked(slides: Array, given: Given, out: Array) -> int:
+    """Writes candidates of slides (S, 7) with a third contact, where a peg of their own jaw blocks them.
+
+    Their place is that at separation 0. Returns their number, or -1 where they do not fit.
+    """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
@@ -264,7 +271,7 @@ def slides_stopped(slides: Array, given: Given, out: Array) -> int:
             ox, oy = c * dx - s * dy, s * dx + c * dy
             for number in range(given.parts[jaw, 0], given.parts[jaw, 1]):
                 piece = given.rows[number]
-                ts = stopped(row, middle, piece, ox, oy)
+                ts = blocked(row, middle, piece, ox, oy)
                 for way in range(6):
                     t = turned_in(slide, row, ts[way // 3], way % 3 - 1)
                     if t != t:

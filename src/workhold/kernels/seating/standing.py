@@ -1,8 +1,9 @@
 """A part that stands on a piece of its hull on a wall, between a locator and a tip: where three forces balance.
 
-The orientation tells the separation S, and the forces balance where S' = 0, which is enclosed with S'' by intervals (see
-``turning``): the part turns about the centre of the piece of its hull, which keeps its distance from the wall. Ranges in
-which it cannot vanish, or a force cannot press, are dropped, and its roots isolated in the others (see ``isolating``).
+The separation S follows from the orientation, and the forces balance where S' = 0, which is enclosed with S''
+by intervals (see ``turning``). The part turns about the centre of the piece of its hull, which keeps its
+distance from the wall. Ranges in which S' cannot vanish, or a force cannot press, are dropped, and the roots
+isolated in the others (see ``isolating``).
 """
 
 from __future__ import annotations
@@ -42,7 +43,8 @@ class Stood(NamedTuple):
     hull : (H, 6) pieces of the hull, see ``seating.walls``.
     runs : (M, 3) numbers of such a piece, and first and last orientation in which it is on the wall.
     pegs : (2, 2) of the locator, and of the tip at separation 0, in mm.
-    wall : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall is.
+    half_plane : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall
+        is.
     """
 
     rows: Array
@@ -51,15 +53,18 @@ class Stood(NamedTuple):
     hull: Array
     runs: Array
     pegs: Array
-    wall: Array
+    half_plane: Array
 
 
 @inner
 def heights(stood: Stood, piece: int) -> tuple[float, float, float]:
-    """While a piece of the hull is on the wall: where its centre is square to it, how far the locator's line is from there,
-    and how much higher the tip is: than the centre, or than the locator where the wall is upright."""
-    ux, uy = stood.wall[0], stood.wall[1]
-    center = (ux + uy) * (stood.wall[2] + stood.hull[piece, 2])
+    """The heights of a hull piece's centre, the locator's line and the tip while the piece is on the wall.
+
+    The first is square to the wall, the second is counted from there, and the third from the centre, or from
+    the locator where the wall is upright.
+    """
+    ux, uy = stood.half_plane[0], stood.half_plane[1]
+    center = (ux + uy) * (stood.half_plane[2] + stood.hull[piece, 2])
     if ux != 0.0:
         return (center, stood.pegs[LOCATOR, 0] - center, stood.pegs[TIP, 1] - stood.pegs[LOCATOR, 1])
     return (center, stood.pegs[LOCATOR, 1] - center, stood.pegs[TIP, 1] - center)
@@ -75,13 +80,17 @@ def both(
     way: float,
     within: bool,
 ) -> tuple[Contact, Contact]:
-    """The contacts of locator and tip over a range of orientations; ``way`` as the locator's ``facing``, see ``contact``."""
+    """The contacts of locator and tip over a range of orientations.
+
+    The ``way`` is the locator's ``facing`` of ``contact``.
+    """
     level = (high[1], high[1])
     if not upright:
         one = contact(locator, turn, level, NOTHING, NOTHING, way, within)
         return (one, contact(tip, turn, (high[2], high[2]), NOTHING, NOTHING, 1.0, within))
     one = contact(locator, ishift(pi / 2.0, turn), level, NOTHING, NOTHING, way, within)
-    # The part is as much higher as the locator's contact is lower; a quarter turn makes x of that what was -y.
+    # The part is as much higher as the locator's contact is lower; a quarter turn makes x of that what was
+    # -y.
     two = contact(tip, turn, ishift(high[2], ineg(one[2])), ineg(one[3]), ineg(one[4]), 1.0, within)
     return (one, two if one[0] else one)
 
@@ -90,8 +99,8 @@ def both(
 def rate(one: Contact, two: Contact, wall: Array, way: float) -> Rate:
     """How S changes, where wall, locator and tip may all press.
 
-    With b = (1, tan) of the tip, unit forces along x: the locator's is what that leaves along the wall, and the wall's the
-    rest.
+    With b = (1, tan) of the tip, unit forces along x: the locator's is what that leaves along the wall, and
+    the wall's the rest.
     """
     if not (one[0] and two[0]):
         return NOWHERE
@@ -116,8 +125,8 @@ def balances(
     out: Array,
     count: int,
 ) -> int:
-    """Write the balances of a run with locator and tip on two pieces in a cell; the new count, or -1."""
-    upright, high = stood.wall[0] != 0.0, heights(stood, int(stood.runs[m, 0]))
+    """Writes the balances of a run with locator and tip on two pieces in a cell; the new count, or -1."""
+    upright, high = stood.half_plane[0] != 0.0, heights(stood, int(stood.runs[m, 0]))
     depth, looked = 1, 0
     stack[0, 0], stack[0, 1] = cell
     while depth > 0:
@@ -125,15 +134,15 @@ def balances(
         looked += 1
         turn = (stack[depth, 0], stack[depth, 1])
         one, two = both(shapes[i], shapes[j], high, upright, turn, way, True)
-        told = rate(one, two, stood.wall, way)
-        if not told[0] or has_none(told[2]):
+        known = rate(one, two, stood.half_plane, way)
+        if not known[0] or has_none(known[2]):
             continue
         verdict, middle = HALVES, (turn[0] + turn[1]) / 2.0
         one, two = both(shapes[i], shapes[j], high, upright, turn, way, False)
-        told = rate(one, two, stood.wall, way)
-        if told[1]:
+        known = rate(one, two, stood.half_plane, way)
+        if known[1]:
             one, two = both(shapes[i], shapes[j], high, upright, (middle, middle), way, False)
-            verdict, turn = judged(turn, middle, rate(one, two, stood.wall, way)[2], told[3])
+            verdict, turn = judged(turn, middle, rate(one, two, stood.half_plane, way)[2], known[3])
             if verdict == NONE:
                 continue
         more = -1 if verdict >= ROOT else to_look_at(verdict, turn, looked, stack, depth)
@@ -149,9 +158,13 @@ def balances(
 def write_balance(
     stood: Stood, m: int, i: int, j: int, way: float, theta: float, doubt: bool, shapes: Array, out: Array, count: int
 ) -> int:
-    """Write the candidate of three contacts at an orientation, if they lie on their pieces; the new count, or -1 where it
-    does not fit."""
-    piece, upright = int(stood.runs[m, 0]), stood.wall[0] != 0.0
+    """Writes the candidate of three contacts at an orientation, if they lie on their pieces.
+
+    Returns the new count.
+
+    It is -1 where the candidate does not fit.
+    """
+    piece, upright = int(stood.runs[m, 0]), stood.half_plane[0] != 0.0
     high = heights(stood, piece)
     one, two = both(shapes[i], shapes[j], high, upright, (theta, theta), way, True)
     if not (one[0] and two[0]):
@@ -166,10 +179,10 @@ def write_balance(
         x, y, vx, vy = high[0], stood.pegs[LOCATOR, 1] + place, 0.0, speed
     else:
         x, y, vx, vy = stood.pegs[LOCATOR, 0] - place, high[0], -speed, 0.0
-    told, row = rate(one, two, stood.wall, way), out[count]
+    known, row = rate(one, two, stood.half_plane, way), out[count]
     write_pose(row, theta, x - hx, y - hy, 3)
     row[SEPARATION] = x + (two[2][0] + two[2][1]) / 2.0 - stood.pegs[TIP, 0]
-    row[SECOND], row[DOUBT] = (told[3][0] + told[3][1]) / 2.0, 1.0 if doubt else 0.0
+    row[SECOND], row[DOUBT] = (known[3][0] + known[3][1]) / 2.0, 1.0 if doubt else 0.0
     row[MOTION], row[MOTION + 1], row[MOTION + 2] = 1.0, vx + hy, vy - hx
     row[PEG], row[PEG + 1], row[PEG + 2] = LOCATOR, TIP, ON_WALL
     row[PIECE], row[PIECE + 1], row[PIECE + 2] = i, j, stood.rows.shape[0] + piece
@@ -178,14 +191,15 @@ def write_balance(
 
 @compiled
 def stationary(stood: Stood, shapes: Array, stack: Array, out: Array) -> int:
-    """Write the candidates (N, 24) of all balances of wall, locator and tip, one piece of the hull being on the wall; their
-    number, or -1 where they do not fit.
+    """Writes the candidates (N, 24) of all balances of wall, locator and tip on a piece of the hull.
+
+    Returns their number, or -1 where they do not fit.
 
     Parameters
     ----------
     shapes, stack : (N, 11) and (DEPTH, 2) work space.
     """
-    count, upright = 0, stood.wall[0] != 0.0
+    count, upright = 0, stood.half_plane[0] != 0.0
     for m in range(stood.runs.shape[0]):
         piece, low, width = int(stood.runs[m, 0]), stood.runs[m, 1], stood.runs[m, 2] - stood.runs[m, 1]
         for k in range(stood.rows.shape[0]):
@@ -203,7 +217,7 @@ def stationary(stood: Stood, shapes: Array, stack: Array, out: Array) -> int:
 def balances_of_cell(
     stood: Stood, m: int, turn: Interval, upright: bool, shapes: Array, stack: Array, out: Array, count: int
 ) -> int:
-    """Write the balances of a run in a cell with all pieces; the new count, or -1 where they do not fit."""
+    """Writes the balances of a run in a cell with all pieces; the new count, or -1 where they do not fit."""
     high = heights(stood, int(stood.runs[m, 0]))
     for i in range(stood.parts[0, 0], stood.parts[0, 1]):
         # Along the wall the locator is pressed from the tip's side, upright from above or from below.

@@ -1,8 +1,8 @@
-"""The least friction at which three of four contacts balance a jaw, see ``seating.sticking``.
+"""The least friction at which three of four contacts balance a jaw, see ``seating.sticking_friction``.
 
-A contact's wrench is a force and its moment, along the normal into the part (straight) and along the tangent (across): (4,
-3) of each. With signs s of its tangents, three contacts at the edges of their cones balance where
-det(straight + mu s across) = 0, a cubic in mu.
+A contact's wrench is a force and its moment, along the normal into the part (straight) and along the tangent
+(across): (4, 3) of each. With signs s of its tangents, three contacts at the edges of their cones balance
+where det(straight + mu s across) = 0, a cubic in mu.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 Cubic = tuple[float, float, float, float]
 
-# No unit. Coefficients of a cubic, per the largest, that are none, and all of them; and how far, per 1 + |root|, two complex
-# roots are apart that are counted as one that is real.
+# No unit. Coefficients of a cubic, per the largest, that are none, and all of them; and how far, per 1 +
+# |root|, two complex roots are apart that are counted as one that is real.
 NO_COEFFICIENT, NO_CUBIC, APART = 1e-13, 1e-14, 1e-7
-# No unit. Forces are above minus the first, which on the jaw is no force; vectors below the second have no direction.
+# No unit. Forces are above minus the first, which on the jaw is no force; vectors below the second have no
+# direction.
 PULLS, NO_FORCE = 1e-9, 1e-12
 # Determinants that are none. A share by which less friction is less, and how often it is halved.
 SINGULAR, LESS, HALVINGS = 1e-14, 1e-7, 60
@@ -32,13 +33,13 @@ MOST_CUTS = 200
 
 @inner
 def determinant(a: Array, b: Array, c: Array) -> float:
-    """That of three rows."""
+    """The determinant of three rows."""
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 
 
 @inner
 def cubic_of(straight: Array, across: Array, i: int, j: int, k: int, si: float, sj: float, sk: float) -> Cubic:
-    """Coefficients of the determinant over the friction, the constant first, what is rounding 0; all 0 of none."""
+    """The coefficients of the determinant over the friction, the constant first; what is rounding is 0."""
     a, b, c, d, e, f = straight[i], straight[j], straight[k], across[i], across[j], across[k]
     zero, three = determinant(a, b, c), si * sj * sk * determinant(d, e, f)
     one = si * determinant(d, b, c) + sj * determinant(a, e, c) + sk * determinant(a, b, f)
@@ -98,10 +99,10 @@ def root_in(p: Cubic, low: float, high: float) -> float:
 def presses(
     straight: Array, across: Array, right: IntArray, i: int, j: int, k: int, fi: float, fj: float, fk: float
 ) -> bool:
-    """Whether three dependent wrenches balance with forces of one sign that close the jaw; ``f`` their frictions."""
+    """Whether three dependent wrenches of frictions ``f`` balance with forces of one sign."""
     h0, h1, h2, size = 0.0, 0.0, 0.0, 0.0
     for way in range(3):
-        # Forces are square to two of the three components, of the two that tell most.
+        # Forces are square to two of the three components, of the two that are largest.
         m, n = (0 if way != 1 else 1), (1 if way == 0 else 2)
         ai, aj, ak = (
             straight[i, m] + fi * across[i, m],
@@ -130,8 +131,10 @@ def presses(
 
 @inner
 def three_balance(straight: Array, across: Array, right: IntArray, left_out: int, least: float) -> float:
-    """The least friction below ``least`` at which the three contacts that are not left out balance at edges of their cones;
-    ``least`` where there is none."""
+    """The least friction at which three contacts, without one, balance at edges of their cones.
+
+    It is ``least`` where there is none below.
+    """
     i, j, k = (1 if left_out == 0 else 0), (2 if left_out <= 1 else 1), (3 if left_out <= 2 else 2)
     for signs in range(8):
         si, sj, sk = 1.0 - 2.0 * (signs & 1), 1.0 - 2.0 * (signs >> 1 & 1), 1.0 - 2.0 * (signs >> 2)
@@ -168,7 +171,7 @@ def three_balance(straight: Array, across: Array, right: IntArray, left_out: int
 
 @inner
 def two_balance(points: Array, normals: Array, right: IntArray, least: float) -> float:
-    """The same of two contacts, the line through which lies in both cones."""
+    """The least friction at which the line through two contacts lies in both cones, at most ``least``."""
     for i in range(4):
         for j in range(i + 1, 4):
             dx, dy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
@@ -189,8 +192,10 @@ def two_balance(points: Array, normals: Array, right: IntArray, least: float) ->
 
 @inner
 def all_push(matrix: Array, inverse: Array) -> bool:
-    """Whether four forces whose wrenches add up to none, with 1 that closes the jaw, are all at least 0; the system (4, 4)
-    is used up."""
+    """Whether four forces whose wrenches add up to zero, and which close the jaw with 1, are all at least 0.
+
+    The system (4, 4) is used up.
+    """
     if not eliminate(matrix, inverse) > SINGULAR:
         return False
     # The right-hand side is (0, 0, 0, -1).
@@ -199,8 +204,12 @@ def all_push(matrix: Array, inverse: Array) -> bool:
 
 @inner
 def balances(straight: Array, across: Array, right: IntArray, friction: float, matrix: Array, inverse: Array) -> bool:
-    """Whether three of four contacts balance the jaw inside cones of a friction: some four of their six edges do, then."""
-    # Edges no longer than about 1, whatever the friction: their determinant tells whether they are independent.
+    """Whether three of four contacts balance the jaw inside cones of a friction.
+
+    Some four of their six edges do then.
+    """
+    # Edges no longer than about 1, whatever the friction: their determinant shows whether they are
+    # independent.
     along = 1.0 / max(1.0, friction)
     for left_out in range(4):
         # Of six edges, two are not used.

@@ -1,12 +1,13 @@
-"""Where the normal of a third peg, of the other jaw, goes through the instant centre of a holding: three forces in balance.
+"""Three forces in balance: the normal of a third peg, of the other jaw, goes through the instant centre of a pair.
 
-Over a range of orientations the instant centre P moves no faster than the speed V of its cell, and along a ray
-(``kernels.seating.rays``). Both bound the foot of P on a piece, the directions of all three forces and the height missed
-(``roots.MISS``). A range is dropped where the foot is off the piece, the forces cannot all press, or the height cannot
-vanish; before that, whole pieces by the discs around them. By an enclosure of P' (``chord.center_speeds``) there is no root
-where the mean value theorem leaves none, and one at most where the derivative keeps its sign; else the range is halved.
-What is too narrow to be halved is told as in doubt, but for ranges beside a tangency, where V tells nothing, in which three
-values hardly differ.
+Over a range of orientations the instant centre P moves no faster than the speed V of its cell, and along a
+ray (``kernels.seating.rays``). Both bound the foot of P on a piece, the directions of all three forces and
+the height missed (``roots.MISS``). A range is dropped where the foot is off the piece, the forces cannot all
+press, or the height cannot vanish; before that, whole pieces by the discs around them.
+
+By an enclosure of P' (``chord.center_speeds``) there is no root where the mean value theorem leaves none.
+There is one at most where the derivative keeps its sign; else the range is halved. What is too narrow to be
+halved is in doubt. Beside a tangency, where V is of no use, three values that hardly differ decide.
 """
 
 from __future__ import annotations
@@ -25,48 +26,53 @@ from workhold.kernels.seating.columns import (
     ANGLE,
     FIRST_PEG,
     HIGH,
-    HOLDING,
     KIND,
     LOW,
+    PAIR,
     SOURCE,
     SPEED,
     VAGUE,
     Given,
 )
-from workhold.kernels.seating.holdings import END, Held, held
-from workhold.kernels.seating.middles import COSINE, SINE, held_in, ray_in, ray_over
+from workhold.kernels.seating.middles import COSINE, SINE, pair_in, ray_in, ray_over
 from workhold.kernels.seating.pieces import Foot, angle_from_middle, foot, length, share_normals
 from workhold.kernels.seating.rays import Ray, foot_is_off
 from workhold.kernels.seating.roots import AT_END, MISS, is_level, root_between
+from workhold.kernels.seating.two_contact_curves import END, PairState, pair_at
 
 Array = NDArray[np.float64]
 
-# Ranges narrower than this, in radians, are not halved, but where values differ over them that are near 0 and P moves by
-# more than some mm, as beside a tangency; none is that is as narrow as the last.
+# Ranges narrower than this, in radians, are not halved, but where values differ over them that are near 0 and
+# P moves by more than some mm, as beside a tangency; none is that is as narrow as the last.
 NARROWEST, STILL, LAST = 2e-8, 1e-3, 1e-13
 # mm. Rounding of a height and of a direction.
 ROUNDING = 2e-12
-# Columns of what is found: ROOT_HOLDING, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT.
-ROOT_HOLDING, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT = range(6)
+# Columns of what is found: ROOT_PAIR, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT.
+ROOT_PAIR, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT = range(6)
 ROOT_LENGTH = 6
-# What may be told of a range.
+# Verdicts on a range.
 NOTHING, HALVES, MAYBE = 0, 1, 2
 
 
 @inner
-def may_balance(s: Held, nx: float, ny: float, ray: Ray, turn: float) -> bool:
-    """Whether the force of the third contact may lie between the other two somewhere in a range; its normal n turns by
-    ``turn`` at most, and theirs as told with the ray."""
+def may_balance(s: PairState, nx: float, ny: float, ray: Ray, turn: float) -> bool:
+    """Whether the third contact's force may lie between the other two somewhere in a range.
+
+    Its normal n turns by ``turn`` at most, and theirs as the ray has it.
+    """
     sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
     first, second = sign * (ny * s[4] - nx * s[5]), sign * (s[3] * nx - s[2] * ny)
     return first >= -(turn + ray[6]) - 1e-9 and second >= -(turn + ray[5]) - 1e-9
 
 
 @inner
-def write_off_level(discs: Array, s: Held, cosine: float, sine: float, speed: float, reach: float, off: Array) -> None:
-    """Write over which heights above the first peg points in discs of the part may be over a range.
+def write_off_level(
+    discs: Array, s: PairState, cosine: float, sine: float, speed: float, reach: float, off: Array
+) -> None:
+    """Writes over which heights above the first peg points in discs of the part may be over a range.
 
-    Seen from the first peg, a point c of the part rises by x . (P - c) per radian; P moves no faster than ``speed``.
+    Seen from the first peg, a point c of the part rises by x . (P - c) per radian; P moves no faster than
+    ``speed``.
 
     Parameters
     ----------
@@ -84,10 +90,11 @@ def write_off_level(discs: Array, s: Held, cosine: float, sine: float, speed: fl
 
 @inner
 def is_behind(
-    disc: Array, s: Held, cosine: float, sine: float, speed: float, reach: float, beyond: float, push: float
+    disc: Array, s: PairState, cosine: float, sine: float, speed: float, reach: float, beyond: float, push: float
 ) -> bool:
-    """Whether no point in a disc of the part meets the third peg over a range at a separation above the stop: seen from the
-    first peg, a point c goes along x by y . (c - P) per radian.
+    """Whether no point in a disc of the part meets the third peg over a range, above the stop.
+
+    Seen from the first peg, a point c goes along x by y . (c - P) per radian.
 
     Parameters
     ----------
@@ -103,9 +110,17 @@ def is_behind(
 
 @inner
 def excluded(
-    piece: Array, push: float, missed: float, cosine: float, sine: float, s: Held, f: Foot, speed: float, reach: float
+    piece: Array,
+    push: float,
+    missed: float,
+    cosine: float,
+    sine: float,
+    s: PairState,
+    f: Foot,
+    speed: float,
+    reach: float,
 ) -> int:
-    """What is told of a range by the foot of P alone: NOTHING there, HALVES to look at, or MAYBE more."""
+    """The verdict on a range by the foot of P alone: NOTHING there, HALVES to look at, or MAYBE more."""
     move, turn = speed * reach, 0.0
     if piece[IS_ARC] != 0.0:
         if f[4] <= move * 1.0001 + ROUNDING:
@@ -125,10 +140,10 @@ def excluded(
 
 
 @inner
-def may_tell(
-    piece: Array, missed: float, cosine: float, sine: float, s: Held, f: Foot, speed: float, reach: float
+def may_decide(
+    piece: Array, missed: float, cosine: float, sine: float, s: PairState, f: Foot, speed: float, reach: float
 ) -> bool:
-    """Whether ``slope_over`` may show that there is one root at most, or none: its doubt is no less than without P'."""
+    """Whether ``slope_over`` may leave one root at most, or none: its doubt is no less than without P'."""
     move, gx, gy = speed * reach, s[6] - f[0], s[7] - f[1]
     turn, ratio = (0.0, 1.0) if piece[IS_ARC] == 0.0 else (asin(move / f[4]), piece[RADIUS] / f[4])
     doubt = move + (length(gx, gy) + move) * (turn + reach)
@@ -141,13 +156,13 @@ def slope_over(
     side: float,
     cosine: float,
     sine: float,
-    s: Held,
+    s: PairState,
     f: Foot,
     motion: tuple[Interval, Interval],
     speed: float,
     reach: float,
 ) -> tuple[float, float]:
-    """A derivative of the height missed, and how far from it those over a range may be in which P' is enclosed."""
+    """A derivative of the height missed, and how far from it others over a range may be, enclosing P'."""
     qx, qy = motion
     if not (qx[1] - qx[0] < inf and qy[1] - qy[0] < inf):
         return (0.0, inf)
@@ -160,7 +175,8 @@ def slope_over(
         tx, ty = -f[3], f[2]
         slope += (mx * tx + my * ty) * (cosine * ty - sine * tx)
         return (slope, (move + reach * (far + size) + spread) * (1.0 + 1e-6) + ROUNDING)
-    # foot' is the part of P' across the way from the centre, in proportion; that way turns by ``turn`` at most.
+    # foot' is the part of P' across the way from the centre, in proportion; that way turns by ``turn`` at
+    # most.
     turn = asin(move / f[4])
     ex, ey = (f[0] - piece[X]) / piece[RADIUS], (f[1] - piece[Y]) / piece[RADIUS]
     ratio, worst = piece[RADIUS] / f[4], piece[RADIUS] / (f[4] - move)
@@ -191,14 +207,17 @@ def roots_of_cell(
     out: Array,
     count: int,
 ) -> int:
-    """Write the balances of a cell with a third peg on a piece; return the new count, or -1 where they do not fit."""
-    holding, piece = given.holdings[int(cell[HOLDING])], given.rows[number]
-    k, tail, speed = int(holding[SOURCE]), int(holding[FIRST_PEG]), cell[SPEED]
+    """Writes the balances of a cell with a third peg on a piece; returns the new count, or -1.
+
+    -1 means that they do not fit.
+    """
+    pair, piece = given.pairs[int(cell[PAIR])], given.rows[number]
+    k, tail, speed = int(pair[SOURCE]), int(pair[FIRST_PEG]), cell[SPEED]
     a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
     # Forces press the left jaw to the left, the right one to the right.
     push = 1.0 if given.right[third] == 1 else -1.0
     above = given.pegs[third, 1] - given.pegs[tail, 1]
-    s, ray, cosine, sine = held_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
+    s, ray, cosine, sine = pair_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
     depth = 1
     stack[0, 0], stack[0, 1] = cell[LOW], cell[HIGH]
     while depth > 0:
@@ -206,58 +225,56 @@ def roots_of_cell(
         low, high = stack[depth, 0], stack[depth, 1]
         psi, reach = (low + high) / 2.0, (high - low) / 2.0
         if reach < (cell[HIGH] - cell[LOW]) / 2.0:
-            s, cosine, sine = held(holding, given, psi), cos(psi), sin(psi)
-            ray = ray_over(holding, given, s, speed, reach)
+            s, cosine, sine = pair_at(pair, given, psi), cos(psi), sin(psi)
+            ray = ray_over(pair, given, s, speed, reach)
         if foot_is_off(piece, side, push, above, cosine, sine, s, ray, reach):
             continue
         f = foot(piece, s[6], s[7], side)
         missed = cosine * (f[1] - s[1]) - sine * (f[0] - s[0]) - above
-        told = excluded(piece, push, missed, cosine, sine, s, f, speed, reach)
-        if told == NOTHING:
+        verdict = excluded(piece, push, missed, cosine, sine, s, f, speed, reach)
+        if verdict == NOTHING:
             continue
-        if told == MAYBE:
+        if verdict == MAYBE:
             turn = 0.0 if piece[IS_ARC] == 0.0 else asin(speed * reach / f[4])
             if not may_balance(s, f[2], f[3], ray, turn):
                 continue
             slope, doubt = 0.0, inf
-            if may_tell(piece, missed, cosine, sine, s, f, speed, reach):
+            if may_decide(piece, missed, cosine, sine, s, f, speed, reach):
                 sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
-                motion = center_velocity(a, b, given.reals[k], low + holding[ANGLE], high + holding[ANGLE], sign)
+                motion = center_velocity(a, b, given.reals[k], low + pair[ANGLE], high + pair[ANGLE], sign)
                 slope, doubt = slope_over(piece, side, cosine, sine, s, f, motion, speed, reach)
             if abs(missed) > (abs(slope) + doubt) * reach + AT_END:
                 continue
             if abs(slope) > doubt:
-                found, psi = root_between(MISS, holding, holding, piece, above, side, given, low, high)
+                found, psi = root_between(MISS, pair, pair, piece, above, side, given, low, high)
                 if found:
-                    count = write_root(out, count, cell[HOLDING], third, number, side, psi, 0.0)
+                    count = write_root(out, count, cell[PAIR], third, number, side, psi, 0.0)
                 if count < 0:
                     return -1
                 continue
         halved = reach > NARROWEST
         if not halved:
-            if told == MAYBE and is_level(MISS, holding, holding, piece, above, side, given, low, high, 0.0):
+            if verdict == MAYBE and is_level(MISS, pair, pair, piece, above, side, given, low, high, 0.0):
                 continue
             halved = reach > LAST and speed * reach > STILL
         if halved and depth < stack.shape[0] - 1:
             stack[depth, 0], stack[depth, 1] = low, psi
             stack[depth + 1, 0], stack[depth + 1, 1] = psi, high
             depth += 2
-        elif told == MAYBE:
-            count = write_root(out, count, cell[HOLDING], third, number, side, psi, 1.0)
+        elif verdict == MAYBE:
+            count = write_root(out, count, cell[PAIR], third, number, side, psi, 1.0)
             if count < 0:
                 return -1
     return count
 
 
 @inner
-def write_root(
-    out: Array, count: int, holding: float, peg: int, piece: int, side: float, psi: float, doubt: float
-) -> int:
-    """Write a root; return the new count, or -1 where it does not fit."""
+def write_root(out: Array, count: int, pair: float, peg: int, piece: int, side: float, psi: float, doubt: float) -> int:
+    """Writes a root; returns the new count, or -1 where it does not fit."""
     if count >= out.shape[0]:
         return -1
     row = out[count]
-    row[ROOT_HOLDING], row[ROOT_PEG], row[ROOT_PIECE], row[ROOT_SIDE] = holding, peg, piece, side
+    row[ROOT_PAIR], row[ROOT_PEG], row[ROOT_PIECE], row[ROOT_SIDE] = pair, peg, piece, side
     row[ROOT_PSI], row[ROOT_DOUBT] = psi, doubt
     return count + 1
 
@@ -266,11 +283,15 @@ def write_root(
 def three_contacts(
     cells: Array, middles: Array, given: Given, discs: Array, stop: float, stack: Array, work: Array, out: Array
 ) -> int:
-    """All orientations at which two pegs of one jaw and one of the other may balance; how many, or -1 where they do not fit.
+    """Writes all orientations at which two pegs of one jaw and one of the other may balance.
+
+    Returns how many.
+
+    It is -1 where they do not fit.
 
     Parameters
     ----------
-    cells, middles : (C, 7) and (C, 19) of the holdings of two pegs of one jaw.
+    cells, middles : (C, 7) and (C, 19) of the pairs of two pegs of one jaw.
     discs : (N, 3) around the pieces.
     stop : the smallest jaw separation in mm.
     stack, work : (DEPTH, 2) and (5, N) work space.
@@ -283,12 +304,12 @@ def three_contacts(
     count = 0
     for number in range(cells.shape[0]):
         cell, middle = cells[number], middles[number]
-        holding = given.holdings[int(cell[HOLDING])]
-        if cell[VAGUE] != 0.0 or holding[KIND] == 1.0:
+        pair = given.pairs[int(cell[PAIR])]
+        if cell[VAGUE] != 0.0 or pair[KIND] == 1.0:
             continue
-        k, tail, reach = int(holding[SOURCE]), int(holding[FIRST_PEG]), (cell[HIGH] - cell[LOW]) / 2.0
+        k, tail, reach = int(pair[SOURCE]), int(pair[FIRST_PEG]), (cell[HIGH] - cell[LOW]) / 2.0
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
-        s, ray, cosine, sine = held_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
+        s, ray, cosine, sine = pair_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
         write_off_level(work[:3], s, cosine, sine, cell[SPEED], reach, work[3:])
         for third in range(given.pegs.shape[0]):
             if given.right[third] == given.right[tail]:

@@ -1,17 +1,19 @@
 """A part that turns, and a peg whose centre stays on a level line and on a piece, over a range of orientations.
 
-The part turns about a point, the origin here; the line is k above it, and k may depend on the orientation theta. With the
-outward normal n at the angle nu, t a quarter turn further, and the peg's centre at N n + tau t, it is
+The part turns about a point, the origin here; the line is k above it, and k may depend on the orientation
+theta. With the outward normal n at the angle nu, t a quarter turn further, and the peg's centre at N n + tau
+t, it is
 
     B = N cos nu - tau sin nu        along the line, while        k = N sin nu + tau cos nu.
 
-Where curvature is kappa (0 on a line, above 0 on a convex arc), differentiating by theta gives with q = (k' - B) / cos nu
+Where curvature is kappa (0 on a line, above 0 on a convex arc), differentiating by theta gives with q = (k' -
+B) / cos nu
 
     B' = -(tau + k' sin nu) / cos nu,        nu' = 1 + kappa q,        tau' = (1 - kappa N) q,
     B'' = -(tau' + k'' sin nu + (tau sin nu + k') nu' / cos nu) / cos nu.
 
-On a line N is its distance from the origin, on an arc nu follows from the height of its centre, and all else from nu. An
-upright line is a level one of a part that is turned by a quarter more.
+On a line N is its distance from the origin, on an arc nu follows from the height of its centre, and all else
+from nu. An upright line is a level one of a part that is turned by a quarter more.
 """
 
 from __future__ import annotations
@@ -42,13 +44,14 @@ from workhold.kernels.seating.isolating import meet
 __all__ = ["AWAY", "SHAPE_LENGTH", "Contact", "contact", "write_shape"]
 
 Array = NDArray[np.float64]
-# Columns of a shape, a piece seen from the point about which the part turns: curvature in 1 / mm; the arc's centre by its
-# distance and direction; what N is besides the centre's part, the distance of a line; direction of the normal at the middle,
-# and how far normals turn to either side of it; middle and half extent along a line; and a disc around it.
+# Columns of a shape, a piece seen from the point about which the part turns: curvature in 1 / mm; the arc's
+# centre by its distance and direction; what N is besides the centre's part, the distance of a line; direction
+# of the normal at the middle, and how far normals turn to either side of it; middle and half extent along a
+# line; and a disc around it.
 CURVATURE, AWAY, AWAY_ANGLE, OFF, NORMAL, SPREAD, FOOT, HALF, DISC, DISC_ANGLE, DISC_RADIUS = range(11)
 SHAPE_LENGTH = 11
-# mm. How far past its end a contact may lie: rounding. No unit: normals nearer than this to square to the line press
-# with a million times the force along it, and are none.
+# mm. How far past its end a contact may lie: rounding. No unit: normals nearer than this to square to the
+# line press with a million times the force along it, and are none.
 END, SQUARE = 1e-9, 1e-6
 NOTHING = (0.0, 0.0)
 # Whether there may be a contact; whether the whole line or circle has one throughout; B, B', B'' and tan nu.
@@ -58,7 +61,7 @@ NOWHERE = (False, False, NOTHING, NOTHING, NOTHING, NOTHING)
 
 @inner
 def write_shape(row: Array, disc: Array, x: float, y: float, shape: Array) -> None:
-    """Write a piece (10,), in a disc (3,), as seen from a point of the part."""
+    """Writes a piece (10,), in a disc (3,), as seen from a point of the part."""
     dx, dy = row[X] - x, row[Y] - y
     shape[DISC], shape[DISC_RADIUS] = hypot(disc[0] - x, disc[1] - y), disc[2] + END
     shape[DISC_ANGLE] = atan2(disc[1] - y, disc[0] - x)
@@ -104,7 +107,7 @@ def contact(
         turns = floor((nu[0] + nu[1] - found[0] - found[1]) / (2.0 * TURN) + 0.5)
         found = ishift(TURN * turns, found)
         on_part = isub(found, turn)
-        # Where both ranges are so wide that they meet all around, the piece's ends tell nothing.
+        # Where both ranges are so wide that they meet all around, the piece's ends decide nothing.
         if within and 2.0 * shape[SPREAD] + (turn[1] - turn[0]) + (found[1] - found[0]) < TURN:
             psi = meet(psi, on_part)
             if psi[0] > psi[1]:

@@ -21,9 +21,9 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.model.toolkit import Carrier, Toolkit
 from workhold.verification.balls import Point, exact_point
-from workhold.verification.contacts import Contact, Pose, standoff
+from workhold.verification.contacts import BallContact, BallPose, standoff
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.rules.jaws import nearest_row_findings, opening_findings
 from workhold.verification.rules.stroke import (
     WAYS,
@@ -39,13 +39,13 @@ from workhold.verification.rules.wall import WallContact, flush_findings, wall_c
 from workhold.verification.sides import Side
 from workhold.verification.tolerances import AGREEMENT
 
-__all__ = ["Hardware"]
+__all__ = ["ToolkitRules"]
 
 NUMBERS = ("no", "one", "two", "three", "four")
 
 
 @frozen
-class Hardware:
+class ToolkitRules:
     """The rules of a toolkit.
 
     Parameters
@@ -58,7 +58,7 @@ class Hardware:
     every: bool = field(default=False, kw_only=True)
 
     @classmethod
-    def of(cls, query: Query) -> Hardware:
+    def of(cls, query: Query) -> ToolkitRules:
         """The rules of the toolkit of a query, and how it lists pairs of clamps."""
         return cls(query.toolkit, every=query.listing == "all")
 
@@ -209,28 +209,28 @@ class Hardware:
         travel = self.carriers[peg.carrier].travel
         return (0.0, 0.0) if travel is None else travel.unit
 
-    def contact(self, peg: Peg, side: Side) -> Contact:
+    def contact(self, peg: Peg, side: Side) -> BallContact:
         """The contact of a peg or a tip, round or with a flat, which lies on lines, with a side."""
         carrier = self.carriers[peg.carrier]
         body = None if carrier.flat is None else arb(carrier.peg_radius)
         radius = standoff(side, carrier.peg_radius, carrier.flat)
-        return Contact(self.place(peg), exact_point(*self.way(peg)), side, radius, body=body)
+        return BallContact(self.place(peg), exact_point(*self.way(peg)), side, radius, body=body)
 
-    def contacts(self, fixture: Fixture, outline: Outline) -> list[Contact]:
+    def contacts(self, fixture: Fixture, outline: BallOutline) -> list[BallContact]:
         """The contacts of all pegs of a fixture, in their order; each of two clamps has its own travel."""
         sides = [outline.faces[peg.face] for peg in fixture.pegs]
         ends: Iterator[WallContact] = iter(())
         if self.wall is not None:
             on_wall = [side for peg, side in zip(fixture.pegs, sides, strict=True) if peg.is_on_wall]
-            ends = iter(wall_contacts(on_wall, outline, Pose.written(fixture.pose)))
-        out: list[Contact] = []
+            ends = iter(wall_contacts(on_wall, outline, BallPose.written(fixture.pose)))
+        out: list[BallContact] = []
         for peg, side in zip(fixture.pegs, sides, strict=True):
             out.append(next(ends) if peg.is_on_wall else self.contact(peg, side))
         if fixture.pair is not None:
             out[-1] = evolve(out[-1], travel=1)
         return out
 
-    def shared_faces(self, fixture: Fixture, contacts: Sequence[Contact]) -> list[int]:
+    def shared_faces(self, fixture: Fixture, contacts: Sequence[BallContact]) -> list[int]:
         """Numbers of what the pegs touch: the same for those that an error of a face moves alike.
 
         A corner on a wall is off by itself.
@@ -314,7 +314,7 @@ class Hardware:
             yield Finding(True, f"the place of {name} on its line is not counted from the plate's first hole")
 
     def standing_findings(
-        self, fixture: Fixture, contacts: Sequence[Contact], pose: Pose, outline: Outline
+        self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
     ) -> Iterator[Finding]:
         """Whether everything can stand as it does at a proven pose."""
         named = list(zip(self.names, fixture.pegs, contacts, strict=True))

@@ -21,9 +21,9 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.holes import column_letters, hole_name
 from workhold.model.toolkit import Carrier
 from workhold.verification.balls import Point, cross, dot, exact_point, norm, root
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.sides import ArcSide, LineSide, Side, line_side
 from workhold.verification.tolerances import BODY_SLACK, HAIR
 
@@ -107,7 +107,12 @@ class Stroke:
     wall: str | None
 
     def findings(
-        self, name: str, locators: Sequence[tuple[str, Contact]], clamp: Contact, pose: Pose, outline: Outline
+        self,
+        name: str,
+        locators: Sequence[tuple[str, BallContact]],
+        clamp: BallContact,
+        pose: BallPose,
+        outline: BallOutline,
     ) -> Iterator[Finding]:
         """Whether a clamp, bolted in its hole, reaches its place and clears wall, locators and part."""
         tip, stroke = clamp.place(pose), -pose.travels[clamp.travel]
@@ -155,7 +160,7 @@ class Stroke:
             f"one hole nearer {name} would be bolted exactly at the edge of the least of its stroke",
         )
 
-    def apart_findings(self, one: Contact, other: Contact, pose: Pose) -> Iterator[Finding]:
+    def apart_findings(self, one: BallContact, other: BallContact, pose: BallPose) -> Iterator[Finding]:
         """Whether two clamps, from their holes to their tips, keep clear of each other."""
         tips = one.place(pose), other.place(pose)
         holes = tips if self.span is None else (one.hole, other.hole)

@@ -16,9 +16,9 @@ from flint import arb
 
 from workhold.model.fixture import Peg
 from workhold.verification.balls import Point, exact_point, norm, turned
-from workhold.verification.contacts import Contact, Pose
+from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.findings import Finding, number, rule
-from workhold.verification.outline import Outline
+from workhold.verification.outline import BallOutline
 from workhold.verification.sides import ArcSide, LineSide, Side
 from workhold.verification.tolerances import AGREEMENT, FLUSH, LEAST_FLUSH
 
@@ -26,7 +26,7 @@ __all__ = ["WallContact", "flush_findings", "wall_contacts"]
 
 
 @frozen(eq=False)
-class Piece:
+class Support:
     """A joint or a convex arc of an outline that may touch a wall.
 
     Parameters
@@ -39,14 +39,14 @@ class Piece:
     bow: arb
     faces: tuple[int, ...]
 
-    def lowest(self, pose: Pose) -> Point:
+    def lowest(self, pose: BallPose) -> Point:
         """Its lowest point in the toolkit's frame, in mm."""
         x, y = turned(self.center, pose.cosine, pose.sine)
         return x + pose.x, y + pose.y - self.bow
 
 
 @frozen(eq=False)
-class WallContact(Contact):
+class WallContact(BallContact):
     """A joint or a convex arc that touches a wall.
 
     Parameters
@@ -58,7 +58,7 @@ class WallContact(Contact):
 
     is_flush: ClassVar[bool] = True
 
-    piece: Piece
+    piece: Support
     faces: tuple[int, ...]
     length: arb
 
@@ -67,26 +67,26 @@ class WallContact(Contact):
         """How long the part lies on the wall."""
         return self.length
 
-    def outward(self, pose: Pose) -> Point:
+    def outward(self, pose: BallPose) -> Point:
         """The direction down, as the workpiece sees it."""
         return -pose.sine, -pose.cosine
 
-    def in_part(self, pose: Pose) -> Point:
+    def in_part(self, pose: BallPose) -> Point:
         """The point that touches, in the workpiece's frame."""
         (x, y), (across, down) = self.piece.center, self.outward(pose)
         return x + self.piece.bow * across, y + self.piece.bow * down
 
-    def place(self, pose: Pose) -> Point:
+    def place(self, pose: BallPose) -> Point:
         """The point that touches, in the toolkit's frame."""
         return self.piece.lowest(pose)
 
-    def equation(self, pose: Pose) -> tuple[arb, list[arb]]:
+    def equation(self, pose: BallPose) -> tuple[arb, list[arb]]:
         """How high its lowest point is, and the derivatives of that by theta, x, y and travel."""
         x, y = self.piece.lowest(pose)
         return y, [x - pose.x, arb(0), arb(1), arb(0)]
 
 
-def wall_contacts(sides: Sequence[Side], outline: Outline, pose: Pose) -> list[WallContact]:
+def wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPose) -> list[WallContact]:
     """The two ends of the contact with a wall at a pose, from left to right, each on a side."""
     lows = [
         (float(y.mid()), float(x.mid()), piece) for piece in pieces(outline, pose) for x, y in (piece.lowest(pose),)
@@ -104,27 +104,27 @@ def wall_contacts(sides: Sequence[Side], outline: Outline, pose: Pose) -> list[W
     ]
 
 
-def pieces(outline: Outline, pose: Pose) -> Iterator[Piece]:
+def pieces(outline: BallOutline, pose: BallPose) -> Iterator[Support]:
     """Joints of an outline, and convex arcs that run along x at their lowest point."""
     down = -pose.sine, -pose.cosine
     for face, side in outline.faces.items():
         if isinstance(side, ArcSide) and side.sign > 0 and (side.whole or not side.within(down) < 0):
-            yield Piece(side.center, side.radius, (face,))
+            yield Support(side.center, side.radius, (face,))
     before = {(float(side.end[0]), float(side.end[1])): face for face, side in outline.faces.items()}
     for face, side in outline.faces.items():
         if not (isinstance(side, ArcSide) and side.whole):
             x, y = side.start
-            yield Piece(side.start, arb(0), tuple(sorted((before[float(x), float(y)], face))))
+            yield Support(side.start, arb(0), tuple(sorted((before[float(x), float(y)], face))))
 
 
-def end_at(flat: Sequence[tuple[float, Piece]]) -> Piece:
+def end_at(flat: Sequence[tuple[float, Support]]) -> Support:
     """The piece at the least of some places: of an arc and the joint that it ends in the joint."""
     least = min(place for place, _ in flat)
     near = [low for low in flat if low[0] <= least + AGREEMENT]
     return min(near, key=lambda low: (float(low[1].bow.mid()), low[0]))[1]
 
 
-def along_wall(end: Piece, outline: Outline, pose: Pose) -> tuple[int, ...]:
+def along_wall(end: Support, outline: BallOutline, pose: BallPose) -> tuple[int, ...]:
     """The numbers of what touches: of a joint the face that lies along the wall, where one does."""
     for face in end.faces:
         side = outline.faces[face]
@@ -136,7 +136,7 @@ def along_wall(end: Piece, outline: Outline, pose: Pose) -> tuple[int, ...]:
 
 
 def flush_findings(
-    noun: str, ends: Sequence[tuple[str, Peg, WallContact]], pose: Pose, outline: Outline
+    noun: str, ends: Sequence[tuple[str, Peg, WallContact]], pose: BallPose, outline: BallOutline
 ) -> Iterator[Finding]:
     """Whether the part lies flush on a wall called ``noun``, with its two named ends where they are written."""
     (left, _), (right, _) = places = [contact.place(pose) for _, _, contact in ends]

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from loose_sets import NOWHERE, laid_out, straight
-from workhold.kernels.seating.columns import Families
-from workhold.kernels.seating.loose import BESIDE, first_sets, write_beyond, write_each_once
+from workhold.kernels.seating.columns import Manifolds
+from workhold.kernels.seating.equilibrium_manifolds import BESIDE, first_sets, write_beyond, write_each_once
 
 STEP = 0.01
 
 
-def beyond(families: Families, size: float) -> list[np.ndarray]:
+def beyond(families: Manifolds, size: float) -> list[np.ndarray]:
     """Where ways off each set begin."""
     count = len(families.rows)
     configs, whose = np.empty((2 * count, 4)), np.empty(2 * count, np.int64)
@@ -20,16 +20,16 @@ def beyond(families: Families, size: float) -> list[np.ndarray]:
     return [configs[:end][whose[:end] == number] for number in range(count)]
 
 
-def first_of(configs: np.ndarray, families: Families, asked: list[int]) -> list[int]:
+def first_of(configs: np.ndarray, families: Manifolds, asked: list[int]) -> list[int]:
     """The first of some sets that each configuration lies in."""
     out = np.empty(len(configs), np.int64)
     first_sets(configs, families, np.array(asked, dtype=np.int64), 10.0, 1e-3, out)
     return out.tolist()
 
 
-def once(families: Families) -> Families:
+def once(families: Manifolds) -> Manifolds:
     """Each set once."""
-    out = Families.room(len(families.rows), len(families.configs))
+    out = Manifolds.room(len(families.rows), len(families.configs))
     return out.first(write_each_once(families, 1.0, 1e-6, out))
 
 

@@ -1,4 +1,4 @@
-"""Where ways down begin, and how far those of some pegs of a pattern are free of the others."""
+"""Where descent paths begin, and how far those of some pegs of a pattern are free of the others."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.seating.antipodal_step import is_peg_free
 from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.columns import (
     COSINE,
@@ -20,31 +21,32 @@ from workhold.kernels.seating.columns import (
     TURNED,
     Obstacles,
 )
-from workhold.kernels.seating.squeezing import is_peg_free
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# mm. How far from a pass a way down begins, and how near it begins at least; and by which part of its way the motion may
-# have bent there.
+# mm. How far from a pass a descent path begins, and how near it begins at least; and by which part of its
+# length the motion may have bent there.
 BESIDE = 0.01
 SHORTEST, MOST_BEND = 1e-5, 0.1
-# mm. A way that ends less above the stop may end at it.
+# mm. A path that ends less above the stop may end at it.
 ABOVE = 1e-6
 # Parts of a step that is longer than most, at whose ends it is looked at.
 PARTS = 3
 
 
 @compiled
-def begin_ways(rows: Array, size: float, starts: Array, lengths: Array) -> None:
-    """Where ways down begin, to one and the other side of each of some passes (N, 24) along its free motion: nearer where
-    the motion bends so much that they would lie elsewhere.
+def begin_descents(rows: Array, size: float, starts: Array, lengths: Array) -> None:
+    """Writes where descent paths begin, to both sides of passes (N, 24) along their free motions.
+
+    They begin nearer where the motion bends so much that they would lie elsewhere.
 
     Parameters
     ----------
     size : of the part in mm, by which turns are counted.
     starts : (2 N, 4) configurations, written here.
-    lengths : (2 N, 2) how long their first steps are in mm, half as far as they begin off the pass, written here.
+    lengths : (2 N, 2) how long their first steps are in mm, half as far as they begin off the pass, written
+        here.
     """
     for n in range(rows.shape[0]):
         row = rows[n]
@@ -73,7 +75,7 @@ def place_at(node: Array, shift: Array, peg: int, obstacles: Obstacles) -> tuple
 def is_step_free(
     from_x: float, from_y: float, to_x: float, to_y: float, peg: int, most: float, obstacles: Obstacles, known: Array
 ) -> bool:
-    """Whether a peg is not in the part on a step on it, at places no farther apart than most but for a few."""
+    """Whether a peg is not in the part on a step, at places no farther apart than most but for a few."""
     dx, dy = to_x - from_x, to_y - from_y
     if dx * dx + dy * dy > most * most:
         for part in range(1, PARTS):
@@ -84,8 +86,10 @@ def is_step_free(
 
 @inner
 def last_near(nodes: Array, at: int, end: int, x: float, y: float, peg: int, known: Array) -> int:
-    """The last node up to which, from one where a peg is at a place of the part, it surely stays within the disc in which it
-    is known to be free: no place on the part that is as far from its centre moves faster than the part turns and moves."""
+    """The last node up to which a peg surely stays within the disc in which it is known to be free.
+
+    No place on the part that is as far from its centre moves faster than the part turns and moves.
+    """
     dx, dy = x - known[peg, 0], y - known[peg, 1]
     left = known[peg, 2] - sqrt(dx * dx + dy * dy)
     if left > 0.0:
@@ -100,8 +104,10 @@ def last_near(nodes: Array, at: int, end: int, x: float, y: float, peg: int, kno
 def end_of_free(
     nodes: Array, first: int, end: int, shift: Array, peg: int, most: float, obstacles: Obstacles, known: Array
 ) -> int:
-    """The first of some nodes of a way at which a peg is in the part, or on the step to it; their end where there is
-    none."""
+    """The first node at which, or on the step to which, a peg is in the part.
+
+    The end of the nodes if there is none.
+    """
     at, from_x, from_y = first, 0.0, 0.0
     while at < end:
         x, y = place_at(nodes[at], shift, peg, obstacles)
@@ -128,15 +134,16 @@ def free_until(
     known: Array,
     lasts: IntArray,
 ) -> None:
-    """The number of the last node of ways at which none of other pegs is in the part, nor before it; the one before their
-    first where that is not free.
+    """Writes the last node of each path at which, and before which, none of the other pegs is in the part.
+
+    It is the one before the first node where that is not free.
 
     Parameters
     ----------
-    chosen, whose : (N,) numbers of ways, and of the groups of pegs whose they are.
-    nodes, begins : of all ways, as of ``closing.close_jaws``.
-    shifts : (G, 4) to be added to the configurations of each group.
-    others : (G, K) 1 for the pegs that are not in each group.
+    chosen, whose : (N,) numbers of paths, and of the subsets of pegs whose they are.
+    nodes, begins : of all paths, as of ``closing.close_jaws``.
+    shifts : (G, 4) to be added to the configurations of each subset.
+    others : (G, K) 1 for the pegs that are not in each subset.
     most : how long a step of a peg on the part is that is looked at only where it ends, in mm.
     known : (4, 4) work space.
     lasts : (N,) written here.
@@ -144,13 +151,13 @@ def free_until(
     for peg in range(obstacles.pegs.shape[0]):
         known[peg, 2], known[peg, 3] = -1.0, 0.0
     for n in range(chosen.shape[0]):
-        group, first, end = whose[n], begins[chosen[n]], begins[chosen[n] + 1]
-        # On a way S only falls.
-        while end > first and nodes[end - 1, 3] + shifts[group, 3] <= obstacles.stop + ABOVE:
+        subset, first, end = whose[n], begins[chosen[n]], begins[chosen[n] + 1]
+        # On a path S only falls.
+        while end > first and nodes[end - 1, 3] + shifts[subset, 3] <= obstacles.stop + ABOVE:
             end -= 1
         for peg in range(obstacles.pegs.shape[0]):
-            if others[group, peg] != 0:
-                end = end_of_free(nodes, first, end, shifts[group], peg, most, obstacles, known)
+            if others[subset, peg] != 0:
+                end = end_of_free(nodes, first, end, shifts[subset], peg, most, obstacles, known)
         lasts[n] = end - 1
 
 
@@ -168,15 +175,17 @@ def take_up(
     lengths: Array,
     left: NDArray[np.int8],
 ) -> None:
-    """Write where ways off both sides of some passes come without what is known of them being left, and what is left.
+    """Writes where paths off both sides of passes come without leaving what is known, and which are left.
 
     Parameters
     ----------
     passes : (N,) their numbers.
-    chosen, whose, nodes, begins, shifts, lasts : of the 2 N ways, as of ``free_until``, which wrote the last.
-    how : of all ways, how each ends.
-    ends, lengths : (2 P, 4) configurations and (2 P, 2) lengths of the next steps of the ways off all passes.
-    left : (2 P,) 0 for ways of which nothing is left to be followed.
+    chosen, whose, nodes, begins, shifts, lasts : of the 2 N paths, as of ``free_until``, which wrote the
+        last.
+    how : of all paths, how each ends.
+    ends, lengths : (2 P, 4) configurations and (2 P, 2) lengths of the next steps of the paths off all
+        passes.
+    left : (2 P,) 0 for paths of which nothing is left to be followed.
     """
     for n in range(chosen.shape[0]):
         way, last, place = chosen[n], lasts[n], 2 * passes[n // 2] + n % 2

@@ -1,10 +1,10 @@
-"""A part that two pegs squeeze, one of each jaw: a step along both pieces on which their distance d on the part falls.
+"""A step of a part between two pegs, one of each jaw, along both pieces on which their distance d falls.
 
-With both pegs at fixed heights the separation grows with d alone, whose slopes and curvatures along the pieces are known in
-closed form: with t the tangents and u the unit vector from one place to the other, d' = -u . t and u . t; d'' is
-(1 - (u . t)^2) / d, with the pieces' own bends, and across it -(t . t - (u . t) (u . t)) / d. A Newton step, its curvatures
-taken as above 0 (P. E. Gill and W. Murray, Mathematical Programming 7, 1974), leads along narrow valleys in which linear
-programs go to and fro.
+With both pegs at fixed heights the separation grows with d alone, whose slopes and curvatures along the
+pieces are known in closed form. With t the tangents and u the unit vector from one place to the other, the
+slopes are d' = -u . t and u . t. Along a piece d'' is (1 - (u . t)^2) / d, with the piece's own bend, and
+across it is -(t . t - (u . t) (u . t)) / d. A Newton step, its curvatures taken as above 0 (P. E. Gill and W.
+Murray, Mathematical Programming 7, 1974), leads along narrow valleys in which linear programs go to and fro.
 """
 
 from __future__ import annotations
@@ -16,17 +16,19 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.kernels.seating.columns import Obstacles, WorkSpace
+from workhold.kernels.seating.columns import DescentWorkSpace, Obstacles
 from workhold.kernels.seating.pieces import angle_from_middle, nearest_piece, place_on_part
 from workhold.kernels.seating.walls import off_wall
 
 Array = NDArray[np.float64]
 
-# mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; pegs may be in the part by the last.
+# mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; pegs may be in the part by
+# the last.
 TOUCHES, SHORTEST, GAIN, ENTERED = 1e-9, 1e-9, 1e-12, 1e-9
 # 1 / mm. Curvatures below this are counted as this.
 FLATTEST = 1e-9
-# How often a step is halved, at how many places it is looked at, and how much farther than both contacts the part may move.
+# How often a step is halved, at how many places it is looked at, and how much farther than both contacts the
+# part may move.
 HALVINGS, PARTS, FARTHER = 3, 3, 3.0
 
 
@@ -65,9 +67,11 @@ def parameter(row: Array, x: float, y: float) -> float:
 
 @inner
 def is_peg_free(x: float, y: float, peg: int, obstacles: Obstacles, known: Array) -> bool:
-    """Whether a peg at a place of the part is not in it. Nor is it where the part is farther than the place from one at
-    which its clearance is known, or in other words within a disc (x, y, radius) that is;
-    last of what is known comes the piece that was the nearest."""
+    """Whether a peg at a place of the part is not in it.
+
+    A place within a disc that is known to be free is free, too. The disc (x, y, radius) stands in ``known``,
+    with the piece that was the nearest.
+    """
     dx, dy = x - known[peg, 0], y - known[peg, 1]
     if known[peg, 2] > 0.0 and dx * dx + dy * dy < known[peg, 2] * known[peg, 2]:
         return True
@@ -94,11 +98,13 @@ def newton_step(haa: float, hab: float, hbb: float, ga: float, gb: float, most: 
 
 
 @inner
-def squeezed(
+def antipodal_pose(
     config: Array, p: int, q: int, x: float, y: float, v: float, w: float, obstacles: Obstacles, trial: Array
 ) -> tuple[bool, float, float]:
-    """Write the configuration in which pegs p and q stand at two places of the part; whether there is one, short of the
-    stop, and the cosine and the sine of its orientation."""
+    """Writes the configuration in which pegs p and q stand at two places of the part.
+
+    Returns whether there is one above the stop, and the cosine and the sine of its orientation.
+    """
     run, rise = obstacles.pegs[q, 0] - obstacles.pegs[p, 0], obstacles.pegs[q, 1] - obstacles.pegs[p, 1]
     dx, dy = v - x, w - y
     square = dx * dx + dy * dy
@@ -117,7 +123,7 @@ def squeezed(
 
 @inner
 def is_free(config: Array, cosine: float, sine: float, p: int, q: int, obstacles: Obstacles, known: Array) -> bool:
-    """Whether no peg but two is in the part, and the part in no wall, at an orientation of which both are known."""
+    """Whether no peg but two is in the part, and no wall, at an orientation of known cosine and sine."""
     for peg in range(obstacles.pegs.shape[0]):
         if peg in (p, q):
             continue
@@ -130,8 +136,10 @@ def is_free(config: Array, cosine: float, sine: float, p: int, q: int, obstacles
 
 @inner
 def keeps_to(piece: int, at: float, peg: int, x: float, y: float, obstacles: Obstacles, known: Array) -> bool:
-    """Whether a peg on a piece's carrier touches the piece at a parameter and is not in the part, as it is past a
-    pocket."""
+    """Whether a peg at a parameter of a piece's carrier touches the piece and is not in the part.
+
+    Past a pocket it is in it.
+    """
     half = obstacles.rows[piece, HALF_EXTENT]
     if obstacles.rows[piece, IS_ARC] != 0.0 and half >= pi:
         return True
@@ -141,9 +149,13 @@ def keeps_to(piece: int, at: float, peg: int, x: float, y: float, obstacles: Obs
 
 
 @inner
-def squeeze(config: Array, count: int, longest: float, most: float, obstacles: Obstacles, work: WorkSpace) -> float:
-    """Write a configuration further down to ``trial`` where one peg of each jaw touches one piece; how long the way of both
-    contacts is, negative where something is in the way of a longer one, 0 where there is none.
+def antipodal_step(
+    config: Array, count: int, longest: float, most: float, obstacles: Obstacles, work: DescentWorkSpace
+) -> float:
+    """Writes a configuration further down to ``trial`` where one peg of each jaw touches one piece.
+
+    Returns how far both contacts go: negative where something is in the way of a longer step, 0 where there
+    is none.
 
     Parameters
     ----------
@@ -194,7 +206,7 @@ def squeeze(config: Array, count: int, longest: float, most: float, obstacles: O
             s, t = along_a * part / PARTS, along_b * part / PARTS
             x, y = moved_along(a, ax, ay, s)
             v, w = moved_along(b, bx, by, t)
-            good, cosine, sine = squeezed(config, p, q, x, y, v, w, obstacles, trial)
+            good, cosine, sine = antipodal_pose(config, p, q, x, y, v, w, obstacles, trial)
             good = (
                 good
                 and trial[3] < level - GAIN

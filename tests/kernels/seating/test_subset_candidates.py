@@ -13,7 +13,7 @@ from workhold.kernels.seating.candidates import (
     IN_BALANCE,
     NO_BALANCE,
     fourths,
-    tell_balance,
+    judge_balance,
 )
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -29,7 +29,7 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     THETA,
 )
-from workhold.kernels.seating.gathering import GATHERED_LENGTH, GROUP, gathered
+from workhold.kernels.seating.subset_candidates import GATHERED_LENGTH, SUBSET, gathered
 from workhold.seating.growing_rows import filled
 from workhold.seating.pattern import Pattern
 from workhold.seating.peg_subsets import subsets_of
@@ -101,9 +101,9 @@ def test_all_are_told_in_order_from_where_they_are(given):
     among = np.array(told, dtype=np.float64), np.concatenate(kept), before, after, STOP, WIDEST, given, work
     every, room = filled(GATHERED_LENGTH, 4096, gathered, *among), 1
     wanted = np.concatenate([reached(before), *wanted, reached(after)])
-    assert fixed > 10 and len(wanted) > fixed + 20 and np.array_equal(every[:, :GROUP], wanted)
+    assert fixed > 10 and len(wanted) > fixed + 20 and np.array_equal(every[:, :SUBSET], wanted)
     whose = [(-1, -1)] * len(reached(before)) + whose + [(-1, -1)] * len(reached(after))
-    assert every[:, GROUP:].astype(int).tolist() == [list(one) for one in whose]
+    assert every[:, SUBSET:].astype(int).tolist() == [list(one) for one in whose]
     # With any room the same, or none.
     while room < 3 * len(every):
         assert np.array_equal(filled(GATHERED_LENGTH, room, gathered, *among), every)
@@ -125,7 +125,7 @@ def test_balance_is_told_of_what_presses():
     doubt, off, clear = rows[:, DOUBT] != 0.0, rows[:, RESIDUAL], rows[:, CLEAR]
     for slack, slack_in_doubt in ((1e-7, 1e-5), (inf, inf)):
         told, wanted = np.empty(len(rows), np.int8), np.full(len(rows), NO_BALANCE)
-        tell_balance(rows, slack, slack_in_doubt, told)
+        judge_balance(rows, slack, slack_in_doubt, told)
         wanted[pressed & ~doubt & (off < 1e-7) & (clear > -slack)] = IN_BALANCE
         wanted[pressed & doubt & (off < 1e-3) & (clear > -slack_in_doubt)] = DOUBTFUL
         assert np.array_equal(told, wanted) and len(set(told.tolist())) == 3

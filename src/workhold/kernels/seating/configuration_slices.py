@@ -1,8 +1,14 @@
-"""At one orientation and height the free places of a part along x are intervals for each jaw.
+"""Slices of the C-space at one orientation and height: a part's free places along x are intervals for each jaw.
 
-x is counted from where the part lies in its seat, for the left jaw as it stands and for the right one as it stands
-there. With the jaws opened by s, x in an interval of the left and x - s in one of the right is free; a pair of
-intervals is open below s where the low end of the left less the high end of the right is less.
+Places are counted from where the part lies in its seat, for the left jaw as it stands and for the right one
+as it stands there. With the jaws opened by s, x in an interval of the left and x - s in one of the right is
+free. A pair of intervals is open below s where the low end of the left less the high end of the right is
+less.
+
+Glossary
+--------
+slice : a part of the C-space in which a coordinate has one value: T. Lozano-Perez, "Spatial planning: a
+    configuration space approach", IEEE Transactions on Computers C-32 (1983).
 """
 
 from __future__ import annotations
@@ -28,7 +34,7 @@ OFF_TURN, OFF_SHIFT = 0.29, 0.37
 
 @inner
 def add_crossing(crossings: Array, count: int, at: float, sign: float) -> int:
-    """Write where pegs enter (1) or leave (-1) a part that moves along +x; return the new count."""
+    """Writes where pegs enter (1) or leave (-1) a part that moves along +x; returns the new count."""
     if count < crossings.shape[0]:
         crossings[count, 0], crossings[count, 1] = at, sign
     return count + 1
@@ -36,7 +42,10 @@ def add_crossing(crossings: Array, count: int, at: float, sign: float) -> int:
 
 @inner
 def collect_crossings(config: Array, theta: float, y: float, jaw: int, obstacles: Obstacles, crossings: Array) -> int:
-    """Write where a part moving along x meets the pegs of a jaw that stands as in a configuration; return how many."""
+    """Writes where a part moving along x meets the pegs of a jaw, which stands as in a configuration.
+
+    Returns how many.
+    """
     cosine, sine = cos(theta), sin(theta)
     count = 0
     for k in range(obstacles.pegs.shape[0]):
@@ -67,8 +76,10 @@ def collect_crossings(config: Array, theta: float, y: float, jaw: int, obstacles
 def free_intervals(
     config: Array, theta: float, y: float, jaw: int, obstacles: Obstacles, crossings: Array, out: Array
 ) -> int:
-    """Write the intervals of x in which the pegs of a jaw are off the part to ``out``; how many, 0 where that is not
-    told."""
+    """Writes the intervals of x in which the pegs of a jaw are off the part; returns how many.
+
+    Where rounding leaves them in doubt there are none.
+    """
     count = collect_crossings(config, theta, y, jaw, obstacles, crossings)
     if count > crossings.shape[0]:
         return 0
@@ -110,8 +121,10 @@ def free_poses(
     intervals: Array,
     out: Array,
 ) -> int:
-    """Free poses around a seat with the jaws opened: of each cell of a grid of orientations and heights, and each pair of
-    intervals, the nearest and both ends.
+    """Writes free poses around a seat with the jaws opened.
+
+    Of each cell of a grid of orientations and heights, and each pair of intervals, they are the nearest and
+    both ends.
 
     Parameters
     ----------

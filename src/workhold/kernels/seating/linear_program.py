@@ -1,0 +1,213 @@
+"""The linear programs of a step: the step farthest along an aim, and the shortest way out of what is entered.
+
+A step is in four unknowns, (theta size, x, y, S), within a box and clearances that are linearized.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner
+from workhold.kernels.seating.columns import DescentWorkSpace
+
+Array = NDArray[np.float64]
+Four = tuple[float, float, float, float]
+
+# mm. What is entered by less is not; how often what is met may change on one way out.
+BESIDE_NOTHING, MOST_CHANGES = 1e-12, 40
+# No unit. Directions that come nearer to something by less than this share go along it.
+ALONG = 1e-10
+
+
+@inner
+def add_normal(number: int, count: int, place: int, work: DescentWorkSpace) -> bool:
+    """Adds the normal of a clearance, or of a side of the box, to the basis.
+
+    Returns whether it is independent.
+    """
+    new, triangle = work.basis[place], work.triangle
+    for j in range(4):
+        new[j] = work.near[number, j] if number < count else 0.0
+    if number >= count:
+        new[(number - count) // 2] = 1.0 if (number - count) % 2 == 0 else -1.0
+    for p in range(place):
+        dot = 0.0
+        for j in range(4):
+            dot += work.basis[p, j] * new[j]
+        triangle[p, place] = dot
+        for j in range(4):
+            new[j] -= dot * work.basis[p, j]
+    norm = sqrt(new[0] * new[0] + new[1] * new[1] + new[2] * new[2] + new[3] * new[3])
+    triangle[place, place] = norm
+    if norm < 1e-9 or place == 4:
+        # There are four unknowns: what a fifth has left is rounding.
+        return False
+    for j in range(4):
+        new[j] /= norm
+    return True
+
+
+@inner
+def shortest_out(count: int, work: DescentWorkSpace) -> None:
+    """Writes the shortest step that keeps all of ``count`` linearized clearances, as far as there is one.
+
+    A dual active-set method: from no step at all, to what is entered deepest, along the others that were met,
+    of which one is let go that would pull (D. Goldfarb and A. Idnani, Mathematical Programming 27, 1983).
+    """
+    near, basis, triangle, step, way, members = work.near, work.basis, work.triangle, work.step, work.way, work.members
+    for j in range(4):
+        step[j] = 0.0
+    size, entered, pressed = 0, -1, 0.0
+    for _ in range(MOST_CHANGES):
+        if entered < 0:
+            deepest = BESIDE_NOTHING
+            for i in range(count):
+                value = near[i, 4]
+                for j in range(4):
+                    value += near[i, j] * step[j]
+                if value < deepest:
+                    deepest, entered = value, i
+            if entered < 0:
+                return
+            pressed = 0.0
+        independent = add_normal(entered, count, size, work)
+        norm, missing = triangle[size, size], 2.0 * BESIDE_NOTHING - near[entered, 4]
+        for j in range(4):
+            missing -= near[entered, j] * step[j]
+        # How fast the forces of the others fall as that of the new one grows, and which is gone first.
+        length, gone = inf, -1
+        for q in range(size - 1, -1, -1):
+            way[q] = triangle[q, size]
+            for p in range(q + 1, size):
+                way[q] -= triangle[q, p] * way[p]
+            way[q] /= triangle[q, q]
+            if way[q] > 1e-12 and triangle[q, 5] < length * way[q]:
+                length, gone = triangle[q, 5] / way[q], q
+        if independent and missing <= length * norm * norm:
+            length, gone = missing / (norm * norm), -1
+        elif gone < 0:
+            return
+        pressed += length
+        for q in range(size):
+            triangle[q, 5] -= length * way[q]
+        for j in range(4):
+            step[j] += length * norm * basis[size, j] if independent else 0.0
+        if gone < 0:
+            members[size], triangle[size, 5] = entered, pressed
+            size, entered = size + 1, -1
+            continue
+        for q in range(gone, size - 1):
+            members[q], triangle[q, 5] = members[q + 1], triangle[q + 1, 5]
+        size -= 1
+        for q in range(size):
+            add_normal(members[q], count, q, work)
+
+
+@inner
+def way_left(work: DescentWorkSpace, size: int, aim: Four) -> Four:
+    """The way that leads farthest along the aim of those that ``size`` normals of the basis leave."""
+    basis = work.basis
+    wx, wy, wz, ws = aim
+    for q in range(size):
+        dot = basis[q, 0] * wx + basis[q, 1] * wy + basis[q, 2] * wz + basis[q, 3] * ws
+        wx -= dot * basis[q, 0]
+        wy -= dot * basis[q, 1]
+        wz -= dot * basis[q, 2]
+        ws -= dot * basis[q, 3]
+    return (wx, wy, wz, ws)
+
+
+@inner
+def holding_back(work: DescentWorkSpace, size: int, aim: Four) -> int:
+    """The place of the working normal that pulls most, -1 where none does.
+
+    Multipliers come by back substitution in the triangle that orthogonalizing left.
+    """
+    basis, triangle = work.basis, work.triangle
+    worst, dropped = -1e-9, -1
+    for q in range(size - 1, -1, -1):
+        multiplier = -(aim[0] * basis[q, 0] + aim[1] * basis[q, 1] + aim[2] * basis[q, 2] + aim[3] * basis[q, 3])
+        for p in range(q + 1, size):
+            multiplier -= triangle[q, p] * triangle[p, 5]
+        triangle[q, 5] = multiplier / triangle[q, q]
+        if triangle[q, 5] < worst:
+            worst, dropped = triangle[q, 5], q
+    return dropped
+
+
+@inner
+def first_to_block(
+    count: int, trust: float, step: Four, way: Four, taken: int, work: DescentWorkSpace
+) -> tuple[float, int]:
+    """The length by which a step can go on in a direction, and what ends it, -1 where nothing does.
+
+    A clearance ends it or, from ``count`` on, a side of the box; ``taken`` has a bit for each clearance that
+    the direction keeps.
+    """
+    near, length, blocking = work.near, inf, -1
+    for i in range(count):
+        if taken >> i & 1:
+            continue
+        rate = near[i, 0] * way[0] + near[i, 1] * way[1] + near[i, 2] * way[2] + near[i, 3] * way[3]
+        if rate < -ALONG:
+            room = max(near[i, 4], 0.0) + near[i, 0] * step[0] + near[i, 1] * step[1]
+            room = max(room + near[i, 2] * step[2] + near[i, 3] * step[3], 0.0)
+            if room < length * -rate:
+                length, blocking = room / -rate, i
+    for j in range(4):
+        # A side that the way keeps it does not come nearer to.
+        rate = -abs(way[j])
+        if rate < -ALONG:
+            room = max(trust - step[j] if way[j] > 0.0 else trust + step[j], 0.0)
+            if room < length * -rate:
+                length, blocking = room / -rate, count + 2 * j + (1 if way[j] > 0.0 else 0)
+    return (length, blocking)
+
+
+@inner
+def best_step(count: int, trust: float, work: DescentWorkSpace, aim: Four) -> float:
+    """Writes the step that leads farthest along a unit vector of (theta size, x, y, S); returns how far.
+
+    It stays within a box of half width ``trust`` and ``count`` linearized clearances.
+
+    A primal active-set method: descend in the null space of the working normals to what blocks, and drop a
+    normal that holds back (M. J. Best and K. Ritter, *Linear Programming: Active Set Analysis and Computer
+    Programs*, 1985).
+    """
+    step, members = (0.0, 0.0, 0.0, 0.0), work.members
+    size, taken = 0, 0
+    for _ in range(60):
+        way = way_left(work, size, aim)
+        if way[0] * way[0] + way[1] * way[1] + way[2] * way[2] + way[3] * way[3] < 1e-14:
+            dropped = holding_back(work, size, aim)
+            if dropped < 0:
+                break
+            if members[dropped] < count:
+                taken ^= 1 << members[dropped]
+            for q in range(dropped, size - 1):
+                members[q] = members[q + 1]
+            size -= 1
+            for q in range(size):
+                add_normal(members[q], count, q, work)
+            continue
+        length, blocking = first_to_block(count, trust, step, way, taken, work)
+        if blocking < 0:
+            break
+        step = (
+            step[0] + length * way[0],
+            step[1] + length * way[1],
+            step[2] + length * way[2],
+            step[3] + length * way[3],
+        )
+        members[size] = blocking
+        if add_normal(blocking, count, size, work):
+            taken |= 1 << blocking if blocking < count else 0
+            size += 1
+        elif length == 0.0:
+            break
+    for j in range(4):
+        work.step[j] = step[j]
+    return aim[0] * step[0] + aim[1] * step[1] + aim[2] * step[2] + aim[3] * step[3]
