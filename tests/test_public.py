@@ -37,6 +37,10 @@ MAKERS: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
         lambda: workhold.Fence(pitch=20, peg_radius=3, wall_offset=11),
     ),
     "Fixture": (lambda: result()[0], lambda: result()[1]),
+    "FlatJaw": (
+        lambda: workhold.FlatJaw(pitch=10, peg_radius=3, max_opening=60),
+        lambda: workhold.FlatJaw(pitch=10, peg_radius=3),
+    ),
     "InputError": (lambda: workhold.InputError("one."), lambda: workhold.InputError("two.")),
     "Load": (lambda: workhold.Load(moment=100), lambda: workhold.Load(moment=200)),
     "OpeningVise": (

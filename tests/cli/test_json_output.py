@@ -121,7 +121,7 @@ def test_lists_tell_all_of_it(run: Any, folder: Path) -> None:
     """Parts, toolkits and schemas."""
     assert [part["name"] for part in told(run("parts", "--json"))["parts"]][-1] == "widget"
     assert {one["name"] for one in told(run("toolkits", "--json"))["toolkits"]} == {
-        name for kind in (workhold.Vise, workhold.Plate, workhold.Fence) for name in kind.presets()
+        name for kind in (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw) for name in kind.presets()
     }
     (one,) = told(run("toolkits", "plate-20mm", "--json"))["toolkits"]
     assert one["fields"]["pitch"] == [20.0, 20.0] and one["tolerance"]["peg"] == 0.0145

@@ -10,7 +10,7 @@ import workhold
 from workhold.errors import InputError
 from workhold.files.toolkit.presets import load_toolkit, preset_names
 
-CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence)
+CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw)
 
 
 def test_every_preset_is_one_of_its_class_alone() -> None:

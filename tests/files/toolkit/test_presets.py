@@ -55,6 +55,8 @@ def test_figures_of_the_presets() -> None:
         "fence-20mm": ((20, 20), 6, None),
         "gripper-one-column": ((10, 10), 6, 1),
         "gripper-two-columns": ((10, 10), 6, 2),
+        "machine-vise-4-inch": ((12.7, 12.7), 6.35, 7),
+        "machine-vise-6-inch": ((12.7, 12.7), 6.35, 11),
         "plate-half-inch": ((12.7, 12.7), 6.35, 4),
         "plate-20mm": ((20, 20), 6, 3),
         "plate-25mm": ((25, 25), 6, 3),

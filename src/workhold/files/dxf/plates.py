@@ -6,7 +6,6 @@ The first plate's hole A1 is at (0, 0); each other stands at the right of the on
 from __future__ import annotations
 
 from collections.abc import Sequence
-from io import StringIO
 from pathlib import Path
 
 from ezdxf import units
@@ -14,7 +13,7 @@ from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 
 from workhold.files.atomic import write_bytes
-from workhold.files.dxf.setup import VERSION, fixed_stamps
+from workhold.files.dxf.setup import VERSION, content_of, fixed_stamps
 from workhold.geometry.segment import Point
 from workhold.model.jaw_plate import JawPlate
 
@@ -68,9 +67,7 @@ def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
             )
             words = f"{plate.title}: {len(plate.holes)} dowel holes %%c{plate.hole_diameter:.6g} mm{bolts}"
             write(words, TITLE_HEIGHT / 2, (box.x0 + right, box.y1 + TITLE_HEIGHT), TextEntityAlignment.BOTTOM_LEFT)
-        stream = StringIO()
-        document.write(stream)
-        return document.encode(stream.getvalue())
+        return content_of(document)
 
 
 def write_plates_dxf(plates: Sequence[JawPlate], path: str | Path) -> None:

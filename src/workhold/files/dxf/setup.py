@@ -29,9 +29,10 @@ from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
+    from ezdxf.document import Drawing
     from ezdxf.layouts.layout import Modelspace
 
-__all__ = ["CLEARANCE", "fixed_stamps", "layers_of", "setup_dxf", "write_setup_dxf"]
+__all__ = ["CLEARANCE", "content_of", "fixed_stamps", "layers_of", "setup_dxf", "write_setup_dxf"]
 
 # Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT, PLATE or CLAMP, the pegs
 # have one, PEGS or LOCATORS, and so has what is set, OPENING or CLAMP_SETTING.
@@ -96,12 +97,16 @@ def setup_dxf(
         add_clamps(space, seen, clearance)
         add_travel(space, seen)
         add_zero(space, fixture.pose, (zero or part_zero(workpiece)).point, AXIS * seen.pitch)
-        # The library would add them in an order that differs from process to process.
-        for name in sorted(document.entitydb.dxf_types_in_use()):
-            document.classes.add_class(name)
-        stream = StringIO()
-        document.write(stream)
-        return document.encode(stream.getvalue())
+        return content_of(document)
+
+
+def content_of(document: Drawing) -> bytes:
+    """The bytes of a drawing, whose classes the library would add in an order that differs from process to process."""
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
+    stream = StringIO()
+    document.write(stream)
+    return document.encode(stream.getvalue())
 
 
 def layer_of(carrier: Carrier) -> str:
