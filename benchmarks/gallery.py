@@ -23,7 +23,7 @@ from shop_parts import PARTS, ShopPart
 from workhold.drawing.bench import Bench, bench_of, draw_bench
 from workhold.drawing.render import svg_to_png
 from workhold.drawing.scene import Box, Scene, View
-from workhold.model.toolkit import Toolkit
+from workhold.fixels.toolkit import Toolkit
 
 ROOT = Path(__file__).parents[1]
 PAGE, PICTURES = ROOT / "docs" / "gallery.md", ROOT / "docs" / "figures" / "gallery"

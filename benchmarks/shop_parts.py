@@ -13,10 +13,10 @@ from pathlib import Path
 from attrs import frozen
 
 from workhold.files.part.load import load
+from workhold.fixels.vise import Vise
 from workhold.model.restrictions import Restrictions
-from workhold.model.units import INCH, MILLIMETRE, Unit
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
+from workhold.units import INCH, MILLIMETRE, Unit
 
 __all__ = ["PARTS", "ShopPart"]
 

@@ -12,8 +12,9 @@ import numpy as np
 
 from slow_fence import distances
 from workhold import Result, Workpiece
+from workhold.fixels.carrier import WALL
 from workhold.geometry.segment import Arc
-from workhold.model.fixture import WALL, Fixture, Peg
+from workhold.model.fixture import Fixture, Peg
 
 __all__ = ["WITHIN", "avoids", "clear_of_box", "clear_of_circle", "keeps_margin", "lies_within"]
 

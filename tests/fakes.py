@@ -6,6 +6,7 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
+from workhold.fixels.vise import Vise
 from workhold.model.proof import Proof, Undecided
 from workhold.model.quality import (
     CLOSURE_MARGIN,
@@ -18,7 +19,6 @@ from workhold.model.quality import (
 )
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 PLATE = [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, -0.2]], [[20, 20, -1], [30, 20, -1]]]

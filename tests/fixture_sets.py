@@ -10,8 +10,8 @@ import numpy as np
 
 import check_result
 from workhold import Vise, Workpiece
+from workhold.fixels.vise import OpeningVise
 from workhold.model.fixture import Fixture
-from workhold.model.vise import OpeningVise
 
 Listed = dict[str, Any]
 

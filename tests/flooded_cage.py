@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from seating_examples import Obstacle
 from workhold import Fixture, Workpiece
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line
-from workhold.model.toolkit import Toolkit
 
 Array = NDArray[np.float64]
 Interval = tuple[float, float]

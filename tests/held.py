@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import workhold
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.result import Result
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 Array = NDArray[np.float64]

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from scipy.optimize import root
 
 from workhold import Fixture, Peg, Pose, Vise, Workpiece, load
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import CONFIG, PAIR, PEG, PIECE
 from workhold.model.seating import Seating
-from workhold.model.toolkit import Toolkit
 from workhold.seating.solver import Solver
 from workhold.seating.two_contact_curves import TwoContactCurves
 

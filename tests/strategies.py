@@ -15,7 +15,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.model.vise import Vise
+from workhold.fixels.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["outlines", "random_outline", "random_row", "seeds", "vises"]

@@ -63,7 +63,7 @@ def test_a_line_that_asks_for_the_kind_is_found(text: str) -> None:
     "text",
     [
         "isinstance(value, int)",
-        "from workhold.model.vise import Vise",
+        "from workhold.fixels.vise import Vise",
         "Vise(pitch=8)",
         'NOUN = "vise"',
         "wall = 3",

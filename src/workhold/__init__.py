@@ -11,7 +11,7 @@ from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from workhold.model.delegates import hand_over
+from workhold.delegates import hand_over
 from workhold.version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
     from workhold.files.result.columns import answer_to_file
     from workhold.files.result.reader import read_result as open
     from workhold.files.result.save import save
-    from workhold.model.fence import Fence
+    from workhold.fixels.fence import Fence
+    from workhold.fixels.flat_jaw import FlatJaw
+    from workhold.fixels.plate import Plate
+    from workhold.fixels.vise import OpeningVise, Vise
     from workhold.model.fixture import Fixture, Peg, Pose
-    from workhold.model.flat_jaw import FlatJaw
     from workhold.model.load import Load
-    from workhold.model.plate import Plate
     from workhold.model.query import Query
     from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
     from workhold.model.result import Result
     from workhold.model.tolerance import Tolerance
-    from workhold.model.vise import OpeningVise, Vise
     from workhold.model.workpiece import Workpiece
     from workhold.search.contacts import count_contacts
     from workhold.search.design import answer, design
@@ -67,21 +67,21 @@ __all__ = [
 ]
 
 HOMES = {
-    "Fence": "workhold.model.fence",
-    "FlatJaw": "workhold.model.flat_jaw",
+    "Fence": "workhold.fixels.fence",
+    "FlatJaw": "workhold.fixels.flat_jaw",
     "Fixture": "workhold.model.fixture",
     "WorkholdError": "workhold.errors",
     "InputError": "workhold.errors",
     "Load": "workhold.model.load",
     "Peg": "workhold.model.fixture",
-    "Plate": "workhold.model.plate",
+    "Plate": "workhold.fixels.plate",
     "Pose": "workhold.model.fixture",
     "Query": "workhold.model.query",
     "Restrictions": "workhold.model.restrictions",
     "Result": "workhold.model.result",
     "Tolerance": "workhold.model.tolerance",
-    "OpeningVise": "workhold.model.vise",
-    "Vise": "workhold.model.vise",
+    "OpeningVise": "workhold.fixels.vise",
+    "Vise": "workhold.fixels.vise",
     "Workpiece": "workhold.model.workpiece",
     "answer": "workhold.search.design",
     "answer_to_file": "workhold.files.result.columns",
@@ -97,7 +97,7 @@ HOMES = {
 }
 
 
-# What methods of the model's classes end in, see ``model.delegates``.
+# What methods of the model's classes end in, see ``delegates``.
 DELEGATES = {
     "fixture_picture": "workhold.presenting.pictures",
     "preset_fields": "workhold.presenting.presets",

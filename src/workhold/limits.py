@@ -113,7 +113,7 @@ def refuse_many_steps(
 
     Parameters
     ----------
-    pitch, columns, rows : of the lattice, see ``model.toolkit.Carrier``.
+    pitch, columns, rows : of the lattice, see ``fixels.toolkit.Carrier``.
     diameter : largest distance in mm between two pegs that touch the part.
     features : how many features they can touch.
 

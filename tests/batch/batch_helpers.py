@@ -18,8 +18,8 @@ from workhold.batch.store import FolderStore, Store
 from workhold.batch.tasks import Outcome, Task, done
 from workhold.errors import InputError
 from workhold.files.part_list import part_list
+from workhold.fixels.vise import Vise
 from workhold.model.query import Query
-from workhold.model.vise import Vise
 
 COARSE = HeldIn("coarse", Query(ANY_PART, Vise(pitch=16, columns=1, peg_radius=3)))
 FINE = HeldIn("fine", Query(ANY_PART, Vise(pitch=12, columns=1, peg_radius=3)))

@@ -18,8 +18,8 @@ from workhold.batch.store import FolderStore
 from workhold.batch.tables import BEST, RESULTS, JobRow, job_rows, table_names, write_tables
 from workhold.cli.outputs import is_own
 from workhold.files.result.reader import read_result
-from workhold.model.fence import Fence
-from workhold.model.plate import Plate
+from workhold.fixels.fence import Fence
+from workhold.fixels.plate import Plate
 from workhold.model.query import Query
 from workhold.statics.judging import unfit
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from workhold.model.holes import Holes
+from workhold.fixels.holes import Holes
 from workhold.model.tolerance import Tolerance
 
 WIDGET = ("design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3")

@@ -14,10 +14,10 @@ import workhold
 from workhold import OpeningVise, Plate, Vise, Workpiece
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.seating_words import SeatingWords
-from workhold.model.units import INCH, MILLIMETRE
 from workhold.seating.by_hand import WHY
 from workhold.seating.missed import WAS_NOT_FOUND
 from workhold.seating.solver import Solver
+from workhold.units import INCH, MILLIMETRE
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 

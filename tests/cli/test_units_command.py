@@ -18,7 +18,7 @@ from workhold.errors import InputError
 from workhold.files.result.writer import write_result
 from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.listing.near_duplicates import entries
-from workhold.model.units import INCH, MILLIMETRE
+from workhold.units import INCH, MILLIMETRE
 
 ROOT = Path(__file__).parent.parent.parent
 

@@ -11,8 +11,8 @@ from attrs import fields
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import number, positive_number
 from workhold.errors import InputError
-from workhold.model.plate import Plate
-from workhold.model.units import MILLIMETRE
+from workhold.fixels.plate import Plate
+from workhold.units import MILLIMETRE
 
 
 def test_a_positive_number_is_above_zero_and_finite() -> None:

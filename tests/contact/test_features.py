@@ -15,12 +15,12 @@ from workhold import load
 from workhold.contact import features
 from workhold.contact.features import allowed_features, contact_features, end_slacks, feature_rows
 from workhold.contact.problem import Problem
+from workhold.fixels.vise import Vise
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distance, outline_distances, segment_distance
 from workhold.model.diameter import outline_diameter, segments_diameter
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions, polygon_zone
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.proof.interval_newton import contact_value
 from workhold.statics.wrenches import outward_normals

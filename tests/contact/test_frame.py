@@ -13,10 +13,10 @@ from workhold.contact.features import end_distances
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
-from workhold.model.holes import Holes
+from workhold.fixels.holes import Holes
+from workhold.fixels.toolkit import Carrier, Travel
 from workhold.model.quality import END_DISTANCE
 from workhold.model.query import Query
-from workhold.model.toolkit import Carrier, Travel
 from workhold.statics.quality import quality_of
 
 PART = Workpiece.from_loops(

@@ -13,8 +13,8 @@ from exact_chords import exactly
 from sharpness import Constant, check_sharpness
 from strategies import random_outline
 from workhold.contact.problem import Problem
+from workhold.fixels.vise import Vise
 from workhold.model.query import Query
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.verification.balls import Point, norm
 from workhold.verification.sides import LineSide, vertex_side

@@ -6,8 +6,8 @@ import pytest
 from attrs import evolve
 from drawing_examples import example
 
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 

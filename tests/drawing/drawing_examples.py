@@ -7,8 +7,8 @@ from random import Random
 
 import numpy as np
 
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 QUARTER = tan(np.pi / 8)

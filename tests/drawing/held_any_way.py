@@ -9,13 +9,13 @@ from random import Random
 
 from attrs import evolve, frozen
 
-from workhold.model.fence import Fence
+from workhold.fixels.fence import Fence
+from workhold.fixels.plate import Plate
+from workhold.fixels.toolkit import Arrangement, Toolkit
+from workhold.fixels.vise import OpeningVise, Vise
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
 from workhold.model.load import Load
-from workhold.model.plate import Plate
 from workhold.model.quality import FIGURES
-from workhold.model.toolkit import Arrangement, Toolkit
-from workhold.model.vise import OpeningVise, Vise
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import LoadCase, Worst
 

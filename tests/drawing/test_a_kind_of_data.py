@@ -19,12 +19,12 @@ from workhold.drawing.panel import arrangement_words
 from workhold.files.dxf.setup import setup_dxf
 from workhold.files.pin_list import pin_list
 from workhold.files.result.fixture_lines import fixture_template
+from workhold.fixels.setup_words import Datum, SetupWords
+from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.setup_words import Datum, SetupWords
 from workhold.model.shown import shown
-from workhold.model.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
-from workhold.model.units import MILLIMETRE
 from workhold.model.workpiece import Workpiece
+from workhold.units import MILLIMETRE
 from workhold.web.answers import contact_answer, fixture_answer
 
 

@@ -23,13 +23,13 @@ from workhold.drawing.seats_picture import draw_seats
 from workhold.files.dxf.setup import setup_dxf
 from workhold.files.pin_list import pin_list
 from workhold.files.result.csv import result_csv_text
+from workhold.fixels.contact_kind import ROUND_PIN, WALL_END
 from workhold.geometry.segment import Line
-from workhold.model.contact_kind import ROUND_PIN, WALL_END
 from workhold.model.restrictions import Restrictions
 from workhold.model.seating import Seat
 from workhold.model.shown import shown
-from workhold.model.units import MILLIMETRE
 from workhold.statics.contact_matrix import Touched
+from workhold.units import MILLIMETRE
 
 L = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]

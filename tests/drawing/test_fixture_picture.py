@@ -12,8 +12,8 @@ from svg_reading import area, by_class, matrix, texts, to_model
 
 from workhold.drawing import draw_fixture
 from workhold.drawing.fonts import text_width
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Pose
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 Held = tuple[Fixture, Workpiece, Vise]

@@ -19,9 +19,9 @@ from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.files.dxf.setup import setup_dxf
 from workhold.files.pin_list import pin_list
+from workhold.fixels.flat import Flat, peg_outline
 from workhold.geometry.segment import Line
-from workhold.model.flat import Flat, peg_outline
-from workhold.model.units import MILLIMETRE
+from workhold.units import MILLIMETRE
 
 NOTCHED = Workpiece.from_loops(
     "notched", [[[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]]

@@ -12,7 +12,7 @@ from svg_reading import by_class, matrix, texts, to_model
 
 from workhold.drawing import draw_fixture, draw_thumbnails
 from workhold.model.shown import shown
-from workhold.model.units import INCH, MILLIMETRE, Unit
+from workhold.units import INCH, MILLIMETRE, Unit
 
 BOLTED = pytest.mark.parametrize("bolted", [True, False], ids=["bolted", "line"])
 

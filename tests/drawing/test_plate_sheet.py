@@ -14,12 +14,12 @@ from workhold.drawing.scene import UNITS_PER_MM
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.files.pin_list import pin_list
+from workhold.fixels.plate import Plate
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
-from workhold.model.plate import Plate
-from workhold.model.units import INCH, MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
+from workhold.units import INCH, MILLIMETRE, Unit
 
 Held = tuple[Fixture, Workpiece, Plate]
 

@@ -24,13 +24,13 @@ from workhold.drawing.sheet_facts import (
     edge_distances,
 )
 from workhold.drawing.sheet_scale import standard_scale
+from workhold.fixels.holes import Holes
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.holes import Holes
 from workhold.model.load import Load
-from workhold.model.units import INCH, MILLIMETRE, Unit
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
+from workhold.units import INCH, MILLIMETRE, Unit
 
 Held = tuple[Fixture, Workpiece, Vise]
 

@@ -21,8 +21,8 @@ from workhold.drawing.sheet_details import SheetDetails
 from workhold.model.result import Result
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
 from workhold.model.tightening import order_words
-from workhold.model.units import INCH, MILLIMETRE, Unit
 from workhold.seating.by_hand import WHY
+from workhold.units import INCH, MILLIMETRE, Unit
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 DETAILS = SheetDetails(number=3, count=70, day=date(2026, 3, 31), result_hash="", version="1.2.3")

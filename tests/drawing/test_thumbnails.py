@@ -7,8 +7,8 @@ from svg_reading import by_class, matrix, texts
 
 from workhold.drawing import draw_thumbnails
 from workhold.errors import InputError
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 Many = tuple[list[Fixture], Workpiece, Vise]

@@ -31,7 +31,7 @@ from workhold.drawing.sheet_details import SheetDetails
 from workhold.files.dxf.setup import setup_dxf
 from workhold.files.pin_list import pin_list
 from workhold.model.fixture import Peg
-from workhold.model.units import MILLIMETRE
+from workhold.units import MILLIMETRE
 from workhold.web.answers import fixture_answer
 
 DAY = date(2026, 1, 2)

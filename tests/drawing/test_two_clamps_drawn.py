@@ -24,8 +24,8 @@ from workhold.model.restrictions import Restrictions
 from workhold.model.setting import settings_of
 from workhold.model.shown import shown
 from workhold.model.tightening import order_words
-from workhold.model.units import MILLIMETRE
 from workhold.statics.loads import load_cases
+from workhold.units import MILLIMETRE
 
 RECTANGLE = Workpiece.from_loops("rectangle", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
 PAIRS = {

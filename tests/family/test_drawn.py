@@ -18,7 +18,7 @@ from workhold.family.losses import RANKINGS, loss_text
 from workhold.family.plan import Plan
 from workhold.family.setup_pages import draw_setups, grid, holes_of, moves_words
 from workhold.geometry.box import Box
-from workhold.model.units import INCH, MILLIMETRE, Unit
+from workhold.units import INCH, MILLIMETRE, Unit
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 

@@ -20,11 +20,11 @@ from workhold.family.holding import holes_of, shifted, turned
 from workhold.family.losses import RANKINGS, losses, threshold
 from workhold.family.members import member_of, with_half_turns
 from workhold.family.plan import Holding
+from workhold.fixels.toolkit import Toolkit
 from workhold.listing.ranking import measured
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.model.restrictions import Restrictions
 from workhold.model.result import FixtureTable, fixture_at
-from workhold.model.toolkit import Toolkit
 from workhold.statics.judging import unfit
 from workhold.verification.fixture_proof import Judge
 

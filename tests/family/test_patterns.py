@@ -12,8 +12,8 @@ from family_parts import shop_parts
 from workhold import Fence, OpeningVise, Plate, Query, Vise, Workpiece, answer
 from workhold.family.holding import holes_of, moved_onto, shifted, turned
 from workhold.family.patterns import half_turn, pattern_words
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.result import Result, fixture_at
-from workhold.model.toolkit import Toolkit
 from workhold.verification.fixture_proof import Judge
 
 ELL, BRACKET = shop_parts(2)

@@ -8,8 +8,8 @@ import pytest
 
 from workhold import Fence, Plate, Vise
 from workhold.family.file import peg_entry
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Peg
-from workhold.model.toolkit import Toolkit
 
 BOLTED = Plate(pitch=20, peg_radius=3, travel=(5, 30))
 FENCE = Fence(pitch=20, peg_radius=3, wall_offset=8)

@@ -12,10 +12,10 @@ from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
 from workhold.files.text import json_value, read_text, toml_table
 from workhold.files.toolkit.reader import read_toolkit_file
+from workhold.fixels.vise import Vise
 from workhold.model.load import Load
 from workhold.model.restrictions import circle_zone
 from workhold.model.tolerance import Tolerance
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.plain import plain, shortened
 

@@ -17,8 +17,8 @@ from workhold.files.toolkit.form import checked
 from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.files.toolkit.reader import described_toolkit
 from workhold.fixels.fields import OPTIONS, TABLES, USUAL, owner_of, table_of
-from workhold.model.kinds import KINDS, toolkit_of
-from workhold.model.units import MILLIMETRE, unit_named
+from workhold.fixels.kinds import KINDS, toolkit_of
+from workhold.units import MILLIMETRE, unit_named
 from workhold.web.forms import FORMS
 from workhold.web.toolkits import page_fields
 

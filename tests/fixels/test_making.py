@@ -11,9 +11,9 @@ import pytest
 from toolkit_values import given
 from workhold.errors import InputError
 from workhold.fixels.fields import TABLES, ToolkitField
+from workhold.fixels.kinds import KINDS, toolkit_of
+from workhold.fixels.toolkit import Toolkit
 from workhold.limits import MOST_LENGTH
-from workhold.model.kinds import KINDS, toolkit_of
-from workhold.model.toolkit import Toolkit
 
 ROWS = [pytest.param(kind, row, id=f"{kind}-{row.name}") for kind, table in TABLES.items() for row in table.fields]
 LENGTHS = [one for one in ROWS if one.values[1].form == "length"]

@@ -8,7 +8,7 @@ import pytest
 
 from toolkit_results import NOTCHED, part
 from workhold import Fence, Plate, Result, design
-from workhold.model.plate import Plate as AnyPlate
+from workhold.fixels.plate import Plate as AnyPlate
 
 
 def holes(result: Result) -> set[tuple[Any, ...]]:

@@ -10,10 +10,10 @@ from attrs import evolve
 
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer
 from workhold.conventions import SAME_POSE
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.rotation import rotated
 from workhold.listing.identity import Identity, SetCount, identity_order
 from workhold.model.result import FixtureTable
-from workhold.model.toolkit import Toolkit
 
 TOOLKITS: dict[str, Toolkit] = {
     "vise": Vise(pitch=9, columns=2, peg_radius=2),

@@ -10,8 +10,8 @@ from attrs import evolve
 
 from candidate_examples import candidates
 from workhold.contact.frame import Frame
+from workhold.fixels.vise import Vise
 from workhold.listing.placing import outward_moves, placed_as_is
-from workhold.model.vise import Vise
 
 
 @pytest.mark.parametrize("opening", [8.0, 17.0, 23.0, 31.0, 38.0, 52.0])

@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 import workhold
-from workhold.model import delegates
+from workhold import delegates
 
 MODEL = Path(delegates.__file__).parent
 MAKING = """
 import workhold
 from workhold.files.result.reader import read_result
 from workhold.model.tolerance import Tolerance
-from workhold.model.vise import Vise
+from workhold.fixels.vise import Vise
 
 result = read_result("wedge.json")
 """
@@ -69,7 +69,7 @@ def test_the_package_alone_imports_next_to_nothing() -> None:
     code = "import sys; before = set(sys.modules); import workhold; print(*sorted(set(sys.modules) - before))"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     own = [name for name in loaded if name.partition(".")[0] == "workhold"]
-    assert own == ["workhold", "workhold.model", "workhold.model.delegates", "workhold.version"]
+    assert own == ["workhold", "workhold.model", "workhold.delegates", "workhold.version"]
     assert {name.partition(".")[0] for name in loaded} <= {"workhold", *sys.stdlib_module_names}
 
 

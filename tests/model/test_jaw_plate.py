@@ -6,11 +6,11 @@ import pytest
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.model.holes import Holes
+from workhold.fixels.holes import Holes
+from workhold.fixels.plate import Plate
+from workhold.fixels.vise import Vise
 from workhold.model.jaw_plate import Bolts, jaw_plates
-from workhold.model.plate import Plate
-from workhold.model.units import INCH
-from workhold.model.vise import Vise
+from workhold.units import INCH
 
 VISE = Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4, row_offset=5.0)
 

@@ -6,8 +6,8 @@ import pytest
 
 from workhold.errors import InputError
 from workhold.model.part_zero import part_zero
-from workhold.model.units import INCH
 from workhold.model.workpiece import Workpiece
+from workhold.units import INCH
 
 
 def plate(x: float, y: float) -> Workpiece:

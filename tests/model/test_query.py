@@ -11,10 +11,10 @@ import pytest
 from attrs import evolve
 
 from workhold import InputError, Query, Vise, Workpiece, answer, design
+from workhold.fixels.vise import OpeningVise
 from workhold.model.load import Load
 from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
 from workhold.model.tolerance import Tolerance
-from workhold.model.vise import OpeningVise
 
 
 def part(corner: float = 9.0) -> Workpiece:

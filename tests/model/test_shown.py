@@ -13,12 +13,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
+from workhold.fixels.holes import Holes
+from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
+from workhold.fixels.vise import OpeningVise, Vise
 from workhold.geometry.box import Box
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.holes import Holes
 from workhold.model.shown import Shown, placed_boxes, shown, shown_beside
-from workhold.model.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
-from workhold.model.vise import OpeningVise, Vise
 from workhold.model.workpiece import Workpiece
 
 WAYS = {"+x": 0.0, "+y": pi / 2, "-x": pi, "-y": -pi / 2}

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.model.units import INCH, MILLIMETRE, unit_named
+from workhold.units import INCH, MILLIMETRE, unit_named
 
 
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH, unit_named("cm"), unit_named("m")], ids=lambda unit: unit.name)

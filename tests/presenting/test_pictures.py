@@ -12,7 +12,7 @@ from fakes import fake_result, plate
 from workhold.drawing.features_picture import draw_features
 from workhold.drawing.fixture_picture import draw_fixture
 from workhold.errors import InputError
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 
 RESULT = fake_result(4)
 

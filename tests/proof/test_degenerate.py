@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from workhold import Plate, Vise, Workpiece, answer, design, verify
 from workhold.contact.problem import Problem
+from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact.record import (
     COLUMNS,
@@ -28,7 +29,6 @@ from workhold.kernels.contact.record import (
 from workhold.kernels.proof.interval_newton import jacobians
 from workhold.listing import finish
 from workhold.model.query import Query
-from workhold.model.toolkit import Toolkit
 from workhold.proof import deciding
 from workhold.proof.degenerate import TouchedFeatures, antipodal, hold_nothing, sliding, turning
 

@@ -14,10 +14,10 @@ from attrs import evolve
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer, design, load
 from workhold.model.explanation import Explanation
 from workhold.model.restrictions import Restrictions, circle_zone
-from workhold.model.units import MILLIMETRE
 from workhold.search import explaining
 from workhold.search.contacts import count_contacts
 from workhold.search.explaining import explain
+from workhold.units import MILLIMETRE
 
 PLAIN = Vise(pitch=8, columns=1, peg_radius=3)
 

@@ -16,9 +16,9 @@ from strategies import outline
 from toolkit_results import NOTCHED, assert_all_proven, check_and_read_back, checked, part, rectangle
 from workhold import FlatJaw, InputError, Restrictions, Result, Workpiece, circle_zone
 from workhold.contact.features import contact_features
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.model.fixture import Pose
-from workhold.model.toolkit import Toolkit
 from workhold.search.explaining import explain
 
 TRUTHS = sorted((Path(__file__).parent.parent / "data" / "toolkits").glob("flat_*.json"))

@@ -19,11 +19,11 @@ from workhold import Fence, Fixture, InputError, Plate, Query, Vise, design
 from workhold.algebra.engine import answer_by_algebra
 from workhold.contact.features import contact_features
 from workhold.files.toolkit.presets import load_toolkit
+from workhold.fixels.flat import Flat, flat_of, standoff
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.offset import trimmed_offsets
 from workhold.geometry.segment import Arc, Line
-from workhold.model.flat import Flat, flat_of, standoff
 from workhold.model.load import Load
-from workhold.model.toolkit import Toolkit
 from workhold.statics.loads import load_cases
 from workhold.verification import verify_file, verify_fixture
 

@@ -9,8 +9,8 @@ import pytest
 
 from workhold.files.part.load import load
 from workhold.files.result.writer import write_result_to
+from workhold.fixels.vise import Vise
 from workhold.model.result import Result
-from workhold.model.vise import Vise
 from workhold.search import preview
 from workhold.search.design import design
 

@@ -10,8 +10,8 @@ import pytest
 from fixture_sets import Judge, listed
 from workhold import InputError, Query, Result, Vise, Workpiece, answer, design, load
 from workhold.algebra.engine import answer_by_algebra
+from workhold.fixels.holes import holes_named
 from workhold.model.fixture import Fixture
-from workhold.model.holes import holes_named
 from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
 
 Key = tuple[object, float]

@@ -13,9 +13,9 @@ import workhold
 from flooded_cage import Flood
 from seating_examples import SAMPLED, Obstacle, case_fixture, closed
 from workhold import Fence, Fixture, OpeningVise, Plate, Vise, Workpiece, load
+from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.seating.columns import CONFIG
 from workhold.model.seating import CAGE_SHORT
-from workhold.model.toolkit import Toolkit
 from workhold.seating.caging_set import CagingSet
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import FixtureInPattern, Solver

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from workhold.model.vise import Vise
+from workhold.fixels.vise import Vise
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 

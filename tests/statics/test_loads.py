@@ -14,11 +14,11 @@ from scipy.optimize import linprog
 import workhold
 from held import force_directions, held, load_wrench, plate_fixture
 from workhold.errors import InputError
+from workhold.fixels.vise import OpeningVise, Vise
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.quality import CLAMP_AMPLIFICATION, CLOSURE_MARGIN, END_DISTANCE, LOAD_REACTION, LOCATION_ERROR
 from workhold.model.result import FixtureTable, Result
-from workhold.model.vise import OpeningVise, Vise
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import quality_of

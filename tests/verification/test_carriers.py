@@ -8,8 +8,8 @@ from __future__ import annotations
 import pytest
 
 from workhold import Fence, Fixture, OpeningVise, Peg, Plate, Pose, Vise
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Pair
-from workhold.model.toolkit import Toolkit
 from workhold.verification.rules.hardware import ToolkitRules
 
 

@@ -18,9 +18,9 @@ import pytest
 from attrs import evolve, frozen
 
 from workhold import Fixture, InputError, Workpiece
+from workhold.fixels.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
 from workhold.geometry.intersect import distance_to_segment
 from workhold.geometry.segment import Line
-from workhold.model.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
 from workhold.verification import Ruling, verify_fixture
 from workhold.verification.order import rank
 from workhold.verification.patterns import stance

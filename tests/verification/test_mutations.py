@@ -14,10 +14,10 @@ import pytest
 from undecided_examples import as_undecided
 from workhold import InputError, Plate, Query, Result, Vise, Workpiece, answer
 from workhold.files.result.writer import write_result
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.load import Load
 from workhold.model.notes import undecided_note
 from workhold.model.restrictions import Restrictions, circle_zone
-from workhold.model.toolkit import Toolkit
 from workhold.verification import verify_file
 
 Data = dict[str, Any]

@@ -13,7 +13,7 @@ import pytest
 import workhold
 from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.completeness import first_other
-from workhold.model.fixture import WALL
+from workhold.fixels.carrier import WALL
 from workhold.seating.solver import Solver
 from workhold.verification.claims import claim_of
 from workhold.verification.listing import Listing, read_listing

@@ -12,8 +12,8 @@ from attrs import evolve
 
 from symmetric_parts import Symmetric, sets_of, symmetric_parts
 from workhold import Fence, OpeningVise, Plate, Query, Result, Vise, Workpiece, answer
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import centroid_of_joints, rotations_onto_itself
-from workhold.model.toolkit import Toolkit
 from workhold.verification import verify
 from workhold.verification.repeats import Turning
 

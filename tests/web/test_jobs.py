@@ -18,11 +18,11 @@ from test_parts import refused
 from workhold.files.part.load import load
 from workhold.files.result.csv import write_result_csv_to
 from workhold.files.result.writer import write_result_to
+from workhold.fixels.vise import Vise
 from workhold.model.load import Load
 from workhold.model.quality import FIGURES
 from workhold.model.result import Result
 from workhold.model.tolerance import Tolerance
-from workhold.model.vise import Vise
 from workhold.search.design import design
 from workhold.statics.loads import load_cases
 

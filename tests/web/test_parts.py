@@ -11,7 +11,7 @@ from running_server import SQUARE, WIDGET, RunningServer
 
 from workhold.files.part.load import builtin_parts, read_workpiece
 from workhold.files.toolkit.presets import load_toolkit, preset_names
-from workhold.model.kinds import toolkit_of
+from workhold.fixels.kinds import toolkit_of
 from workhold.model.quality import FIGURES
 
 BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"

@@ -12,8 +12,8 @@ from running_server import WIDGET, RunningServer, request
 
 from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.fixels.directions import DIRECTIONS
-from workhold.model.kinds import ALIASES, KINDS, kind_of, toolkit_of
-from workhold.model.plate import Plate
+from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
+from workhold.fixels.plate import Plate
 from workhold.web.forms import JobForm
 from workhold.web.toolkits import DESCRIBED, Described, kinds_answer, page_kind
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import exp, hypot, log
 
-from workhold.model.toolkit import Toolkit
+from workhold.fixels.toolkit import Toolkit
 
 __all__ = ["answering_seconds", "measures", "reading_seconds"]
 

@@ -22,14 +22,14 @@ from workhold.files.loads_form import LoadTable
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.result.save import save
 from workhold.files.toolkit.presets import load_toolkit
+from workhold.fixels.kinds import ALIASES, KINDS, toolkit_of
+from workhold.fixels.toolkit import Toolkit
 from workhold.listing.near_duplicates import entries
-from workhold.model.kinds import ALIASES, KINDS, toolkit_of
 from workhold.model.load import Load
 from workhold.model.query import Query, asked_ranking
 from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
 from workhold.model.result import Result
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
 
 __all__ = ["TOOLS", "Answer", "Tool"]

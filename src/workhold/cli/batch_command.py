@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from workhold.batch.store import Store
     from workhold.batch.workers import LocalWorkers
     from workhold.cli.batch_progress import BatchProgress
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["batch"]
 
@@ -265,7 +265,7 @@ def asked_toolkits(
     InputError
         See :func:`workhold.cli.many_toolkits.toolkits_to_try`.
     """
-    from workhold.model.kinds import ALIASES, KINDS
+    from workhold.fixels.kinds import ALIASES, KINDS
 
     words = [word for text in names or () for word in words_of("--toolkit", text)]
     kinds = [word for word in words if word.lower() in (*KINDS, *ALIASES)]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from workhold.family.copies import Packing
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["copies"]
 
@@ -54,7 +54,7 @@ def copies(
         refuse_output(draw, (result_file,), force)
     from workhold.family.copies import packing_of
     from workhold.family.copies_picture import copies_of, draw_copies
-    from workhold.model.lattice import refuse_many_holes
+    from workhold.fixels.lattice import refuse_many_holes
 
     result = result_with(result_file, rank)
     size = plate_size(result, asked)

@@ -28,7 +28,7 @@ from workhold.cli.values import choice, length_unit, optional_count, whole_numbe
 if TYPE_CHECKING:
     from workhold.model.query import Query
     from workhold.model.result import Result
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["design"]
 

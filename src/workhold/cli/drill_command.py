@@ -17,7 +17,7 @@ from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.model.jaw_plate import Bolts
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["drill"]
 

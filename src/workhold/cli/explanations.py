@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
+    from workhold.fixels.toolkit import Toolkit
     from workhold.model.explanation import Explanation
     from workhold.model.result import Result
-    from workhold.model.toolkit import Toolkit
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["explain_none"]
 

@@ -21,7 +21,7 @@ from workhold.cli.search_options import QueryWords
 from workhold.cli.toolkit_options import TOOLKIT
 from workhold.cli.values import length_unit
 from workhold.errors import InputError
-from workhold.model.units import Unit
+from workhold.units import Unit
 
 if TYPE_CHECKING:
     from workhold.model.restrictions import Restrictions

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from workhold.family.family import Family
     from workhold.family.losses import Threshold
     from workhold.family.plan import Plan
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["family"]
 

@@ -17,8 +17,8 @@ from workhold.errors import InputError
 if TYPE_CHECKING:
     from workhold.family.family import Asked, LeftOut
     from workhold.files.part_list import ListedPart
+    from workhold.fixels.toolkit import Toolkit
     from workhold.model.tolerance import Tolerance
-    from workhold.model.toolkit import Toolkit
 
 __all__ = ["Job", "asked_of", "jobs_of"]
 

@@ -10,8 +10,8 @@ from workhold.cli.table import Table
 if TYPE_CHECKING:
     from workhold.family.family import Family
     from workhold.family.plan import Plan, SetUp
-    from workhold.model.toolkit import Toolkit
-    from workhold.model.units import Unit
+    from workhold.fixels.toolkit import Toolkit
+    from workhold.units import Unit
 
 __all__ = ["report"]
 

@@ -16,7 +16,7 @@ from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.files.part.load import Loaded
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["features"]
 

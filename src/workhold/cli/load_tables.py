@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from workhold.cli.tables import Table
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.statics.jaw import jaw_words
+from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
-    from workhold.model.toolkit import Toolkit
     from workhold.statics.loads import LoadCase
 
 __all__ = ["load_tables"]

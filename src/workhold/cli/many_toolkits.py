@@ -10,7 +10,7 @@ from attrs import frozen
 from workhold.cli.search_options import with_fit_of
 from workhold.cli.values import length, whole_number
 from workhold.errors import InputError
-from workhold.model.units import Unit
+from workhold.units import Unit
 
 if TYPE_CHECKING:
     from workhold.model.query import Query
@@ -41,7 +41,7 @@ class Named:
 
 def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
     """The query for a toolkit, or why there is no such toolkit."""
-    from workhold.model.kinds import toolkit_of
+    from workhold.fixels.kinds import toolkit_of
     from workhold.model.query import Query
 
     try:
@@ -71,7 +71,7 @@ def toolkits_to_try(
     """
     from workhold.files.toolkit.presets import load_toolkit, preset_names
     from workhold.fixels.fields import USUAL, table_of
-    from workhold.model.kinds import ALIASES, KINDS, kind_of
+    from workhold.fixels.kinds import ALIASES, KINDS, kind_of
 
     is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)
     kind, said = kind_of(toolkit.lower()) if toolkit is not None and is_kind else (None, {})

@@ -11,7 +11,7 @@ from workhold.errors import InputError
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["BEST_DRAWN", "NEAREST_MISS", "draw_best", "draw_one", "picture_names"]
 

@@ -11,7 +11,7 @@ from workhold.cli.commands import option
 from workhold.cli.load_option import LOAD_HELP, parse_load
 from workhold.cli.values import length, number, optional_force, whole_number
 from workhold.errors import InputError
-from workhold.model.units import Unit
+from workhold.units import Unit
 
 if TYPE_CHECKING:
     from workhold.model.load import Load

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.model.seating import Seat, Seating
-    from workhold.model.units import Unit
     from workhold.seating.gauge import Gauge
+    from workhold.units import Unit
 
 __all__ = ["by_hand_words", "seat", "seating_words"]
 

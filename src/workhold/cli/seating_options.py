@@ -10,7 +10,7 @@ from attrs import frozen
 from workhold.cli.commands import option
 from workhold.cli.values import optional_count, optional_positive_length
 from workhold.errors import InputError
-from workhold.model.units import Unit
+from workhold.units import Unit
 
 __all__ = ["SeatingWords"]
 

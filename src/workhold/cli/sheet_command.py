@@ -18,7 +18,7 @@ from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FI
 from workhold.cli.values import choice, length, length_unit, optional_force, optional_positive_length, positive_number
 from workhold.errors import InputError
 from workhold.limits import refuse_long
-from workhold.model.units import Unit
+from workhold.units import Unit
 
 __all__ = ["sheet"]
 

@@ -17,8 +17,8 @@ from workhold.cli.values import length_unit, optional_force, picture_ending, pos
 
 if TYPE_CHECKING:
     from workhold.model.result import Result
-    from workhold.model.units import Unit
     from workhold.statics.loads import LoadCase
+    from workhold.units import Unit
 
 __all__ = ["show"]
 

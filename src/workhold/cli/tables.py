@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, TextIO
 import typer
 
 from workhold.cli.table import Table
-from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN
-from workhold.model.units import MILLIMETRE, Unit
+from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN
 from workhold.plain import plain, shortened
+from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
+    from workhold.fixels.toolkit import Toolkit
     from workhold.geometry.face import Face
     from workhold.listing.near_duplicates import Entries
     from workhold.model.fixture import Fixture, Peg
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from workhold.model.quality import Figure
     from workhold.model.result import Result
     from workhold.model.setting import Setting
-    from workhold.model.toolkit import Toolkit
     from workhold.model.workpiece import Workpiece
 
 __all__ = [

@@ -11,11 +11,11 @@ from workhold.cli.commands import option
 from workhold.cli.values import length, optional_length, pitches, whole_number
 from workhold.errors import InputError
 from workhold.fixels.fields import MIN_GAP, OPTIONS, TOOLKIT_SECTION, owner_of, table_of
-from workhold.model.units import Unit
+from workhold.units import Unit
 
 if TYPE_CHECKING:
+    from workhold.fixels.toolkit import Toolkit
     from workhold.model.tolerance import Tolerance
-    from workhold.model.toolkit import Toolkit
 
 __all__ = ["TOOLKIT", "ToolkitWords"]
 
@@ -101,7 +101,7 @@ class ToolkitWords:
         fields, tolerance = self.fields(unit), None
         opening = optional_length("--min-opening", self.min_opening, unit)
         from workhold.fixels.fields import USUAL
-        from workhold.model.kinds import ALIASES, KINDS, kind_of, toolkit_of
+        from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
 
         kind, said = kind_of(USUAL)
         named = [

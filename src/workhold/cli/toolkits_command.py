@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from workhold.files.toolkit.reader import LoadedToolkit
     from workhold.fixels.fields import Form
     from workhold.model.dowel import Limits
-    from workhold.model.units import Unit
+    from workhold.units import Unit
 
 __all__ = ["toolkits"]
 
@@ -40,7 +40,7 @@ def toolkits(
     shown = None if unit is None else length_unit(unit)
     from workhold.cli.tables import print_tables
     from workhold.files.toolkit.presets import load_toolkit, preset_names
-    from workhold.model.units import MILLIMETRE
+    from workhold.units import MILLIMETRE
 
     if json_:
         from workhold.presenting.data import toolkit_data

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from workhold.errors import InputError
 from workhold.limits import refuse_strong
-from workhold.model.real import counting_number
-from workhold.model.units import MILLIMETRE, POUND, Unit, unit_named
+from workhold.real import counting_number
+from workhold.units import MILLIMETRE, POUND, Unit, unit_named
 
 __all__ = [
     "choice",
@@ -28,7 +28,7 @@ __all__ = [
 ]
 
 PICTURE_ENDINGS = (".svg", ".png")
-# A number and perhaps its unit: 12.5, 0.5in, 1/2", 1-1/4 inch. The units are those of workhold.model.units.
+# A number and perhaps its unit: 12.5, 0.5in, 1/2", 1-1/4 inch. The units are those of workhold.units.
 LENGTH = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>mm|cm|m|inch|in|\")?\s*", re.IGNORECASE | re.DOTALL)
 FORCE = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>kN|N|lbf)?\s*", re.IGNORECASE | re.DOTALL)
 FORCE_UNITS = {"n": 1.0, "kn": 1000.0, "lbf": POUND}

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
+from workhold.fixels.flat import Flat
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.model.flat import Flat
 from workhold.model.restrictions import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 

@@ -14,9 +14,9 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.holes import Holes
+from workhold.fixels.toolkit import Carrier, Toolkit, Travel
 from workhold.kernels.base.given import Lattice
-from workhold.model.holes import Holes
-from workhold.model.toolkit import Carrier, Toolkit, Travel
 
 __all__ = ["Frame"]
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from workhold.contact.features import ContactFeature, allowed_features, contact_features, end_slacks, feature_rows
 from workhold.contact.frame import Frame
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.given import Limits, Setting
@@ -19,7 +20,6 @@ from workhold.limits import refuse_many_steps
 from workhold.model.diameter import outline_diameter
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions
-from workhold.model.toolkit import Carrier, Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Problem", "Progress"]

@@ -12,11 +12,11 @@ from workhold.drawing.clamps import draw_clamp, draw_push
 from workhold.drawing.part import contact_of, face_of, outline_path, sampled_loop, segment_path
 from workhold.drawing.plates import draw_holes, draw_plate, draw_wall, most_holes
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
+from workhold.fixels.flat import peg_outline
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Fixture
-from workhold.model.flat import peg_outline
 from workhold.model.shown import Shown, shown
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["ARROW", "PART_FILL", "PEG_FILL", "TOUCHED", "Bench", "bench_of", "draw_bench", "force_arrow"]

@@ -16,8 +16,8 @@ from workhold.drawing.part import outline_path, sampled, sampled_loop, segment_p
 from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
 from workhold.geometry.face import Face
 from workhold.geometry.segment import Arc, Segment
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["draw_features"]
 

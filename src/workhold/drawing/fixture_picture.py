@@ -13,10 +13,10 @@ from workhold.drawing.panel import Column, draw_peg_table, draw_settings, draw_t
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
 from workhold.drawing.plates import most_holes
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["draw_fixture"]
 

@@ -6,11 +6,11 @@ from workhold.conventions import AGREEMENT
 from workhold.drawing.bench import ARROW, PART_FILL, TOUCHED
 from workhold.drawing.part import contact_of, face_of, outline_path, segment_path
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Fixture
 from workhold.model.part_zero import hole_centers
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["draw_inset", "draw_zero"]

@@ -10,10 +10,10 @@ from workhold.drawing.fonts import text_width
 from workhold.drawing.panel import Column, pegs_words
 from workhold.drawing.plates import draw_wall
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
+from workhold.fixels.carrier import Measure
+from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
-from workhold.model.carrier import Measure
-from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["draw_legend"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from attrs import frozen
 
 from workhold.drawing.scene import decimals_for
-from workhold.model.units import MILLIMETRE, Unit
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["LengthUnit"]
 
@@ -21,7 +21,7 @@ class LengthUnit:
 
     Examples
     --------
-    >>> from workhold.model.units import INCH
+    >>> from workhold.units import INCH
     >>> LengthUnit.mm().words(24.125), LengthUnit.suiting(INCH, 10.0).words(-25.4), LengthUnit.mm().number(-0.0)
     ('24.125 mm', '−1.0000 in', '0.000')
     """

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from workhold.drawing.fonts import shortened, text_width, wrapped
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.scene import BLACK, GREY, Scene
-from workhold.model.arrangement import Arrangement
-from workhold.model.carrier import Carrier
+from workhold.fixels.arrangement import Arrangement
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.setting import contact_names, settings_of
 from workhold.model.tightening import order_words
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.drawing.scene import View, number
+from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
 from workhold.model.workpiece import Workpiece
 
 __all__ = [

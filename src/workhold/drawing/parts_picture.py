@@ -18,7 +18,7 @@ from workhold.drawing.part import outline_path, sampled_loop
 from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.loop import loop_segments
-from workhold.model.units import MILLIMETRE, Unit
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["draw_parts"]
 

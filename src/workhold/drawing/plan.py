@@ -19,8 +19,8 @@ from workhold.drawing.labels import Label, LabelPlacer, Place, around, joined, l
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.plates import labelled
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
+from workhold.fixels.holes import column_letters
 from workhold.geometry.segment import Point
-from workhold.model.holes import column_letters
 from workhold.model.shown import ShownCarrier
 from workhold.model.workpiece import Workpiece
 

@@ -11,16 +11,16 @@ from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import Caution, cautions_of, edge_distances
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
 from workhold.model.part_zero import part_zero
 from workhold.model.result import Result
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.seating.by_hand import by_hand
 from workhold.seating.solver import Solver
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import measured_fixture
+from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
 
 __all__ = ["result_cautions", "result_details", "result_sheet"]

@@ -9,10 +9,10 @@ from math import asin, ceil, degrees, floor, inf, log10
 from attrs import frozen
 
 from workhold.drawing.length_unit import LengthUnit
-from workhold.model.carrier import Measure
+from workhold.fixels.carrier import Measure
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.seating import CLOSE_READING, DRY_STEEL, Seat, Seating
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.gauge import Gauge
 from workhold.seating.silhouette import Silhouette

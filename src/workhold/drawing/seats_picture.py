@@ -9,13 +9,13 @@ from workhold.drawing.fonts import shortened, text_width
 from workhold.drawing.part import outline_path
 from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View
 from workhold.drawing.thumbnails import CAPTION, EDGE, MOST_THUMBNAILS, grid
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Segment
 from workhold.model.fixture import Fixture
 from workhold.model.seating import Seat
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.gauge import Gauge
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["ALIKE", "RIGHT", "Placed", "draw_lying", "draw_seats"]
 

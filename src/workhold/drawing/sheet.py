@@ -21,9 +21,9 @@ from workhold.drawing.sheet_blocks import blocks_of
 from workhold.drawing.sheet_details import PAPERS, SheetDetails
 from workhold.drawing.sheet_facts import cautions_of, edge_distances
 from workhold.drawing.sheet_writing import Sheet
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.part_zero import part_zero
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["draw_sheet"]

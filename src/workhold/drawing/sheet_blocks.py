@@ -16,8 +16,8 @@ from workhold.drawing.sheet_pegs import write_pegs
 from workhold.drawing.sheet_seating import write_seating, write_wrong_seats
 from workhold.drawing.sheet_side import write_part, write_side
 from workhold.drawing.sheet_writing import BODY, NOTE, Block, MovingBlocks, Sheet, Writer, heading
-from workhold.model.carrier import Measure
-from workhold.model.units import INCH
+from workhold.fixels.carrier import Measure
+from workhold.units import INCH
 
 __all__ = ["blocks_of"]
 

@@ -6,7 +6,7 @@ from math import ceil
 
 from workhold.drawing.panel import Column, holes_words, offset_words
 from workhold.drawing.sheet_writing import BODY, Sheet, heading
-from workhold.model.holes import column_letters
+from workhold.fixels.holes import column_letters
 from workhold.model.shown import shown
 
 __all__ = ["write_counting"]

@@ -9,9 +9,9 @@ from attrs import field, frozen
 from workhold.model.part_zero import PartZero
 from workhold.model.seating import Seating
 from workhold.model.tolerance import Tolerance
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.seating.by_hand import ByHand
 from workhold.statics.loads import LoadCase
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["PAPERS", "SheetDetails"]
 

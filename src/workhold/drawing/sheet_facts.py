@@ -10,8 +10,8 @@ from attrs import frozen
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet_details import SheetDetails
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go

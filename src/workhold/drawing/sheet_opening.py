@@ -6,7 +6,7 @@ from workhold.drawing.panel import NUMBERS, Column
 from workhold.drawing.sheet_facts import caliper_check
 from workhold.drawing.sheet_pegs import put_words, touch_words
 from workhold.drawing.sheet_writing import BODY, NOTE, MovingBlocks, Sheet, Writer, heading, inside_words, lies_words
-from workhold.model.holes import column_letters, hole_name
+from workhold.fixels.holes import column_letters, hole_name
 
 __all__ = ["OPENING"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from workhold.drawing.panel import Column
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading, peg_rows, write_dowel, write_flats
-from workhold.model.carrier import Carrier
-from workhold.model.contact_kind import WALL_END
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.contact_kind import WALL_END
 from workhold.plain import listed
 
 __all__ = ["put_words", "touch_words", "write_pegs"]

@@ -14,14 +14,14 @@ from workhold.drawing.scene import BLACK, GREY, Scene
 from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet_details import SheetDetails
 from workhold.drawing.sheet_facts import Caution
+from workhold.fixels.contact_kind import FLAT_PIN
+from workhold.fixels.setup_words import Datum
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
-from workhold.model.contact_kind import FLAT_PIN
 from workhold.model.dowel import fit_words
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.setting import Setting, contact_names, settings_of
-from workhold.model.setup_words import Datum
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
 

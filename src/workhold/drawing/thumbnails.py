@@ -11,12 +11,12 @@ from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import closure_margin, plural
 from workhold.drawing.scene import GREY, LANDSCAPE, Box, Scene, View
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.listing.near_duplicates import Entries
 from workhold.model.fixture import Fixture
 from workhold.model.result import Result
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["MOST_THUMBNAILS", "best_at_a_glance", "draw_thumbnail", "draw_thumbnails"]
 

@@ -23,10 +23,10 @@ from numpy.typing import NDArray
 from workhold.conventions import GAP_SLACK
 from workhold.errors import InputError
 from workhold.family.covering import ROUNDING, load_solver
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
 from workhold.model.clamp import shown_clamps
 from workhold.model.fixture import Fixture
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Packing", "packing_of", "too_near_shifts"]

@@ -14,13 +14,13 @@ from workhold.drawing.plates import STILL, draw_wall, labelled
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, Scene, View
 from workhold.family.copies import Packing
 from workhold.family.holding import shifted
-from workhold.model.carrier import Carrier
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.holes import column_letters
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.holes import column_letters
 from workhold.model.result import FixtureTable, fixture_at
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["copies_of", "draw_copies"]
 

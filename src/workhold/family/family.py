@@ -15,10 +15,10 @@ from workhold.family.losses import Threshold
 from workhold.family.members import Member, member_of
 from workhold.family.other_side import OTHER_SIDE, other_side, zero_of_other_side
 from workhold.family.plan import Plan, plan_of
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.quality import FIGURES, Figure, figure_number
 from workhold.model.query import Query
-from workhold.model.toolkit import Toolkit
 from workhold.search.design import answer
 
 __all__ = ["Asked", "Family", "LeftOut", "family_of"]

@@ -16,10 +16,10 @@ from workhold.family.family import Family
 from workhold.family.plan import Holding, Plan, SetUp
 from workhold.files.result.rounding import LENGTH_STEPS, rounded, rounded_degrees
 from workhold.files.result.writer import toolkit_fields
-from workhold.model.contact_kind import CLAMP_TIP
+from workhold.fixels.contact_kind import CLAMP_TIP
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.setting import settings_of
-from workhold.model.toolkit import Toolkit
 from workhold.version import __version__
 
 __all__ = ["FORMAT", "family_text"]

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
 from workhold.family.patterns import column_groups, half_turn
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.result import FixtureTable
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["NOTHING", "Hole", "holes_of", "moved_onto", "shifted", "turned"]
 

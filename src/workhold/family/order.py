@@ -17,7 +17,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.family.holding import NOTHING
-from workhold.model.toolkit import Toolkit
+from workhold.fixels.toolkit import Toolkit
 
 __all__ = ["MOST_EXACT", "Freedom", "Step", "best_order", "freedom_of"]
 

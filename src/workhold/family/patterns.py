@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.rotation import rotated
 from workhold.listing.canonical_form import packed
 from workhold.model.part_zero import PartZero
 from workhold.model.result import FixtureTable
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["column_groups", "half_turn", "pattern_words", "zero_words"]
 

@@ -24,7 +24,7 @@ from workhold.family.losses import loss_text
 from workhold.family.plan import Holding, Plan, SetUp
 from workhold.model.quality import Figure
 from workhold.model.setting import settings_of
-from workhold.model.units import MILLIMETRE, Unit
+from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
 
 __all__ = ["MOST_BESIDE", "draw_setups"]

@@ -23,7 +23,7 @@ from typing import Any
 from workhold.errors import InputError
 from workhold.files.text import json_value, read_text, toml_table
 from workhold.model.load import ANY_DIRECTION, Load
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 
 __all__ = ["load_from_words", "read_loads"]
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import csv
 import io
 
-from workhold.model.contact_kind import FLAT_PIN
+from workhold.fixels.contact_kind import FLAT_PIN
+from workhold.fixels.holes import column_letters
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.holes import column_letters
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import Unit
 from workhold.plain import plain
+from workhold.units import Unit
 
 __all__ = ["HEADER", "pin_list"]
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_POSE
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.rotation import rotated
 from workhold.kernels.contact.clamp_pairs import (
     CLAMPS,
@@ -41,7 +42,6 @@ from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.quality import CLAMP_FREEDOM
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, unknown_quality
-from workhold.model.toolkit import Toolkit
 from workhold.proof.deciding import BALLS, Account
 
 if TYPE_CHECKING:

@@ -15,12 +15,12 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import SAME_IMAGE, SAME_POSE
+from workhold.fixels.toolkit import Arrangement, Toolkit
 from workhold.geometry.rotation import rotated
 from workhold.geometry.symmetry import Rotation, centroid_of_joints, rotations_onto_itself
 from workhold.listing.canonical_form import changes, clusters, packed
 from workhold.listing.clamp_placement import axis_of
 from workhold.model.result import FixtureTable
-from workhold.model.toolkit import Arrangement, Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Identity", "SetCount", "half_turns", "identity_order"]

@@ -17,11 +17,11 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import symmetries
 from workhold.listing.canonical_form import packed
 from workhold.model.quality import TILT
 from workhold.model.result import FixtureTable, Result
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.judging import unfit
 

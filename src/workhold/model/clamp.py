@@ -7,12 +7,12 @@ from math import atan2, hypot, pi
 
 from attrs import frozen
 
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.contact_kind import CLAMP_TIP
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.box import Box
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.model.carrier import Carrier
-from workhold.model.contact_kind import CLAMP_TIP
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["ShownClamp", "clamping_direction", "shown_clamps"]
 

@@ -9,16 +9,14 @@ from typing import Any
 
 from attrs import field, frozen
 
+from workhold.delegates import delegate
 from workhold.errors import InputError
+from workhold.fixels.carrier import WALL
+from workhold.fixels.holes import hole_name
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Segment
-from workhold.model.delegates import delegate
-from workhold.model.holes import hole_name
 
-__all__ = ["WALL", "Fixture", "Listed", "Pair", "Peg", "Pose"]
-
-# What stands for a wall among the carriers of pegs.
-WALL = "wall"
+__all__ = ["Fixture", "Listed", "Pair", "Peg", "Pose"]
 
 
 @frozen

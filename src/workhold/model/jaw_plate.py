@@ -10,11 +10,11 @@ from math import hypot, isfinite
 from attrs import frozen
 
 from workhold.errors import InputError
+from workhold.fixels.holes import hole_name
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.box import Box
 from workhold.geometry.segment import Point
-from workhold.model.holes import hole_name
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import MILLIMETRE, Unit
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["Bolts", "JawPlate", "jaw_plates"]
 

@@ -9,7 +9,7 @@ from attrs import field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import refuse_long, refuse_strong
-from workhold.model.real import real
+from workhold.real import real
 
 __all__ = ["ANY_DIRECTION", "Load"]
 

@@ -5,7 +5,7 @@ They follow from the numbers of a result, so that whoever has the numbers can te
 
 from __future__ import annotations
 
-from workhold.model.toolkit import Wording
+from workhold.fixels.toolkit import Wording
 
 __all__ = [
     "best_note",

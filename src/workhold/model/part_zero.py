@@ -17,8 +17,8 @@ from workhold.errors import InputError
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.segment import Arc, Point
 from workhold.limits import refuse_long
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.model.workpiece import Workpiece
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["PartZero", "hole_centers", "part_zero"]
 

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.limits import refuse_long, refuse_strong
 from workhold.model.load import Load
 from workhold.model.quality import (
@@ -21,11 +22,10 @@ from workhold.model.quality import (
     RANKED,
     ranked_number,
 )
-from workhold.model.real import counting_number, real
 from workhold.model.restrictions import Restrictions
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.real import counting_number, real
 
 __all__ = ["DEFAULT_RANKING", "PREFERENCES", "Query", "asked_ranking"]
 

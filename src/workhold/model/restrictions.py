@@ -20,7 +20,7 @@ from workhold.geometry.loop import (
     signed_area,
 )
 from workhold.geometry.segment import Segment
-from workhold.model.real import real
+from workhold.real import real
 
 __all__ = ["Restrictions", "Zone", "circle_zone", "polygon_zone"]
 

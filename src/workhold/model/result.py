@@ -10,9 +10,10 @@ import numpy as np
 from attrs import define, evolve, field, fields
 from numpy.typing import NDArray
 
+from workhold.delegates import delegate
+from workhold.fixels.contact_kind import WALL_END
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
-from workhold.model.contact_kind import WALL_END
-from workhold.model.delegates import delegate
 from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios, working_forces
 from workhold.model.notes import cut_note, fitted_note
@@ -20,7 +21,6 @@ from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.query import Query
 from workhold.model.seating import Seating
-from workhold.model.toolkit import Toolkit
 from workhold.model.wall import ENDS
 from workhold.model.workpiece import Workpiece
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from attrs import evolve, frozen
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Pose
-from workhold.model.toolkit import Toolkit
 
 __all__ = [
     "CAGE_SHORT",

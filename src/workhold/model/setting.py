@@ -10,11 +10,11 @@ from collections.abc import Mapping
 
 from attrs import frozen
 
+from workhold.fixels.carrier import Carrier, Measure
+from workhold.fixels.contact_kind import CLAMP_TIP
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
-from workhold.model.carrier import Carrier, Measure
-from workhold.model.contact_kind import CLAMP_TIP
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["Mounting", "Setting", "contact_names", "settings_of"]
 

@@ -26,16 +26,16 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.contact_kind import WALL_END
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.box import Box
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Point
 from workhold.limits import MOST_STEPS
-from workhold.model.carrier import Carrier
 from workhold.model.clamp import ShownClamp, clamping_direction, shown_clamps
-from workhold.model.contact_kind import WALL_END
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.setting import Setting, settings_of
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [

@@ -6,11 +6,11 @@ from math import isfinite
 
 from attrs import evolve, field, frozen
 
+from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.limits import refuse_long
-from workhold.model.delegates import delegate
 from workhold.model.dowel import Fit
-from workhold.model.real import real
+from workhold.real import real
 
 __all__ = ["Tolerance"]
 

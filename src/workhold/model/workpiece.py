@@ -13,6 +13,7 @@ from attrs import define, field
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.conventions import READING, SHORTEST
+from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.geometry.chords import merged_chords
 from workhold.geometry.face import Face, faces_of_loop
@@ -32,10 +33,9 @@ from workhold.geometry.loop import (
 )
 from workhold.geometry.one_circle import on_one_circle
 from workhold.geometry.segment import Point, Segment
-from workhold.model.delegates import delegate
 from workhold.model.fixture import Pose
-from workhold.model.real import real
 from workhold.model.wall import Flush
+from workhold.real import real
 
 __all__ = ["Workpiece"]
 

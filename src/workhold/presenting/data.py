@@ -11,16 +11,16 @@ from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields, written
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.face import Face
 from workhold.geometry.segment import Arc
-from workhold.model.carrier import Carrier
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
 from workhold.model.proof import Proof
 from workhold.model.result import Result
 from workhold.model.setting import settings_of
 from workhold.model.tightening import order_words
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.by_hand import by_hand
 

@@ -13,7 +13,7 @@ import numpy as np
 from workhold.errors import InputError
 from workhold.files.result.csv import column_names, seating_values
 from workhold.files.result.fixture_lines import fixture_rows
-from workhold.model.contact_kind import FLAT_PIN
+from workhold.fixels.contact_kind import FLAT_PIN
 from workhold.model.quality import SEATING_FIGURES
 
 if TYPE_CHECKING:

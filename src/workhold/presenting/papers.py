@@ -11,7 +11,7 @@ from workhold.drawing.sheet_details import PAPERS
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.model.part_zero import part_zero
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture

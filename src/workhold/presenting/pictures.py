@@ -12,7 +12,7 @@ from workhold.drawing.thumbnails import best_at_a_glance
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.listing.near_duplicates import entries
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture

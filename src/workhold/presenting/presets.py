@@ -6,9 +6,9 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.toolkit.presets import load_toolkit, preset, preset_names
-from workhold.model.kinds import KINDS
+from workhold.fixels.kinds import KINDS
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["preset_fields", "preset_names_of", "preset_tolerance"]
 

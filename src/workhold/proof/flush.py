@@ -13,8 +13,8 @@ from flint import arb, ctx
 
 from workhold.contact.problem import Problem
 from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
+from workhold.fixels.toolkit import Carrier
 from workhold.geometry.hull_edges import HullEdge
-from workhold.model.toolkit import Carrier
 from workhold.proof.clamp_reactions import SharpReactions, rounded
 from workhold.proof.deciding import BALLS
 from workhold.proof.exact_rows import exact_rows

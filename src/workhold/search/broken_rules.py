@@ -19,6 +19,7 @@ from workhold.contact.features import end_distances
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
 from workhold.kernels.contact import record
@@ -28,14 +29,13 @@ from workhold.listing.placing import placeable, placed
 from workhold.model.explanation import NearestMiss, Removal
 from workhold.model.restrictions import Restrictions
 from workhold.model.result import fixture_at
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import Unit
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks
 from workhold.search.contacts import contacts_of
 from workhold.search.removals import SECOND_CLAMP, Removals
 from workhold.search.toolkit_search import ToolkitSearch
 from workhold.statics.wrenches import outward_normals
+from workhold.units import Unit
 
 __all__ = ["all_contacts", "removals_of"]
 

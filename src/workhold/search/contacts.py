@@ -5,10 +5,10 @@ from __future__ import annotations
 from threading import Event
 
 from workhold.contact.problem import Problem
+from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.crossing.two_and_two import CONTACTS
 from workhold.limits import thread_count
 from workhold.model.query import Query
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import run_blocks
 from workhold.search.toolkit_search import ToolkitSearch

@@ -11,6 +11,7 @@ from attrs import evolve
 
 from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
+from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS
 from workhold.limits import thread_count
@@ -21,12 +22,11 @@ from workhold.listing.ways import joined_ways
 from workhold.model.load import Load
 from workhold.model.notes import no_fixture_notes, no_place_note
 from workhold.model.query import Query, asked_ranking
-from workhold.model.real import counting_number
 from workhold.model.restrictions import Restrictions
 from workhold.model.result import Result
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.real import counting_number
 from workhold.search.cells import Block, run_blocks
 from workhold.search.contacts import contacts_of
 from workhold.search.lattice_shares import LatticeShares

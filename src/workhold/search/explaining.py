@@ -13,16 +13,16 @@ from attrs import evolve
 
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Change, Toolkit
 from workhold.model.explanation import Explanation, Help
 from workhold.model.quality import WARNINGS
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.toolkit import Change, Toolkit
-from workhold.model.units import MILLIMETRE, Unit
 from workhold.search.broken_rules import removals_of
 from workhold.search.design import answer
 from workhold.search.removals import Removals
 from workhold.search.wall_rules import removals_beside_wall
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["explain"]
 

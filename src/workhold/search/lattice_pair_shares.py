@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import GAP_SLACK, LEAST_SPAN, SAME_PLACE
+from workhold.fixels.toolkit import Carrier
 from workhold.listing.clamp_placement import last_holes
 from workhold.listing.listed import Work
 from workhold.listing.ranked_table import RankedTable
@@ -20,7 +21,6 @@ from workhold.model.notes import no_fixture_notes, no_place_note
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, unknown_quality
-from workhold.model.toolkit import Carrier
 from workhold.proof.deciding import Account
 from workhold.search.lattice_pairs import LatticePairs, are_pressed, closure_of, pairs_on
 from workhold.search.wall_search import allowed_edges, faces_are_square, lying_on

@@ -15,10 +15,10 @@ from typing import Any, Protocol
 from attrs import evolve
 
 from workhold.contact.problem import Progress
+from workhold.fixels.toolkit import Toolkit
 from workhold.listing.listed import Work, stage
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.toolkit import Toolkit
 from workhold.proof.deciding import Account
 from workhold.search.preview import Preview
 

@@ -2,7 +2,7 @@
 
 Two pegs of one carrier are a lattice step apart; two carriers share the direction of rows and differ by the
 travel of the one that moves, along x in the frame of the search. What is particular to a toolkit is data
-(``model.toolkit``); which kernels seek an arrangement of pegs is said in ``KERNELS``.
+(``fixels.toolkit``); which kernels seek an arrangement of pegs is said in ``KERNELS``.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, joine
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK
+from workhold.fixels.toolkit import Arrangement, Carrier
 from workhold.kernels.base.feature import SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Limits
 from workhold.kernels.crossing.sliding_pairs import sliding_three_and_one, sliding_two_and_two
@@ -34,7 +35,6 @@ from workhold.kernels.crossing.two_and_two import (
     two_and_two_cells,
 )
 from workhold.kernels.curves.columns import FROM, ORIENTATION, TO
-from workhold.model.toolkit import Arrangement, Carrier
 from workhold.search.cells import FIRST_ORIENTATION, Block, cell_edges, member_counts, members_of_cell
 
 __all__ = ["LEAST_BLOCKS", "ToolkitSearch", "lattice_steps"]

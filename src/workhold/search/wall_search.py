@@ -27,6 +27,7 @@ from workhold.conventions import (
     PARALLEL,
     SAME_PLACE,
 )
+from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.rotation import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
@@ -35,7 +36,6 @@ from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_ta
 from workhold.model.fixture import Pose
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable
-from workhold.model.toolkit import Carrier, Toolkit
 from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
 from workhold.search.pin_contacts import PartOnWall, PinContacts, part_on_wall, pin_contacts_on
 from workhold.search.wall_closure import ContactPairs, closure, may_oppose, reaction_doubts, seating

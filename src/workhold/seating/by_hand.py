@@ -15,14 +15,14 @@ from typing import Any
 from attrs import frozen
 
 from workhold.conventions import NO_REACTION
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.seating import DRY_STEEL, length
 from workhold.model.setting import settings_of
 from workhold.model.tightening import clamp_names, first_clamps, order_words
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import MILLIMETRE
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
+from workhold.units import MILLIMETRE
 
 __all__ = ["WHY", "ByHand", "by_hand"]
 

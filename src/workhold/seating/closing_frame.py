@@ -16,7 +16,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.model.toolkit import Carrier, Toolkit
+from workhold.fixels.toolkit import Carrier, Toolkit
 
 __all__ = ["ClosingFrame"]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from attrs import evolve, frozen
 
+from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.setting import Setting, settings_of
-from workhold.model.toolkit import Carrier, Toolkit
 
 __all__ = ["Gauge", "OpeningWords"]
 

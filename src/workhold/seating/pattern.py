@@ -16,8 +16,8 @@ from attrs import define, evolve
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.toolkit import Toolkit
 from workhold.seating.closing_frame import ClosingFrame
 
 __all__ = ["Pattern", "refuse_unseated"]

@@ -14,12 +14,12 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, FORCE, PEG, PIECE, SEPARATION
 from workhold.limits import thread_count
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.result import Result
 from workhold.model.seating import Cage, Pass, Seat, SeatContact, Seating
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.seating.by_hand import by_hand
 from workhold.seating.caging_set import CagingSet

@@ -22,10 +22,10 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.seating.sticking import least_friction
 from workhold.limits import MOST_FRICTION
 from workhold.model.fixture import Fixture
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import LOCATORS, Touched
 from workhold.statics.friction import cone_edges, contacts_on_part

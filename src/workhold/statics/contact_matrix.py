@@ -16,6 +16,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.contact.features import ContactFeature, contact_features, end_slacks, feature_rows
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH, X, Y
@@ -23,7 +24,6 @@ from workhold.kernels.statics.contact_matrix import contact_matrices_of
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.force_ratio import working_forces
-from workhold.model.toolkit import Toolkit
 from workhold.model.wall import Flush
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import largest

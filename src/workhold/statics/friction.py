@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.conventions import FLAT, OUTSIDE
+from workhold.fixels.flat import standoff
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.flat import standoff
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, Touched
 

@@ -25,9 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.statics.reactions import HALF, HIGH_X, HIGH_Y, LOW_X, LOW_Y, MIDDLE_X, MIDDLE_Y
-from workhold.model.real import real
-from workhold.model.toolkit import Toolkit
+from workhold.real import real
 
 __all__ = ["jaw_forces_needed", "jaw_stiffness", "jaw_words", "shared_forces"]
 

@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 from workhold.conventions import NO_FORCE
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.limits import MOST_FRICTION, refuse_strong
 from workhold.model.fixture import Fixture
 from workhold.model.load import Load
-from workhold.model.real import real
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
+from workhold.real import real
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.friction import contacts_on_part, possible_motions
 from workhold.statics.jaw import jaw_stiffness, shared_forces

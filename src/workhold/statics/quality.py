@@ -10,6 +10,7 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import convex_hull
 from workhold.geometry.segment import Arc
 from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
@@ -29,7 +30,6 @@ from workhold.model.quality import (
 )
 from workhold.model.result import FixtureTable, Result, fixture_at, peg_places
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import smallest
 from workhold.statics.contact_matrix import Touched

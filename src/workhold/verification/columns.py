@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from workhold.archive import mapped_archive
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.columns import HEAD, columns_said
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
 from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES
-from workhold.model.toolkit import Toolkit
 from workhold.verification.claims import Claim
 from workhold.verification.reading import with_working_forces
 

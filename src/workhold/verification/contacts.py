@@ -16,8 +16,8 @@ from typing import ClassVar
 from attrs import field, frozen
 from flint import arb, arb_mat
 
+from workhold.fixels.flat import Flat
 from workhold.model import fixture as model
-from workhold.model.flat import Flat
 from workhold.verification.balls import Point, cross, dot, turned
 from workhold.verification.sides import LineSide, Side
 

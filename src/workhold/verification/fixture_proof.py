@@ -9,10 +9,10 @@ from typing import Literal
 from attrs import field, frozen
 from flint import arb, ctx
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.verification.balls import PRECISIONS, norm
 from workhold.verification.closure import Balance, closure_findings

@@ -7,9 +7,9 @@ from typing import Any
 
 from attrs import frozen
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["pattern_faults", "stance"]
 

@@ -18,7 +18,8 @@ from typing import Any
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.model.fixture import WALL, Fixture, Pair, Peg, Pose
+from workhold.fixels.carrier import WALL
+from workhold.model.fixture import Fixture, Pair, Peg, Pose
 from workhold.model.quality import FIGURES
 from workhold.verification.rules.stroke import WAYS, clamp_place
 

@@ -14,9 +14,9 @@ from math import ceil, floor
 from attrs import evolve, frozen
 from flint import arb
 
+from workhold.fixels.toolkit import Carrier
 from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.query import Query
-from workhold.model.toolkit import Carrier
 from workhold.verification.balls import Point, dot, exact_point, largest, turned
 from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.ends import on_line

@@ -8,8 +8,8 @@ from math import inf, sqrt
 from attrs import frozen
 from flint import arb
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Peg
-from workhold.model.toolkit import Toolkit
 from workhold.verification.balls import Point, exact_point, turned
 from workhold.verification.outline import BallOutline
 from workhold.verification.sides import ArcSide

@@ -18,9 +18,9 @@ from math import hypot, radians
 from attrs import evolve, frozen
 from flint import arb, ctx
 
+from workhold.fixels.toolkit import Arrangement, Carrier
 from workhold.model.proof import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
 from workhold.model.query import Query
-from workhold.model.toolkit import Arrangement, Carrier
 from workhold.verification.balls import PRECISIONS, Point, cross, dot, norm, turned
 from workhold.verification.contacts import standoff
 from workhold.verification.ends import on_circle, on_line

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from attrs import frozen
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.result import Result
-from workhold.model.toolkit import Toolkit
 from workhold.verification.account import account_faults, seat_faults
 from workhold.verification.balls import PRECISIONS
 from workhold.verification.figures import figure_missing

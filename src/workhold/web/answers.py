@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields, written
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.contact_kind import WALL_END
+from workhold.fixels.flat import standoff
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
-from workhold.model.carrier import Carrier
 from workhold.model.clamp import ShownClamp
-from workhold.model.contact_kind import WALL_END
 from workhold.model.explanation import Explanation
 from workhold.model.fixture import Fixture
-from workhold.model.flat import standoff
 from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
 from workhold.model.result import FixtureTable, fixture_at
 from workhold.model.setting import settings_of
 from workhold.model.shown import Shown, shown
 from workhold.model.tightening import order_words
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite
 

@@ -182,7 +182,7 @@ def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
     from workhold.drawing.scene import stacked
     from workhold.family.curve_picture import draw_curve
     from workhold.family.setup_pages import draw_setups
-    from workhold.model.units import unit_named
+    from workhold.units import unit_named
 
     found = payload.found
     if payload.kind == "plans.json":

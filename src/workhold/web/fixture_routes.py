@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from workhold.model.result import Result
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 from workhold.web.answers import contact_answer, rows_answer
 from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job

@@ -13,11 +13,11 @@ from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePar
 from workhold.files.toolkit.shapes import TAGS, forms_by_noun, one_of, optional
 from workhold.fixels.directions import DIRECTIONS
 from workhold.fixels.fields import USUAL, ToolkitField
-from workhold.model.kinds import toolkit_of
+from workhold.fixels.kinds import toolkit_of
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.load import Load
 from workhold.model.query import Query, asked_ranking
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["ExploreForm", "JobForm", "LoadsForm", "WorkpieceForm", "asked_loads", "sentence_of"]

@@ -83,7 +83,7 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
     """The setup sheet."""
     from workhold.drawing.result_sheet import result_sheet
     from workhold.drawing.scene import stacked
-    from workhold.model.units import unit_named
+    from workhold.units import unit_named
 
     digest = order.result_hash or hash_of(order.result)
     pages = result_sheet(
@@ -116,7 +116,7 @@ def setup_drawing(order: PaperOrder) -> tuple[bytes, str | None]:
     """The set-up as DXF."""
     from workhold.files.dxf.setup import CLEARANCE, setup_dxf
     from workhold.model.part_zero import part_zero
-    from workhold.model.units import unit_named
+    from workhold.units import unit_named
 
     result = order.result
     zero = part_zero(result.workpiece, order.wishes["zero"], unit_named(order.unit))
@@ -133,7 +133,7 @@ def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
         raise InputError(f"this server writes no STEP files: take the DXF, or install {REQUIREMENT} beside it.")
     from workhold.files.step.setup import setup_step
     from workhold.model.part_zero import part_zero
-    from workhold.model.units import unit_named
+    from workhold.units import unit_named
 
     result = order.result
     zero = part_zero(result.workpiece, order.wishes["zero"], unit_named(order.unit))
@@ -154,7 +154,7 @@ def pins(order: PaperOrder) -> tuple[bytes, str | None]:
     """The list of pins."""
     from workhold.files.pin_list import pin_list
     from workhold.model.dowel import fit_words
-    from workhold.model.units import unit_named
+    from workhold.units import unit_named
 
     toolkit, fit = order.result.toolkit, order.result.query.tolerance.fit
     known = None if fit is None else fit_words(fit, 2 * toolkit.plates[0].peg_radius)

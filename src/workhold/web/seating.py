@@ -11,14 +11,14 @@ from pydantic import Field
 from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet_seating import caption
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.seating import Seating
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite
 from workhold.seating.by_hand import ByHand, by_hand
 from workhold.seating.pattern import Pattern
+from workhold.units import unit_named
 from workhold.web.forms import LARGEST, Form, Number
 from workhold.web.worker import Order
 

@@ -7,10 +7,10 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.listing.near_duplicates import Entries, first_of_each, near_duplicates
 from workhold.model.quality import FIGURES, figure_number
 from workhold.model.result import FixtureTable, Result
-from workhold.model.toolkit import Toolkit
 from workhold.statics.judging import unfit
 
 __all__ = ["Selection", "angle_range"]

@@ -29,8 +29,8 @@ from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
     from workhold.files.part.load import Loaded
+    from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
-    from workhold.model.toolkit import Toolkit
     from workhold.web.families import FamilyForm
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
 
@@ -88,7 +88,7 @@ def warm_up(kind: str) -> None:
     from workhold.search.design import design
 
     if kind == "search":
-        from workhold.model.vise import Vise
+        from workhold.fixels.vise import Vise
 
         corners = [[0.0, 0.0, 0.0], [30.0, 0.0, 0.2], [34.0, 25.0, 0.0], [0.0, 20.0, 0.0]]
         design(Workpiece.from_loops("warm", [corners]), Vise(pitch=8, columns=2, peg_radius=2))

@@ -18,7 +18,7 @@ from attrs import asdict, frozen
 from workhold.drawing.panel import arrangement_words
 from workhold.files.toolkit.reader import LoadedToolkit
 from workhold.fixels.fields import Choice, ToolkitField, table_of
-from workhold.model.kinds import kind_of, toolkit_of
+from workhold.fixels.kinds import kind_of, toolkit_of
 
 __all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind"]
 
@@ -55,7 +55,7 @@ class Described:
 
     Parameters
     ----------
-    name : of the kind, or an alias of ``model.kinds``.
+    name : of the kind, or an alias of ``fixels.kinds``.
     title : in a few words, to choose it by.
     closes : what the button says that shows how it closes.
     start : see the glossary.

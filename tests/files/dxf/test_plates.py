@@ -9,8 +9,8 @@ import ezdxf
 import pytest
 
 from workhold.files.dxf.plates import beside, plates_dxf, write_plates_dxf
+from workhold.fixels.vise import Vise
 from workhold.model.jaw_plate import Bolts, jaw_plates
-from workhold.model.vise import Vise
 
 PLATES = jaw_plates(
     Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4),

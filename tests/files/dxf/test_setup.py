@@ -19,8 +19,8 @@ from ezdxf.document import Drawing
 from plate_examples import WAYS, on_plate
 
 from workhold.files.dxf.setup import layers_of, setup_dxf, write_setup_dxf
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 Held = tuple[Fixture, Workpiece, Vise]

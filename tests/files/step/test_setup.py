@@ -28,9 +28,9 @@ from workhold import design
 from workhold.errors import InputError
 from workhold.files.step.setup import setup_step, write_setup_step
 from workhold.files.step.solids import Solid, read_solids
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.part_zero import part_zero
-from workhold.model.vise import Vise
 from workhold.model.workpiece import Workpiece
 
 VISE = Vise(pitch=(10, 12), columns=2, peg_radius=3, row_offset=2.5)

@@ -14,9 +14,9 @@ from workhold.errors import InputError
 from workhold.files.toolkit.dowels import dowel_series, dowel_size
 from workhold.files.toolkit.form import checked
 from workhold.files.toolkit.presets import load_toolkit, preset_names
-from workhold.model.plate import Plate
+from workhold.fixels.plate import Plate
+from workhold.fixels.vise import Vise
 from workhold.model.tolerance import Tolerance
-from workhold.model.vise import Vise
 
 OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
 

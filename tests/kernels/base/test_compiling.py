@@ -38,7 +38,6 @@ def copy(tmp_path: Path) -> Path:
     package = tmp_path / "source" / "workhold"
     room = package / "kernels" / "base"
     room.mkdir(parents=True)
-    (package / "model").mkdir()
     for name in (
         "__init__.py",
         "version.py",
@@ -46,8 +45,7 @@ def copy(tmp_path: Path) -> Path:
         "errors.py",
         "limits.py",
         "plain.py",
-        "model/__init__.py",
-        "model/delegates.py",
+        "delegates.py",
         *(f"kernels/{name}.py" for name in ("__init__", *(f"base/{base}" for base in BASE))),
     ):
         shutil.copy(source / name, package / name)

@@ -20,7 +20,7 @@ from workhold.files.outline.chain import Drawing
 from workhold.files.outline.extent import unit_asked
 from workhold.files.outline.placement import Placement
 from workhold.files.questions import DRAWING_UNIT
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 
 __all__ = ["read_document", "read_dxf"]
 

@@ -18,14 +18,14 @@ from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 
 from workhold.files.atomic import write_bytes
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.flat import peg_outline
+from workhold.fixels.holes import column_letters
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
-from workhold.model.carrier import Carrier
 from workhold.model.fixture import Fixture, Pose
-from workhold.model.flat import peg_outline
-from workhold.model.holes import column_letters
 from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, Shown, shown
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:

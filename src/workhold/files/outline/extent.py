@@ -10,7 +10,7 @@ from workhold.files.outline.chain import Chain
 from workhold.files.questions import UNIT, UnitAskedError
 from workhold.geometry.intersect import bounding_box
 from workhold.geometry.segment import segment_from_bulge
-from workhold.model.units import INCH
+from workhold.units import INCH
 
 __all__ = ["size_of", "unit_asked"]
 

@@ -9,7 +9,7 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.text import json_value
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 
 __all__ = ["JsonWorkpiece", "read_json"]
 

@@ -37,8 +37,8 @@ from workhold.files.questions import (
     refuse_layers,
     worded,
 )
-from workhold.model.units import unit_named
 from workhold.model.workpiece import Workpiece
+from workhold.units import unit_named
 
 __all__ = ["Loaded", "builtin_parts", "load", "read_workpiece"]
 

@@ -16,7 +16,7 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, Drawing
 from workhold.files.questions import DRAWING_UNIT, refuse_axis, refuse_layers
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 
 __all__ = ["ObjectPart", "drawing_of_object"]
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["LARGEST_LENGTH", "LARGEST_NUMBER", "refuse_faulty", "refuse_unknown_types"]
 

@@ -10,7 +10,7 @@ from typing import IO
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_lines import fixture_rows
 from workhold.files.result.rounding import known_figures
-from workhold.model.contact_kind import FLAT_PIN
+from workhold.fixels.contact_kind import FLAT_PIN
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.result import Result
 from workhold.model.seating import DECIMALS

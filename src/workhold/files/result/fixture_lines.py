@@ -21,13 +21,13 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.files.result.rounding import LENGTH_STEPS, as_told, known_figures, rounded, significant
-from workhold.model.arrangement import Arrangement
-from workhold.model.carrier import Carrier
-from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN
+from workhold.fixels.arrangement import Arrangement
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.force_ratio import ratios
 from workhold.model.quality import FIGURES, Figure
 from workhold.model.result import FixtureTable, flat_angles, peg_places
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["fixture_lines", "fixture_rows"]

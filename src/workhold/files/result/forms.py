@@ -10,14 +10,14 @@ from pydantic import BaseModel, ConfigDict, Field
 from workhold.errors import InputError
 from workhold.files.toolkit.shapes import forms_by_noun, one_of, optional
 from workhold.fixels.fields import USUAL, Form, ToolkitField, table_of
+from workhold.fixels.kinds import toolkit_of
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowel import Fit
-from workhold.model.kinds import toolkit_of
 from workhold.model.load import ANY_DIRECTION, Load
 from workhold.model.proof import Proof, Undecided
 from workhold.model.query import Query
 from workhold.model.restrictions import Restrictions, zone_of
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart"]

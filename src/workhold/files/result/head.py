@@ -12,11 +12,11 @@ from pydantic import ValidationError
 from workhold.errors import InputError
 from workhold.files.result.forms import Head, ProofPart
 from workhold.files.toolkit.shapes import TAGS
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.seating import Seating
-from workhold.model.toolkit import Toolkit
 
 __all__ = ["checked_head", "checked_query", "result_with", "with_seating"]
 

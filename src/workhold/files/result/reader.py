@@ -24,12 +24,13 @@ from workhold.files.result.columns import read_columns
 from workhold.files.result.head import checked_query, result_with, with_seating
 from workhold.files.result.parts import read_parts
 from workhold.files.result.seating_forms import checked_seating
-from workhold.model.fixture import WALL, Pose
+from workhold.fixels.carrier import WALL
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.fixture import Pose
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, peg_places
 from workhold.model.seating import Seating
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["read_result"]

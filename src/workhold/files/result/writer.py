@@ -21,15 +21,15 @@ from workhold.files.atomic import text_file
 from workhold.files.result.fixture_lines import fixture_lines
 from workhold.files.result.rounding import rounded_degrees
 from workhold.fixels.fields import USUAL
-from workhold.model.flat import Flat
-from workhold.model.holes import Holes
+from workhold.fixels.flat import Flat
+from workhold.fixels.holes import Holes
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.load import Load
 from workhold.model.proof import Proof
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 
 __all__ = [

@@ -16,14 +16,14 @@ from typing import Any
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.step.library import load_step_library
+from workhold.fixels.flat import peg_outline
+from workhold.fixels.holes import hole_name
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.box import Box
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.fixture import Fixture, Pose
-from workhold.model.flat import peg_outline
-from workhold.model.holes import hole_name
 from workhold.model.part_zero import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
-from workhold.model.toolkit import Toolkit
 from workhold.model.workpiece import Workpiece
 from workhold.plain import plain, shortened
 

@@ -21,7 +21,7 @@ from workhold.files.svg.document import read_document
 from workhold.files.svg.lengths import ShapeElement, absolute, millimetres, physical
 from workhold.files.svg.view import ViewBox, viewbox_of
 from workhold.files.svg.walk import ElementNesting, SvgWalk
-from workhold.model.units import unit_named
+from workhold.units import unit_named
 
 __all__ = ["read_svg"]
 

@@ -11,7 +11,7 @@ from attrs import frozen
 from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
 from workhold.model.dowel import DowelSize
-from workhold.model.units import Unit, unit_named
+from workhold.units import Unit, unit_named
 
 __all__ = ["DowelSeries", "dowel_series", "dowel_size"]
 

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 from workhold.errors import InputError
 from workhold.files.toolkit.shapes import forms_by_noun
 from workhold.fixels.fields import OPTIONS, USUAL, Form, ToolkitField, table_of
-from workhold.model.kinds import kind_of
+from workhold.fixels.kinds import kind_of
 
 __all__ = ["checked"]
 

@@ -19,11 +19,11 @@ from workhold.errors import InputError
 from workhold.files.text import read_text, toml_table
 from workhold.files.toolkit.dowels import dowel_size
 from workhold.fixels.fields import OPTIONS, USUAL, Form
+from workhold.fixels.kinds import kind_of, toolkit_of
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowel import Fit, Limits, peg_error, refuse_limits
-from workhold.model.kinds import kind_of, toolkit_of
 from workhold.model.tolerance import Tolerance
-from workhold.model.toolkit import Toolkit
-from workhold.model.units import Unit, unit_named
+from workhold.units import Unit, unit_named
 
 __all__ = ["LoadedToolkit", "described_toolkit", "read_toolkit_file"]
 
@@ -43,7 +43,7 @@ class LoadedToolkit:
     title : what it is, in a line; empty where the file gives none.
     source : where the figures are from; empty where the file does not say.
     unit : in which the file gives its lengths.
-    kind : of toolkit, see ``model.kinds``.
+    kind : of toolkit, see ``fixels.kinds``.
     fields : keyword arguments of its class, in mm; those not in the file are left out.
     tolerance : of its pegs and of the faces they touch.
     fit : what the tolerance of the pegs follows from; None where the file gives no pin or hole.

@@ -17,9 +17,9 @@ from attrs import evolve, field, frozen
 from flint import arb
 
 from workhold.errors import InputError
+from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
-from workhold.model.toolkit import Carrier, Toolkit
 from workhold.verification.balls import Point, exact_point
 from workhold.verification.contacts import BallContact, BallPose, standoff
 from workhold.verification.findings import Finding, number, rule

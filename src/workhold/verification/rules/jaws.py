@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from flint import arb
 
-from workhold.model.toolkit import Carrier
+from workhold.fixels.toolkit import Carrier
 from workhold.verification.findings import Finding, number, rule
 from workhold.verification.tolerances import HAIR
 

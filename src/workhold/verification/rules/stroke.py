@@ -17,9 +17,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from attrs import evolve, frozen
 from flint import arb
 
+from workhold.fixels.holes import column_letters, hole_name
+from workhold.fixels.toolkit import Carrier
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.holes import column_letters, hole_name
-from workhold.model.toolkit import Carrier
 from workhold.verification.balls import Point, cross, dot, exact_point, norm, root
 from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.findings import Finding, number, rule

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from workhold import Fence, OpeningVise, Plate, Vise
-from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
+from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
 from workhold.model.setting import contact_names, settings_of
-from workhold.model.toolkit import Toolkit
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PLATE = Plate(pitch=20, peg_radius=3, directions=("-x", "-y"))

@@ -8,7 +8,7 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.limits import MOST_HOLES
-from workhold.model.real import real
+from workhold.real import real
 
 __all__ = ["optional_length", "pair", "refuse_lattice", "refuse_many_holes", "whole"]
 

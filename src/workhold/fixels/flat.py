@@ -14,7 +14,7 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.model.real import real
+from workhold.real import real
 
 __all__ = ["Flat", "flat_of", "peg_outline", "resolved_flat", "standoff"]
 

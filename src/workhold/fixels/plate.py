@@ -17,11 +17,11 @@ from attrs import evolve
 from workhold.errors import InputError
 from workhold.fixels.directions import DIRECTIONS
 from workhold.fixels.fields import TABLES, Table
-from workhold.model.flat import Flat
-from workhold.model.making import made_from_table, settle
-from workhold.model.setup_words import SetupWords
-from workhold.model.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
-from workhold.model.units import Unit
+from workhold.fixels.flat import Flat
+from workhold.fixels.making import made_from_table, settle
+from workhold.fixels.setup_words import SetupWords
+from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
+from workhold.units import Unit
 
 __all__ = ["Plate"]
 

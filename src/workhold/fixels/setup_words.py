@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from attrs import frozen
 
-from workhold.model.carrier import Carrier
-from workhold.model.holes import column_letters, hole_name
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.holes import column_letters, hole_name
 
 __all__ = ["Datum", "SetupWords"]
 

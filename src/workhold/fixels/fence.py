@@ -10,14 +10,14 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import ClassVar
 
+from workhold.fixels.carrier import WALL
 from workhold.fixels.directions import DIRECTIONS
 from workhold.fixels.fields import TABLES, Table
-from workhold.model.fixture import WALL
-from workhold.model.making import made_from_table
-from workhold.model.plate import Plate
-from workhold.model.setup_words import Datum, SetupWords
-from workhold.model.toolkit import Arrangement, Carrier, Change, Wording
-from workhold.model.units import Unit
+from workhold.fixels.making import made_from_table
+from workhold.fixels.plate import Plate
+from workhold.fixels.setup_words import Datum, SetupWords
+from workhold.fixels.toolkit import Arrangement, Carrier, Change, Wording
+from workhold.units import Unit
 
 __all__ = ["Fence"]
 

@@ -8,11 +8,11 @@ from typing import Any
 from attrs import NOTHING, fields_dict
 
 from workhold.errors import InputError
-from workhold.model.fence import Fence
-from workhold.model.flat_jaw import FlatJaw
-from workhold.model.plate import Plate
-from workhold.model.toolkit import Toolkit
-from workhold.model.vise import OpeningVise, Vise
+from workhold.fixels.fence import Fence
+from workhold.fixels.flat_jaw import FlatJaw
+from workhold.fixels.plate import Plate
+from workhold.fixels.toolkit import Toolkit
+from workhold.fixels.vise import OpeningVise, Vise
 
 __all__ = ["ALIASES", "KINDS", "kind_of", "toolkit_of"]
 

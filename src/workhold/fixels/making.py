@@ -18,12 +18,12 @@ from attrs.converters import optional
 from workhold.errors import InputError
 from workhold.fixels.directions import DIRECTIONS
 from workhold.fixels.fields import ToolkitField
+from workhold.fixels.flat import flat_of, resolved_flat
+from workhold.fixels.holes import Holes, holes_named
+from workhold.fixels.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
+from workhold.fixels.toolkit import Toolkit
 from workhold.limits import MOST_BLOCKED, refuse_long
-from workhold.model.flat import flat_of, resolved_flat
-from workhold.model.holes import Holes, holes_named
-from workhold.model.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
-from workhold.model.real import real
-from workhold.model.toolkit import Toolkit
+from workhold.real import real
 
 __all__ = ["made_from_table", "settle"]
 

@@ -10,12 +10,15 @@ from typing import Any, Literal
 
 from attrs import frozen
 
+from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
 from workhold.fixels.directions import TOWARDS
-from workhold.model.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
-from workhold.model.flat import Flat
-from workhold.model.holes import Holes, column_letters, hole_name, letter_of
+from workhold.fixels.flat import Flat
+from workhold.fixels.holes import Holes, column_letters, hole_name, letter_of
 
-__all__ = ["Carrier", "Measure", "Travel"]
+__all__ = ["WALL", "Carrier", "Measure", "Travel"]
+
+# The name of the carrier that is a wall.
+WALL = "wall"
 
 # What is set on a carrier that moves: the opening of jaws, a clamp's stroke from its hole, or the place of its tip.
 Measure = Literal["opening", "stroke", "tip"]

@@ -7,13 +7,13 @@ from functools import cached_property
 from math import pi
 from typing import ClassVar
 
+from workhold.fixels.carrier import WALL
 from workhold.fixels.fields import TABLES, Table
-from workhold.model.fixture import WALL
-from workhold.model.flat import Flat
-from workhold.model.making import made_from_table, settle
-from workhold.model.setup_words import Datum, SetupWords
-from workhold.model.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
-from workhold.model.units import Unit
+from workhold.fixels.flat import Flat
+from workhold.fixels.making import made_from_table, settle
+from workhold.fixels.setup_words import Datum, SetupWords
+from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
+from workhold.units import Unit
 
 __all__ = ["FlatJaw"]
 

@@ -1,7 +1,7 @@
 """Toolkits: what holds the pegs, where they may stand, what moves, and when that clamps.
 
 A toolkit is data plus the freedom it has. Everything that seeks, proves, lists, draws and writes fixtures asks a toolkit
-for the data below and knows no vise; a further toolkit is a small module that fills them in, such as ``model.vise``.
+for the data below and knows no vise; a further toolkit is a small module that fills them in, such as ``fixels.vise``.
 
 Glossary
 --------
@@ -21,14 +21,14 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
+from workhold.delegates import delegate
 from workhold.errors import InputError
+from workhold.fixels.arrangement import Arrangement, Symmetry
+from workhold.fixels.carrier import Carrier, Travel
+from workhold.fixels.contact_kind import CLAMP_TIP, ContactKind
 from workhold.fixels.fields import Table, ToolkitField
-from workhold.model.arrangement import Arrangement, Symmetry
-from workhold.model.carrier import Carrier, Travel
-from workhold.model.contact_kind import CLAMP_TIP, ContactKind
-from workhold.model.delegates import delegate
-from workhold.model.setup_words import Datum, SetupWords
-from workhold.model.units import Unit
+from workhold.fixels.setup_words import Datum, SetupWords
+from workhold.units import Unit
 
 __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
@@ -93,7 +93,7 @@ class Limit:
 
 
 class Toolkit:
-    """What every toolkit tells, a frozen attrs class; ``model.vise.Vise`` is one.
+    """What every toolkit tells, a frozen attrs class; ``fixels.vise.Vise`` is one.
 
     Attributes
     ----------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from workhold import InputError, Plate, Vise
-from workhold.model.kinds import toolkit_of
+from workhold.fixels.kinds import toolkit_of
 
 
 def test_aliases_are_kinds_with_fields_of_their_own() -> None:

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from strategies import vises
 from workhold.errors import InputError
+from workhold.fixels.holes import Holes, column_letters, holes_named
+from workhold.fixels.vise import Vise
 from workhold.model.fixture import Peg
-from workhold.model.holes import Holes, column_letters, holes_named
-from workhold.model.units import MILLIMETRE
-from workhold.model.vise import Vise
+from workhold.units import MILLIMETRE
 
 VALID = {"pitch": 10, "columns": 2, "peg_radius": 3}
 
