@@ -176,7 +176,7 @@ def modules_named_after_kind(sources: Sequence[Source]) -> Iterator[Finding]:
 
 def field_names() -> tuple[str, ...]:
     """The names of the fields of toolkits that are words of nothing else."""
-    from workhold.fixels.fields import TABLES
+    from workhold.fixels.kinds import TABLES
 
     return tuple(sorted({row.name for table in TABLES.values() for row in table.fields} - COMMON_WORDS))
 

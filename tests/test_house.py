@@ -12,7 +12,7 @@ import pytest
 import house
 import house_rules as rules
 from house_rules import Source
-from workhold.fixels.fields import TABLES
+from workhold.fixels.kinds import TABLES
 
 ROOT = Path(__file__).parent.parent
 

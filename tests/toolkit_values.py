@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from workhold.fixels.fields import table_of
+from workhold.fixels.kinds import table_of
 
 # A value of each field, as the constructor takes it, with the words of its option; no two fields have the same.
 VALUES: dict[str, tuple[Any, Any]] = {

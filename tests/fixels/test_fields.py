@@ -16,8 +16,8 @@ from workhold.errors import InputError
 from workhold.files.toolkit.form import checked
 from workhold.files.toolkit.presets import load_toolkit, preset_names
 from workhold.files.toolkit.reader import described_toolkit
-from workhold.fixels.fields import OPTIONS, TABLES, USUAL, owner_of, table_of
-from workhold.fixels.kinds import KINDS, toolkit_of
+from workhold.fixels.fields import OPTIONS
+from workhold.fixels.kinds import KINDS, TABLES, USUAL, owner_of, table_of, toolkit_of
 from workhold.units import MILLIMETRE, unit_named
 from workhold.web.forms import FORMS
 from workhold.web.toolkits import page_fields

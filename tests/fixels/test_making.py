@@ -10,8 +10,8 @@ import pytest
 
 from toolkit_values import given
 from workhold.errors import InputError
-from workhold.fixels.fields import TABLES, ToolkitField
-from workhold.fixels.kinds import KINDS, toolkit_of
+from workhold.fixels.kinds import KINDS, TABLES, toolkit_of
+from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import MOST_LENGTH
 

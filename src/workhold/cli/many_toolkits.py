@@ -70,8 +70,7 @@ def toolkits_to_try(
         For words that mean nothing, lists that do not make a toolkit, and more than a thousand toolkits.
     """
     from workhold.files.toolkit.presets import load_toolkit, preset_names
-    from workhold.fixels.fields import USUAL, table_of
-    from workhold.fixels.kinds import ALIASES, KINDS, kind_of
+    from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, table_of
 
     is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)
     kind, said = kind_of(toolkit.lower()) if toolkit is not None and is_kind else (None, {})

@@ -23,8 +23,7 @@ def toolkit_schema() -> dict[str, Any]:
 
     from workhold.files.toolkit.form import FORMS
     from workhold.files.toolkit.shapes import one_of
-    from workhold.fixels.fields import USUAL, table_of
-    from workhold.fixels.kinds import ALIASES, KINDS, kind_of
+    from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, table_of
 
     schema = TypeAdapter(one_of(FORMS)).json_schema()
     for noun, form in FORMS.items():

@@ -10,7 +10,8 @@ from attrs import evolve, field, frozen
 from workhold.cli.commands import option
 from workhold.cli.values import length, optional_length, pitches, whole_number
 from workhold.errors import InputError
-from workhold.fixels.fields import MIN_GAP, OPTIONS, TOOLKIT_SECTION, owner_of, table_of
+from workhold.fixels.fields import MIN_GAP, NAMES, OPTIONS
+from workhold.fixels.table import TOOLKIT_SECTION
 from workhold.units import Unit
 
 if TYPE_CHECKING:
@@ -22,9 +23,8 @@ __all__ = ["TOOLKIT", "ToolkitWords"]
 TOOLKIT = option(
     TOOLKIT_SECTION,
     "NAME|FILE",
-    "vise: closing clamps the part. opening-vise: opening does, from inside its holes or around a waist. gripper: a vise of "
-    "one column. plate: three locators on a plate of holes, and a clamp or two. fence: a straight wall that the part lies "
-    "flush against, one locator and a clamp. Or a name of workhold toolkits, or a TOML file. vise if not given.",
+    f"{' '.join(f'{name}: {words}.' for name, words in NAMES.items())} Or a name of workhold toolkits, or a TOML file. "
+    "vise if not given.",
     "--toolkit",
 )
 MIN_OPENING = option(
@@ -79,7 +79,9 @@ class ToolkitWords:
         InputError
             Naming the first of them.
         """
-        known = {row.name for row in table_of(kind.kind).fields}
+        from workhold.fixels.kinds import owner_of
+
+        known = {row.name for row in kind.table.fields}
         for row in OPTIONS:
             typed = [row.option] if getattr(self, row.name) else []
             if row is MIN_GAP and self.min_opening is not None:
@@ -100,8 +102,7 @@ class ToolkitWords:
         """
         fields, tolerance = self.fields(unit), None
         opening = optional_length("--min-opening", self.min_opening, unit)
-        from workhold.fixels.fields import USUAL
-        from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
+        from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, toolkit_of
 
         kind, said = kind_of(USUAL)
         named = [
@@ -122,7 +123,7 @@ class ToolkitWords:
                 said = {**said, **more}
         self.refuse_others(KINDS[kind])
         fields = {**said, **fields}
-        for row in table_of(kind).fields:
+        for row in KINDS[kind].table.fields:
             if row.is_required and row.name not in fields:
                 noun = KINDS[kind].noun
                 raise InputError(

@@ -14,7 +14,7 @@ from workhold.cli.values import length_unit
 if TYPE_CHECKING:
     from workhold.cli.tables import Table
     from workhold.files.toolkit.reader import LoadedToolkit
-    from workhold.fixels.fields import Form
+    from workhold.fixels.table import Form
     from workhold.model.dowel import Limits
     from workhold.units import Unit
 
@@ -106,7 +106,7 @@ def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
 
 def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
     """Yield what only a toolkit of its kind has, and its value in words."""
-    from workhold.fixels.fields import table_of
+    from workhold.fixels.kinds import table_of
 
     toolkit = loaded.toolkit
     for row in table_of(loaded.kind).fields:

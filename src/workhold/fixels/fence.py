@@ -12,14 +12,45 @@ from typing import ClassVar
 
 from workhold.fixels.carrier import WALL
 from workhold.fixels.directions import DIRECTIONS
-from workhold.fixels.fields import TABLES, Table
+from workhold.fixels.fields import (
+    ALL_PAIRS,
+    CLAMP_RADIUS,
+    CLAMPS,
+    DIRECTION,
+    FLAT,
+    ON_A_PLATE,
+    ONE_CLAMP,
+    TRAVEL,
+    TWO_CLAMPS,
+    WALL_OFFSET,
+    WAYS,
+)
 from workhold.fixels.making import made_from_table
 from workhold.fixels.plate import Plate
-from workhold.fixels.setup_words import Datum, SetupWords
+from workhold.fixels.setup_words import Datum, PageWords, SetupWords
+from workhold.fixels.table import Label, Table
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Wording
 from workhold.units import Unit
 
 __all__ = ["Fence"]
+
+
+FIELDS = Table(
+    "fence",
+    "A fence with a locator and a clamp",
+    (
+        *ON_A_PLATE,
+        WALL_OFFSET,
+        CLAMP_RADIUS,
+        TRAVEL,
+        CLAMPS,
+        DIRECTION.shown(
+            Label("The clamp pushes", "any way", several=True, choices=WAYS, when=ONE_CLAMP),
+            Label("The clamps push", "down and aside", several=True, choices=ALL_PAIRS, when=TWO_CLAMPS),
+        ),
+        FLAT,
+    ),
+)
 
 
 @made_from_table
@@ -48,7 +79,7 @@ class Fence(Plate):
     """
 
     kind: ClassVar[str] = "edge"
-    table: ClassVar[Table] = TABLES["edge"]
+    table: ClassVar[Table] = FIELDS
     noun: ClassVar[str] = "fence"
     wording: ClassVar[Wording] = Wording(
         two="fence and locator",
@@ -79,6 +110,12 @@ class Fence(Plate):
         against="flush on the fence and against the {peg}",
         touching="flush",
         resting="flush on the fence",
+    )
+
+    page: ClassVar[PageWords] = PageWords(
+        "Fence with a stop, one clamp or two",
+        "Close clamp",
+        {"pitch": [20.0, 20.0], "peg_radius": 3.0, "wall_offset": 10.0, "clamps": 1},
     )
 
     wall_offset: float

@@ -1,179 +1,25 @@
 """The fields of every kind of toolkit, one row each, from which files, requests, options and the page are made.
 
 A field that is new, or means something else for a new kind, is a row here and an argument of the kind's constructor.
-
-Glossary
---------
-table : the rows of one kind of toolkit, in the order in which the page shows them.
-noun : of a table, what its files and requests call a toolkit; kinds that differ in no field share a table.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import combinations_with_replacement
-from typing import Any, Literal
-
-from attrs import evolve, field, frozen
 
 from workhold.fixels.directions import DIRECTIONS, TOWARDS
+from workhold.fixels.table import CLAMPS_SECTION, REQUIRED, Choice, Label, Lifted, ToolkitField
 
-__all__ = [
-    "OPTIONS",
-    "TABLES",
-    "TOOLKIT_SECTION",
-    "USUAL",
-    "Choice",
-    "Form",
-    "Label",
-    "Table",
-    "ToolkitField",
-    "owner_of",
-    "table_of",
-]
-
-# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's distance
-# with or without half its width; names of holes; directions or pairs of them.
-Form = Literal["count", "length", "pitch", "span", "flat", "holes", "directions"]
-# Sections of the command's help.
-TOOLKIT_SECTION, CLAMPS_SECTION = "The toolkit", "The clamps of a plate or fence"
-# The default of a field that must be given.
-REQUIRED = object()
-
-
-@frozen
-class Choice:
-    """One of several values of a field, and what the page calls it."""
-
-    value: Any
-    words: str
-
-
-@frozen
-class Label:
-    """What the page shows of a field.
-
-    Parameters
-    ----------
-    label : what the page calls it.
-    hint : what stands in it while it is empty, which it may be then; None where it must be filled in.
-    is_usual : whether it is seen without being asked for.
-    several : whether more than one of the choices may be taken.
-    choices : the values to choose among; none where a value is typed.
-    when : values of other fields with which the page shows it.
-    """
-
-    label: str
-    hint: str | None = None
-    is_usual: bool = False
-    several: bool = False
-    choices: tuple[Choice, ...] = ()
-    when: Mapping[str, Any] = {}
-
-
-@frozen
-class Lifted:
-    """How a limit that a field sets is lifted.
-
-    Parameters
-    ----------
-    rule : what it asks, in a few words, such as "rows of holes".
-    bounds : whether it is about the pegs' bodies, the travel, or the holes there are.
-    words : the toolkit without it, in words that follow its name.
-    """
-
-    rule: str
-    bounds: Literal["bodies", "travel", "holes"]
-    words: str
-
-
-@frozen
-class ToolkitField:
-    """A field of a toolkit.
-
-    Parameters
-    ----------
-    name : the key in files and requests, and the constructor's argument.
-    form : what its values look like; see ``Form``.
-    metavar, help : of the command line's option, for which "{option}" stands in the help.
-    labels : what the page shows of it, more than once where that depends on another field.
-    default : in requests and in result files; ``REQUIRED`` where it must be given.
-    entry : what to write in a toolkit's file; empty where the form says enough.
-    missing : what is not given where it must be, in a sentence.
-    belongs_to : the part of a toolkit that it describes, which toolkits without this field have not.
-    least : what a length must be: "above 0", "0" or "any".
-    most : the largest count that a server takes; None for no limit of its own.
-    figure : what it is called among the figures of a toolkit; empty where these tell it in another way.
-    unset : what stands there for a value of None; where it is empty, a default is no figure.
-    follows : the field whose value is the default of this one, with which it is no figure; of a pitch that in x.
-    is_always_shown : whether it is a figure also where it has the value that it follows.
-    at_least, below : the field whose value is the least of this one, and the sentence for what is below, with "{value}"
-        and "{least}".
-    allowed : the only counts that there are; empty where all are.
-    lifted : how the limit that it sets is lifted, for which its default stands; None where it sets none.
-    carriers, carrier_noun : of holes the names of the carriers that have them, and what one of these is called.
-    section : of the command's help.
-    word : its name as an option, where that is not the field's own.
-    """
-
-    name: str
-    form: Form
-    metavar: str
-    help: str
-    labels: tuple[Label, ...]
-    default: Any = field(default=None, kw_only=True)
-    entry: str = field(default="", kw_only=True)
-    missing: str = field(default="", kw_only=True)
-    belongs_to: str = field(default="", kw_only=True)
-    least: Literal["above 0", "0", "any"] = field(default="above 0", kw_only=True)
-    most: int | None = field(default=None, kw_only=True)
-    figure: str = field(default="", kw_only=True)
-    unset: str = field(default="", kw_only=True)
-    follows: str = field(default="", kw_only=True)
-    is_always_shown: bool = field(default=False, kw_only=True)
-    at_least: str = field(default="", kw_only=True)
-    below: str = field(default="", kw_only=True)
-    allowed: tuple[int, ...] = field(default=(), kw_only=True)
-    lifted: Lifted | None = field(default=None, kw_only=True)
-    carriers: tuple[str, ...] = field(default=(), kw_only=True)
-    carrier_noun: str = field(default="", kw_only=True)
-    section: str = field(default=TOOLKIT_SECTION, kw_only=True)
-    word: str = field(default="", kw_only=True)
-
-    @property
-    def option(self) -> str:
-        """The command line's option."""
-        return f"--{(self.word or self.name).replace('_', '-')}"
-
-    @property
-    def words(self) -> str:
-        """Its name in sentences."""
-        return self.name.replace("_", " ")
-
-    @property
-    def is_required(self) -> bool:
-        """Whether it must be given."""
-        return self.default is REQUIRED
-
-    def shown(self, *labels: Label, **changes: Any) -> ToolkitField:
-        """Return the field of another kind of toolkit, with other labels on the page and further changes."""
-        return evolve(self, labels=labels, **changes)
-
-
-@frozen
-class Table:
-    """The fields of toolkits that share them all.
-
-    Parameters
-    ----------
-    noun : see the glossary of the module.
-    summary : what the fields describe, for a schema.
-    fields : in the order of the page.
-    """
-
-    noun: str
-    summary: str
-    fields: tuple[ToolkitField, ...]
+# The names of kinds that people give, and what they are.
+NAMES: Mapping[str, str] = {
+    "vise": "closing clamps the part",
+    "opening-vise": "opening does, from inside its holes or around a waist",
+    "gripper": "a vise of one column",
+    "plate": "three locators on a plate of holes, and a clamp or two",
+    "fence": "a straight wall that the part lies flush against, one locator and a clamp",
+    "flat-jaw": "a vise with one flat jaw, and two pegs on the other",
+}
 
 
 def pair_words(one: str, other: str) -> str:
@@ -413,67 +259,3 @@ ON_A_PLATE = (
     ROWS.shown(Label("Rows", "as needed", is_usual=True)),
     PEG_RADIUS.shown(Label("Locator radius", is_usual=True)),
 )
-OF_A_VISE = Table(
-    "vise",
-    "A vise",
-    (PITCH, COLUMNS, PEG_RADIUS, ROWS, ROW_OFFSET, MIN_GAP, MAX_OPENING, BODY_RADIUS, BLOCKED, FLAT),
-)
-OF_A_PLATE = Table(
-    "plate",
-    "A plate with locators and a clamp",
-    (*ON_A_PLATE, CLAMP_RADIUS, TRAVEL, CLAMPS, DIRECTION, FLAT),
-)
-OF_A_FENCE = Table(
-    "fence",
-    "A fence with a locator and a clamp",
-    (
-        *ON_A_PLATE,
-        WALL_OFFSET,
-        CLAMP_RADIUS,
-        TRAVEL,
-        CLAMPS,
-        DIRECTION.shown(
-            Label("The clamp pushes", "any way", several=True, choices=WAYS, when=ONE_CLAMP),
-            Label("The clamps push", "down and aside", several=True, choices=ALL_PAIRS, when=TWO_CLAMPS),
-        ),
-        FLAT,
-    ),
-)
-OF_A_FLAT_JAW = Table(
-    "flat-jaw vise",
-    "A vise with one flat jaw, and pegs on the other",
-    (
-        *ON_A_PLATE[:3],
-        PEG_RADIUS,
-        MIN_GAP.shown(
-            Label("Smallest opening", "peg radius"),
-            follows="peg_radius",
-            figure="smallest opening",
-            at_least="peg_radius",
-            below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would stand in the "
-            "flat jaw; give the least distance from the flat jaw to that row, in mm.",
-        ),
-        MAX_OPENING,
-        FLAT,
-    ),
-)
-# By kind.
-TABLES: Mapping[str, Table] = {
-    "vise": OF_A_VISE,
-    "opening-vise": OF_A_VISE,
-    "translating-clamp": OF_A_PLATE,
-    "edge": OF_A_FENCE,
-    "flat-jaw": OF_A_FLAT_JAW,
-}
-# The kind that is meant where nobody says.
-USUAL = "vise"
-
-
-def table_of(kind: object) -> Table:
-    """The table of a kind; of what is none, or an alias that is not resolved, that of the usual kind."""
-    return TABLES.get(str(kind), TABLES[USUAL])
-
-
-def owner_of(row: ToolkitField) -> Table:
-    """The first table that has a field of this name."""
-    return next(table for table in TABLES.values() if any(one.name == row.name for one in table.fields))

@@ -8,14 +8,35 @@ from math import pi
 from typing import ClassVar
 
 from workhold.fixels.carrier import WALL
-from workhold.fixels.fields import TABLES, Table
+from workhold.fixels.fields import FLAT, MAX_OPENING, MIN_GAP, ON_A_PLATE, PEG_RADIUS
 from workhold.fixels.flat import Flat
 from workhold.fixels.making import made_from_table, settle
-from workhold.fixels.setup_words import Datum, SetupWords
+from workhold.fixels.setup_words import Datum, PageWords, SetupWords
+from workhold.fixels.table import Label, Table
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.units import Unit
 
 __all__ = ["FlatJaw"]
+
+
+FIELDS = Table(
+    "flat-jaw vise",
+    "A vise with one flat jaw, and pegs on the other",
+    (
+        *ON_A_PLATE[:3],
+        PEG_RADIUS,
+        MIN_GAP.shown(
+            Label("Smallest opening", "peg radius"),
+            follows="peg_radius",
+            figure="smallest opening",
+            at_least="peg_radius",
+            below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would stand in the "
+            "flat jaw; give the least distance from the flat jaw to that row, in mm.",
+        ),
+        MAX_OPENING,
+        FLAT,
+    ),
+)
 
 
 @made_from_table
@@ -47,7 +68,7 @@ class FlatJaw(Toolkit):
     """
 
     kind: ClassVar[str] = "flat-jaw"
-    table: ClassVar[Table] = TABLES["flat-jaw"]
+    table: ClassVar[Table] = FIELDS
     noun: ClassVar[str] = "flat-jaw vise"
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("flat", (2, 2)),)
@@ -80,6 +101,10 @@ class FlatJaw(Toolkit):
         against="flush against the flat jaw",
         touching="flush",
         resting="flush against the flat jaw",
+    )
+
+    page: ClassVar[PageWords] = PageWords(
+        "Vise with one flat jaw", "Close vise", {"pitch": [10.0, 10.0], "peg_radius": 3.0}
     )
 
     pitch: tuple[float, float]

@@ -11,17 +11,30 @@ from workhold.errors import InputError
 from workhold.fixels.fence import Fence
 from workhold.fixels.flat_jaw import FlatJaw
 from workhold.fixels.plate import Plate
+from workhold.fixels.setup_words import PageWords
+from workhold.fixels.table import Table, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.fixels.vise import OpeningVise, Vise
 
-__all__ = ["ALIASES", "KINDS", "kind_of", "toolkit_of"]
+__all__ = ["ALIASES", "KINDS", "PAGES", "TABLES", "USUAL", "kind_of", "owner_of", "table_of", "toolkit_of"]
 
 KINDS: Mapping[str, type[Toolkit]] = {one.kind: one for one in (Vise, OpeningVise, Plate, Fence, FlatJaw)}
+# The fields of each kind; kinds that differ in no field share a table.
+TABLES: Mapping[str, Table] = {name: kind.table for name, kind in KINDS.items()}
+# The kind that is meant where nobody says.
+USUAL = Vise.kind
 # Other names, each with its kind and the fields that it says.
 ALIASES: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "gripper": (Vise.kind, {"columns": 1}),
     "plate": (Plate.kind, {}),
     "fence": (Fence.kind, {}),
+}
+
+
+# The kinds of the page by name, in its order, and an alias that says some fields.
+PAGES: Mapping[str, PageWords] = {
+    **{one.kind: one.page for one in (Plate, Fence, Vise, OpeningVise, FlatJaw)},
+    "gripper": PageWords("Gripper, one column a jaw", "Close gripper", {**Vise.page.start, "columns": 1}),
 }
 
 
@@ -43,6 +56,16 @@ def kind_of(name: str) -> tuple[str, Mapping[str, Any]]:
     if name not in KINDS:
         raise InputError(f"toolkit {name[:40]!r} is not known: choose among {', '.join((*KINDS, *ALIASES))}.")
     return name, {}
+
+
+def table_of(kind: object) -> Table:
+    """The table of a kind; of what is none, or an alias that is not resolved, that of the usual kind."""
+    return TABLES.get(str(kind), TABLES[USUAL])
+
+
+def owner_of(row: ToolkitField) -> Table:
+    """The first table that has a field of this name."""
+    return next(table for table in TABLES.values() if any(one.name == row.name for one in table.fields))
 
 
 def toolkit_of(kind: str, fields: Mapping[str, Any]) -> Toolkit:

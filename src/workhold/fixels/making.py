@@ -17,10 +17,10 @@ from attrs.converters import optional
 
 from workhold.errors import InputError
 from workhold.fixels.directions import DIRECTIONS
-from workhold.fixels.fields import ToolkitField
 from workhold.fixels.flat import flat_of, resolved_flat
 from workhold.fixels.holes import Holes, holes_named
 from workhold.fixels.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
+from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import MOST_BLOCKED, refuse_long
 from workhold.real import real

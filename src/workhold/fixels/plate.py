@@ -16,10 +16,11 @@ from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.fixels.directions import DIRECTIONS
-from workhold.fixels.fields import TABLES, Table
+from workhold.fixels.fields import CLAMP_RADIUS, CLAMPS, DIRECTION, FLAT, ON_A_PLATE, TRAVEL
 from workhold.fixels.flat import Flat
 from workhold.fixels.making import made_from_table, settle
-from workhold.fixels.setup_words import SetupWords
+from workhold.fixels.setup_words import PageWords, SetupWords
+from workhold.fixels.table import Table
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.units import Unit
 
@@ -29,6 +30,13 @@ __all__ = ["Plate"]
 def turned_half(name: str) -> str:
     """What half a turn makes of a direction."""
     return f"{'-' if name[0] == '+' else '+'}{name[1]}"
+
+
+FIELDS = Table(
+    "plate",
+    "A plate with locators and a clamp",
+    (*ON_A_PLATE, CLAMP_RADIUS, TRAVEL, CLAMPS, DIRECTION, FLAT),
+)
 
 
 @made_from_table
@@ -65,7 +73,7 @@ class Plate(Toolkit):
     """
 
     kind: ClassVar[str] = "translating-clamp"
-    table: ClassVar[Table] = TABLES["translating-clamp"]
+    table: ClassVar[Table] = FIELDS
     noun: ClassVar[str] = "plate"
     locked: ClassVar[str] = "a screw clamp,"
     clamping: ClassVar[int] = 1
@@ -85,6 +93,10 @@ class Plate(Toolkit):
         put="Put {peg}s in {holes} of the {plate}.",
         against="against all {count} {peg}s",
         touching="four pegs",
+    )
+
+    page: ClassVar[PageWords] = PageWords(
+        "Plate with one clamp or two", "Close clamp", {"pitch": [20.0, 20.0], "peg_radius": 3.0, "clamps": 1}
     )
 
     pitch: tuple[float, float]

@@ -5,12 +5,15 @@ Each kind of toolkit gives its words; drawings and tables put them beside its nu
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from attrs import frozen
 
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.holes import column_letters, hole_name
 
-__all__ = ["Datum", "SetupWords"]
+__all__ = ["Datum", "PageWords", "SetupWords"]
 
 
 @frozen
@@ -36,6 +39,22 @@ class SetupWords:
     located_by: str = ""
     against: str = ""
     resting: str = "all four pegs on faces"
+
+
+@frozen
+class PageWords:
+    """What the page calls a kind of toolkit, and what it begins with.
+
+    Parameters
+    ----------
+    title : in a few words, to choose it by.
+    closes : what the button says that shows how it closes.
+    start : fields to begin with, in mm, where nobody has given any.
+    """
+
+    title: str
+    closes: str
+    start: Mapping[str, Any]
 
 
 @frozen

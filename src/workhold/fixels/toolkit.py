@@ -26,8 +26,8 @@ from workhold.errors import InputError
 from workhold.fixels.arrangement import Arrangement, Symmetry
 from workhold.fixels.carrier import Carrier, Travel
 from workhold.fixels.contact_kind import CLAMP_TIP, ContactKind
-from workhold.fixels.fields import Table, ToolkitField
-from workhold.fixels.setup_words import Datum, SetupWords
+from workhold.fixels.setup_words import Datum, PageWords, SetupWords
+from workhold.fixels.table import Table, ToolkitField
 from workhold.units import Unit
 
 __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
@@ -109,6 +109,7 @@ class Toolkit:
     gap : the gap rule in mm, or None when there is none.
     wording : what its things are called where it holds nothing.
     setup_words : what setting it up is called on sheets, pictures and pages.
+    page : what the page calls it.
     """
 
     __slots__ = ()
@@ -126,6 +127,7 @@ class Toolkit:
     symmetries: ClassVar[tuple[Symmetry, ...]]
     wording: ClassVar[Wording]
     setup_words: ClassVar[SetupWords]
+    page: ClassVar[PageWords]
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:

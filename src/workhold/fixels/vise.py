@@ -7,11 +7,23 @@ from typing import ClassVar
 
 from attrs import evolve
 
-from workhold.fixels.fields import TABLES, Table
+from workhold.fixels.fields import (
+    BLOCKED,
+    BODY_RADIUS,
+    COLUMNS,
+    FLAT,
+    MAX_OPENING,
+    MIN_GAP,
+    PEG_RADIUS,
+    PITCH,
+    ROW_OFFSET,
+    ROWS,
+)
 from workhold.fixels.flat import Flat
 from workhold.fixels.holes import Holes
 from workhold.fixels.making import made_from_table, settle
-from workhold.fixels.setup_words import SetupWords
+from workhold.fixels.setup_words import PageWords, SetupWords
+from workhold.fixels.table import Table
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.units import Unit
 
@@ -33,6 +45,13 @@ SETUP = SetupWords(
     standing="Pegs",
     put="Put {peg}s in {holes}.",
     touching="four pegs",
+)
+
+
+FIELDS = Table(
+    "vise",
+    "A vise",
+    (PITCH, COLUMNS, PEG_RADIUS, ROWS, ROW_OFFSET, MIN_GAP, MAX_OPENING, BODY_RADIUS, BLOCKED, FLAT),
 )
 
 
@@ -69,7 +88,7 @@ class Vise(Toolkit):
     """
 
     kind: ClassVar[str] = "vise"
-    table: ClassVar[Table] = TABLES["vise"]
+    table: ClassVar[Table] = FIELDS
     noun: ClassVar[str] = "vise"
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
@@ -77,6 +96,10 @@ class Vise(Toolkit):
     symmetries: ClassVar[tuple[Symmetry, ...]] = (Symmetry(1, (1, 0)),)
     wording: ClassVar[Wording] = WORDING
     setup_words: ClassVar[SetupWords] = SETUP
+
+    page: ClassVar[PageWords] = PageWords(
+        "Vise, pegs on both jaws", "Close vise", {"pitch": [10.0, 10.0], "columns": 2, "peg_radius": 3.0}
+    )
 
     pitch: tuple[float, float]
     columns: int
@@ -152,3 +175,4 @@ class OpeningVise(Vise):
     kind: ClassVar[str] = "opening-vise"
     clamping: ClassVar[int] = -1
     wording: ClassVar[Wording] = evolve(WORDING, backwards="the jaws close, not when they are pressed apart")
+    page: ClassVar[PageWords] = PageWords("Vise that holds by opening", "Open vise", Vise.page.start)

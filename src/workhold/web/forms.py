@@ -12,8 +12,8 @@ from workhold.errors import InputError
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
 from workhold.files.toolkit.shapes import TAGS, forms_by_noun, one_of, optional
 from workhold.fixels.directions import DIRECTIONS
-from workhold.fixels.fields import USUAL, ToolkitField
-from workhold.fixels.kinds import toolkit_of
+from workhold.fixels.kinds import USUAL, toolkit_of
+from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.load import Load
 from workhold.model.query import Query, asked_ranking

@@ -1,6 +1,6 @@
 """What the page knows of each kind of toolkit: what it is called, and a field of the page for each of its fields.
 
-The page draws its fields from this alone. A further kind needs an entry in :data:`DESCRIBED`.
+The page draws its fields from this alone, which comes from the data of the kinds.
 
 Glossary
 --------
@@ -17,8 +17,8 @@ from attrs import asdict, frozen
 
 from workhold.drawing.panel import arrangement_words
 from workhold.files.toolkit.reader import LoadedToolkit
-from workhold.fixels.fields import Choice, ToolkitField, table_of
-from workhold.fixels.kinds import kind_of, toolkit_of
+from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
+from workhold.fixels.table import Choice, ToolkitField
 
 __all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind"]
 
@@ -29,7 +29,7 @@ PAGE_FORMS: Mapping[str, str] = {"flat": "length"}
 
 @frozen
 class PageField:
-    """A field of the page; see :class:`workhold.fixels.fields.Label` for what is not of the toolkit's field."""
+    """A field of the page; see :class:`workhold.fixels.table.Label` for what is not of the toolkit's field."""
 
     name: str
     label: str
@@ -96,26 +96,7 @@ class Described:
         }
 
 
-IN_JAWS = {"pitch": [10.0, 10.0], "columns": 2, "peg_radius": 3.0}
-
-DESCRIBED = (
-    Described(
-        "translating-clamp",
-        "Plate with one clamp or two",
-        "Close clamp",
-        {"pitch": [20.0, 20.0], "peg_radius": 3.0, "clamps": 1},
-    ),
-    Described(
-        "edge",
-        "Fence with a stop, one clamp or two",
-        "Close clamp",
-        {"pitch": [20.0, 20.0], "peg_radius": 3.0, "wall_offset": 10.0, "clamps": 1},
-    ),
-    Described("vise", "Vise, pegs on both jaws", "Close vise", IN_JAWS),
-    Described("opening-vise", "Vise that holds by opening", "Open vise", IN_JAWS),
-    Described("flat-jaw", "Vise with one flat jaw", "Close vise", {"pitch": [10.0, 10.0], "peg_radius": 3.0}),
-    Described("gripper", "Gripper, one column a jaw", "Close gripper", {**IN_JAWS, "columns": 1}),
-)
+DESCRIBED = tuple(Described(name, words.title, words.closes, words.start) for name, words in PAGES.items())
 
 
 def kinds_answer() -> list[dict[str, Any]]:

@@ -9,8 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from workhold.errors import InputError
 from workhold.files.toolkit.shapes import forms_by_noun, one_of, optional
-from workhold.fixels.fields import USUAL, Form, ToolkitField, table_of
-from workhold.fixels.kinds import toolkit_of
+from workhold.fixels.kinds import USUAL, table_of, toolkit_of
+from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowel import Fit
 from workhold.model.load import ANY_DIRECTION, Load

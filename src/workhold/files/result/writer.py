@@ -20,9 +20,9 @@ from attrs import asdict
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_lines import fixture_lines
 from workhold.files.result.rounding import rounded_degrees
-from workhold.fixels.fields import USUAL
 from workhold.fixels.flat import Flat
 from workhold.fixels.holes import Holes
+from workhold.fixels.kinds import USUAL
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.load import Load
 from workhold.model.proof import Proof
@@ -154,9 +154,8 @@ def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
 def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
     """The fields of a toolkit as they are written: lengths in mm, holes by name; how many holes there are comes first."""
     fields = {name: written(value) for name, value in asdict(toolkit, recurse=False).items()}  # type: ignore[arg-type]
-    if fields["flat"] is None:
-        del fields["flat"]
-    return {name: fields.pop(name) for name in ("pitch", "columns", "rows")} | fields
+    fields = {name: value for name, value in fields.items() if name != "flat" or value is not None}
+    return {name: fields.pop(name) for name in ("pitch", "columns", "rows") if name in fields} | fields
 
 
 def written(value: Any) -> Any:

@@ -10,8 +10,9 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from workhold.errors import InputError
 from workhold.files.toolkit.shapes import forms_by_noun
-from workhold.fixels.fields import OPTIONS, USUAL, Form, ToolkitField, table_of
-from workhold.fixels.kinds import kind_of
+from workhold.fixels.fields import OPTIONS
+from workhold.fixels.kinds import USUAL, kind_of, table_of
+from workhold.fixels.table import Form, ToolkitField
 
 __all__ = ["checked"]
 

@@ -18,8 +18,9 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.text import read_text, toml_table
 from workhold.files.toolkit.dowels import dowel_size
-from workhold.fixels.fields import OPTIONS, USUAL, Form
-from workhold.fixels.kinds import kind_of, toolkit_of
+from workhold.fixels.fields import OPTIONS
+from workhold.fixels.kinds import USUAL, kind_of, toolkit_of
+from workhold.fixels.table import Form
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowel import Fit, Limits, peg_error, refuse_limits
 from workhold.model.tolerance import Tolerance

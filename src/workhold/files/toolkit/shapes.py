@@ -11,7 +11,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Discriminator, Tag, create_model
 
-from workhold.fixels.fields import TABLES, ToolkitField, table_of
+from workhold.fixels.kinds import TABLES, table_of
+from workhold.fixels.table import ToolkitField
 
 __all__ = ["TAGS", "forms_by_noun", "one_of", "optional"]
 
