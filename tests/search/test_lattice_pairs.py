@@ -1,0 +1,78 @@
+"""Pairs of pegs of a sliding lattice: doubles with their bounds and balls, which share no formula's rounding, agree."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+import pytest
+
+from toolkit_results import NOTCHED, part
+from workhold import FlatJaw, Query, Workpiece
+from workhold.contact.problem import Problem
+from workhold.proof.lattice_pair import verdict_on_pair
+from workhold.search.lattice_pair_shares import LatticePairSearch
+from workhold.search.lattice_pairs import are_pressed, closure_of, pairs_on
+from workhold.search.wall_search import lying_on
+
+KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
+ROCKER = [(0, 0, 0), (14, 0, 0), (20, 8, 0), (40, 8, 0), (46, 0, 0), (60, 0, 0.5), (60, 40, 0.2), (0, 40, 0)]
+# Bosses of one radius whose centres are a step of the lattice apart, and holes.
+BOSSES = [(0, 0, 0), (60, 0, 0), (60, 20, 0), (50, 20, 1), (30, 20, 0), (20, 20, 1), (0, 20, 0)]
+
+
+def problem_of(workpiece: Workpiece, margin: float = 0.0, pitch: float = 8.0) -> Problem:
+    """The search of a part in a flat-jaw vise."""
+    return Problem.of(Query(workpiece, FlatJaw(pitch=pitch, peg_radius=2), contact_margin=margin))
+
+
+@pytest.mark.parametrize("margin", [0.0, 3.0])
+@pytest.mark.parametrize("loop", [KITE, ROCKER, NOTCHED, BOSSES], ids=["kite", "rocker", "notched", "bosses"])
+def test_balls_find_the_same_places_forces_and_verdicts(loop: list[tuple[float, ...]], margin: float) -> None:
+    """Of every pair of which a bound is known; the bound holds, and what doubles decide is so."""
+    problem = problem_of(part(loop), margin)
+    looked = sharp_ones = 0
+    for edge in range(len(problem.workpiece.hull_edges)):
+        lying = lying_on(problem, edge)
+        for pairs in pairs_on(lying, (8.0, 8.0), (inf, inf), margin):
+            closed, held, open_ = closure_of(pairs, lying, problem)
+            for k in range(0, len(pairs), 3):
+                verdict, sharp = verdict_on_pair(pairs.candidate(k, edge), problem)
+                looked += 1
+                if not open_[k]:
+                    assert verdict is bool(held[k])
+                if sharp is not None and np.isfinite(pairs.reach[k]):
+                    sharp_ones += 1
+                    assert np.abs(np.array(sharp.points) - pairs.point[k]).max() <= pairs.reach[k] + 1e-12
+                    assert np.allclose(sharp.null, closed.null[k], atol=1e-9)
+    assert looked > 20 and (sharp_ones > 3 or margin > 0)
+
+
+def test_where_curves_only_graze_no_bound_is_known_and_balls_decide() -> None:
+    """Two bosses a step apart: circles that touch have one normal, so nothing closes, and nothing stays open."""
+    problem = problem_of(part(BOSSES), pitch=15.0)
+    unknown = 0
+    for edge in range(len(problem.workpiece.hull_edges)):
+        lying = lying_on(problem, edge)
+        for pairs in pairs_on(lying, (15.0, 15.0), (inf, inf), 0.0):
+            unknown += int(np.isinf(pairs.reach).sum())
+            good, undecided, sharpened = are_pressed(pairs, edge, lying, problem)
+            assert len(undecided) == 0
+            assert np.isfinite(good.point).all() and np.isfinite(good.null).all()
+            assert sharpened >= int((np.isinf(pairs.reach) & (pairs.slack > 0)).sum())
+    assert unknown > 0
+
+
+def test_what_doubles_are_too_coarse_for_is_taken_from_balls() -> None:
+    """Forced to be coarse: every pair is decided again, and the same fixtures are found."""
+    search = LatticePairSearch(problem_of(part(ROCKER)))
+    for edge in search.edges:
+        lying = lying_on(search.problem, edge)
+        for pairs in pairs_on(lying, (8.0, 8.0), (inf, inf), 0.0):
+            fine, _, _ = are_pressed(pairs, edge, lying, search.problem)
+            coarse = pairs.take(np.arange(len(pairs)))
+            coarse.point[:] += 1e-9
+            coarse.reach[:], coarse.swing[:] = np.inf, np.inf
+            sharp, undecided, count = are_pressed(coarse, edge, lying, search.problem)
+            assert len(undecided) == 0 and count >= len(fine)
+            assert np.allclose(sharp.point, fine.point, atol=1e-11) and np.allclose(sharp.null, fine.null, atol=1e-9)
