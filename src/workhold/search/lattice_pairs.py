@@ -145,10 +145,22 @@ def pairs_on(
 
 
 def extents(rows: Array) -> tuple[Array, Array]:
-    """Return the least and largest coordinates (F, 2) in mm of features (F, 12); of arcs those of their circles."""
-    center, size = rows[:, [X, Y]], np.abs(rows[:, [AXIS_X, AXIS_Y]]) * rows[:, [HALF_EXTENT]]
-    size = np.where(rows[:, [IS_ARC]] != 0.0, rows[:, [RADIUS]], size)
-    return center - size, center + size
+    """Return the least and largest coordinates (F, 2) in mm of features (F, 12), and of ``LOOSE`` past ends of arcs."""
+    center, axis, is_arc = rows[:, [X, Y]], rows[:, [AXIS_X, AXIS_Y]], rows[:, IS_ARC] != 0.0
+    along = np.abs(axis) * rows[:, [HALF_EXTENT]]
+    radius = np.where(is_arc, rows[:, RADIUS], 1.0)
+    middle = np.arctan2(rows[:, AXIS_Y], rows[:, AXIS_X])
+    half = rows[:, HALF_EXTENT] + LOOSE / radius
+
+    def reach(direction: float) -> Array:
+        """How far (F,) arcs reach from their centres in a direction in radians."""
+        away = np.abs((middle - direction + np.pi) % (2.0 * np.pi) - np.pi)
+        return np.asarray(radius * np.cos(np.clip(away - half, 0.0, np.pi)))
+
+    back = np.stack([reach(np.pi), reach(-np.pi / 2.0)], axis=1)
+    ahead = np.stack([reach(0.0), reach(np.pi / 2.0)], axis=1)
+    arcs = is_arc[:, None]
+    return center - np.where(arcs, back, along), center + np.where(arcs, ahead, along)
 
 
 def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array) -> Iterator[LatticePairs]:
