@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from math import hypot, isclose
+from math import hypot, isclose, pi, tan
 from pathlib import Path
 from random import Random
 from threading import Event
@@ -342,3 +342,28 @@ def test_presets_are_vises_that_hold_something(name: str) -> None:
     vise: Toolkit = FlatJaw.preset(name)
     result = workhold.design(part([(0, 0, 0), (80, 0, 0), (80, 20, 0), (0, 50, 0)]), vise)
     assert len(result) > 0 and workhold.verify(result).holds
+
+
+def test_a_contact_at_a_tangent_joint_is_listed_once() -> None:
+    """The pitch puts a peg exactly where a slope runs into a fillet, which is on both faces."""
+    # A slope at 45 degrees that a fillet of radius 10 ends, and a slope on the other side.
+    joint, bulge = (30.0 + 10.0 * 0.5**0.5, 30.0 - 10.0 * (1 - 0.5**0.5)), -tan(pi / 16)
+    loop = [(0, 0, 0), (60, 0, 0), (joint[0] + 12.0, joint[1] - 12.0, 0), (*joint, -bulge), (30, 30, 0), (20, 30, 0)]
+    workpiece = part([(float(x), float(y), float(b)) for x, y, b in loop])
+    radius = 2.0
+    first = joint[0] + radius * 0.5**0.5, joint[1] + radius * 0.5**0.5
+    # The other side runs from (20, 30) to (0, 0); a peg that touches its middle.
+    size = hypot(20.0, 30.0)
+    other = 10.0 - radius * 30.0 / size, 15.0 + radius * 20.0 / size
+    pitch = first[0] - other[0], abs(first[1] - other[1])
+    result = workhold.design(workpiece, FlatJaw(pitch=pitch, peg_radius=radius, columns=2, rows=2))
+    here = [one for one in places(result) if isclose(one[4], other[1], abs_tol=1e-5) and one[1] == 1]
+    assert len(here) == len({one[2:] for one in here}) == 1
+
+
+def test_it_is_said_where_only_the_vise_is_in_the_way() -> None:
+    """Pairs press the part, but the jaw has no rows for them at that opening."""
+    vise = FlatJaw(pitch=10, peg_radius=3, rows=1, max_opening=5)
+    result = workhold.design(part(KITE), vise)
+    assert result.counts == {"flat": 0} and result.complete
+    assert "pairs of pegs would hold the part, but none of them can stand in the jaw as asked" in result.notes[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf
+from threading import Event
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from toolkit_results import NOTCHED, part
 from workhold import FlatJaw, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.proof.lattice_pair import verdict_on_pair
-from workhold.search.lattice_pair_shares import LatticePairSearch
+from workhold.search.lattice_pair_shares import LatticePairSearch, LatticePairShares
 from workhold.search.lattice_pairs import are_pressed, closure_of, pairs_on
 from workhold.search.wall_search import lying_on
 
@@ -76,3 +77,26 @@ def test_what_doubles_are_too_coarse_for_is_taken_from_balls() -> None:
             sharp, undecided, count = are_pressed(coarse, edge, lying, search.problem)
             assert len(undecided) == 0 and count >= len(fine)
             assert np.allclose(sharp.point, fine.point, atol=1e-11) and np.allclose(sharp.null, fine.null, atol=1e-9)
+
+
+def test_places_that_are_told_too_coarsely_are_taken_from_balls() -> None:
+    """Also where the verdict is clear: with a bound above what one place is, the ball's place stands in the list."""
+    problem = problem_of(part(KITE))
+    lying = lying_on(problem, 0)
+    (pairs,) = pairs_on(lying, (8.0, 8.0), (inf, inf), 0.0)
+    fine, _, _ = are_pressed(pairs, 0, lying, problem)
+    pairs.point[:] += 1e-8
+    pairs.reach[:] = 1e-6
+    sharp, _, _ = are_pressed(pairs, 0, lying, problem)
+    assert len(sharp) == len(fine) > 0 and np.allclose(sharp.point, fine.point, rtol=0.0, atol=1e-11)
+
+
+def test_a_search_that_is_cancelled_within_a_hull_edge_says_so() -> None:
+    """What was found in it so far is kept."""
+    cancel = Event()
+    shares = LatticePairShares.of(Query(part(KITE), FlatJaw(pitch=8, peg_radius=2)), cancel)
+    _, whole = shares.look(0, None)
+    assert whole
+    cancel.set()
+    found, whole = shares.look(0, None)
+    assert not whole and found is not None and len(found) > 0
