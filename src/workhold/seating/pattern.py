@@ -179,7 +179,7 @@ def refuse_unseated(toolkit: Toolkit) -> None:
     if toolkit.needs_pairs:
         raise InputError(f"{words} of one clamp: with two the part is put against its locators by hand.")
     if all(plate.travel is not None for plate in toolkit.plates):
-        raise InputError(f"{words} of what pushes it against pegs: no peg of this result stands still.")
+        raise InputError(f"{words} where some pegs stand still, and no peg of this result stands still.")
     if toolkit.has_flats:
         raise InputError(f"{words} of round pegs: those of this result have flats.")
     if min(carrier.peg_radius for carrier in toolkit.carriers if not carrier.is_wall) <= 0.0:
