@@ -25,7 +25,7 @@ from workhold.fixels.fields import (
     WALL_OFFSET,
     WAYS,
 )
-from workhold.fixels.making import made_from_table
+from workhold.fixels.making import finer, made_from_table
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import Label, Table
@@ -175,7 +175,7 @@ class Fence(Plate):
             yield Change("with a second clamp", {"clamps": 2, "directions": None})
         if self.clamps == 1 and len(self.directions) < len(DIRECTIONS):
             yield Change("with the clamp in any of the four directions", {"directions": tuple(DIRECTIONS)})
-        yield from self.finer()
+        yield from finer(self)
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:

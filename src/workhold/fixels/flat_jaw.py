@@ -10,7 +10,7 @@ from typing import ClassVar
 from workhold.fixels.carrier import WALL
 from workhold.fixels.fields import FLAT, MAX_OPENING, MIN_GAP, ON_A_PLATE, PEG_RADIUS
 from workhold.fixels.flat import Flat
-from workhold.fixels.making import made_from_table, settle
+from workhold.fixels.making import finer, made_from_table, settle
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import Label, Table
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
@@ -140,7 +140,4 @@ class FlatJaw(Toolkit):
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """Half the pitch."""
-        if min(self.pitch) >= 4 * self.peg_radius:
-            half = (self.pitch[0] / 2, self.pitch[1] / 2)
-            counts = {name: 2 * count - 1 for name in ("columns", "rows") if (count := getattr(self, name))}
-            yield Change("with half the pitch", {"pitch": half, **counts})
+        yield from finer(self)

@@ -6,7 +6,7 @@ which limit it sets are in its row of ``fixels.fields``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import product
 from math import inf, isfinite, isnan
@@ -21,11 +21,11 @@ from workhold.fixels.flat import flat_of, resolved_flat
 from workhold.fixels.holes import Holes, holes_named
 from workhold.fixels.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
 from workhold.fixels.table import ToolkitField
-from workhold.fixels.toolkit import Toolkit
+from workhold.fixels.toolkit import Change, Toolkit
 from workhold.limits import MOST_BLOCKED, refuse_long
 from workhold.real import real
 
-__all__ = ["made_from_table", "settle"]
+__all__ = ["finer", "made_from_table", "settle"]
 
 Kind = TypeVar("Kind", bound=type[Toolkit])
 
@@ -225,3 +225,11 @@ def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
     for carrier in row.carriers:
         if len({holes.column for holes in blocked if holes.carrier == carrier and holes.row is None}) == columns:
             raise InputError(f"every column of the {carrier} {noun} is blocked: leave at least one.")
+
+
+def finer(toolkit: Any) -> Iterator[Change]:
+    """Yields half the pitch as a change to try, where pegs are thin enough; every hole stays where it is."""
+    if min(toolkit.pitch) >= 4 * toolkit.peg_radius:
+        counts = {name: getattr(toolkit, name) for name in ("columns", "rows")}
+        more = {name: 2 * count - 1 for name, count in counts.items() if count is not None}
+        yield Change("with half the pitch", {"pitch": tuple(one / 2 for one in toolkit.pitch), **more})

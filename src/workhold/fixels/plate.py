@@ -18,7 +18,7 @@ from workhold.errors import InputError
 from workhold.fixels.directions import DIRECTIONS
 from workhold.fixels.fields import CLAMP_RADIUS, CLAMPS, DIRECTION, FLAT, ON_A_PLATE, TRAVEL
 from workhold.fixels.flat import Flat
-from workhold.fixels.making import made_from_table, settle
+from workhold.fixels.making import finer, made_from_table, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import Table
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
@@ -220,14 +220,4 @@ class Plate(Toolkit):
             yield Change("with a second clamp", {"clamps": 2, "directions": None})
             if len(self.distinct_directions) == 1:
                 yield Change("with the clamp along the columns as well", {"directions": ("-x", "-y")})
-        yield from self.finer()
-
-    def finer(self) -> Iterator[Change]:
-        """Half the pitch, where the locators are thin enough."""
-        if min(self.pitch) >= 4 * self.peg_radius:
-            half = (self.pitch[0] / 2, self.pitch[1] / 2)
-            fields: dict[str, Any] = {"pitch": half}
-            for name in ("columns", "rows"):
-                count = getattr(self, name)
-                fields |= {} if count is None else {name: 2 * count - 1}
-            yield Change("with half the pitch", fields)
+        yield from finer(self)

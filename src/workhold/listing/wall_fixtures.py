@@ -22,7 +22,7 @@ from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, unknown_quality
 from workhold.proof.deciding import Account
 
-__all__ = ["WallCollector", "WallFixtures", "placed_on_wall", "wall_table"]
+__all__ = ["WallCollector", "WallFixtures", "first_of_each", "placed_on_wall", "turned", "wall_table"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -79,16 +79,8 @@ class WallFixtures:
     def listed_once(self) -> WallFixtures:
         """One of the fixtures that are the same: a contact at a tangent joint is found on both features that
         meet there."""
-        # One number that mixes all places tells them apart, as in ``canonical_form.listed_once``.
         place = self.locator[:, 0] + self.tip @ np.array([0.7548776662, 0.5698402910])
-        columns = (self.edge, self.row, self.line)
-        order = np.lexsort([place, *columns[::-1]])
-        new = np.ones(len(order), np.bool_)
-        new[1:] = np.diff(place[order]) > SAME_PLACE
-        new[1:] |= np.any([np.diff(values[order]) != 0 for values in columns], axis=0)
-        run = np.cumsum(new)
-        best = np.lexsort([self.feature[order, 1], self.feature[order, 0], run])
-        return self.take(order[best[np.diff(run[best], prepend=0) > 0]])
+        return self.take(first_of_each((self.edge, self.row, self.line), place, self.feature))
 
     def placement(self, problem: Problem) -> ClampPlacement:
         """Where the clamps may be bolted; columns count from the locator's."""
@@ -111,6 +103,24 @@ class WallFixtures:
             seen=flush.ends[self.edge, 0] - np.array(problem.workpiece.center) + turned(self.tip, -theta),
             theta=theta,
         )
+
+
+def first_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) -> IntArray:
+    """The first, by its features, of the fixtures that agree in whole numbers and in place, as their numbers.
+
+    Parameters
+    ----------
+    columns : whole numbers (N,) that name fixtures.
+    place : (N,) one number that mixes all places, as in ``canonical_form.listed_once``.
+    feature : (N, 2) touched.
+    """
+    order = np.lexsort([place, *columns[::-1]])
+    new = np.ones(len(order), np.bool_)
+    new[1:] = np.diff(place[order]) > SAME_PLACE
+    new[1:] |= np.any([np.diff(values[order]) != 0 for values in columns], axis=0)
+    run = np.cumsum(new)
+    best = np.lexsort([feature[order, 1], feature[order, 0], run])
+    return np.asarray(order[best[np.diff(run[best], prepend=0) > 0]])
 
 
 def turned(points: Array, angle: Array) -> Array:

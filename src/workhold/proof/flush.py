@@ -15,6 +15,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.fixels.toolkit import Carrier
 from workhold.geometry.hull_edges import HullEdge
+from workhold.kernels.base.feature import HALF_EXTENT, HIGH_SLACK, LOW_SLACK, SIGN
 from workhold.proof.clamp_reactions import SharpReactions, rounded
 from workhold.proof.deciding import BALLS
 from workhold.proof.exact_rows import exact_rows
@@ -230,26 +231,68 @@ def touched(
 ) -> tuple[Point, Point, list[arb]] | None:
     """Centre of a peg on a line that touches a feature, the outward normal there and the distances to the rule of ends; None
     where they do not meet."""
-    is_arc, x, y, ax, ay, half, radius, sign, rest_x, rest_y, low, high = row
-    tx, ty = tangent
-    dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
-    middle = dx * tx + dy * ty, dy * tx - dx * ty
-    # Axes of features are unit vectors but for rounding.
-    size = (arb(ax) * ax + arb(ay) * ay).sqrt()
-    axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
+    feature = in_wall_frame(row, start, tangent)
+    (middle, axis), (half, sign, high, low) = (feature.middle, feature.axis), feature.ends
     across = 0 if upright else 1
     up = level - middle[across]
-    if is_arc == 0.0:
+    if feature.radius is None:
         s = up / axis[across]
         point = middle[0] + s * axis[0], middle[1] + s * axis[1]
         return point, (axis[1], -axis[0]), [half - s + high, half + s + low]
-    square = radius * arb(radius) - up * up
-    if square < 0:
+    radius = feature.radius
+    rest = half_chord(radius * radius - up * up)
+    if rest is None:
         return None
-    rest = square.sqrt() if square > 0 else arb(0, (abs(square).abs_upper()).sqrt().upper())
     ray = (up, branch * rest) if upright else (branch * rest, up)
     point, normal = (middle[0] + ray[0], middle[1] + ray[1]), (sign * ray[0] / radius, sign * ray[1] / radius)
     if half >= arb.pi():
         return point, normal, []
     angle = arb.atan2(axis[0] * ray[1] - axis[1] * ray[0], axis[0] * ray[0] + axis[1] * ray[1])
     return point, normal, [(half - angle) * radius + high, (half + angle) * radius + low]
+
+
+def half_chord(square: arb) -> arb | None:
+    """Return the root of a square that may be zero; None where it is surely negative."""
+    if square < 0:
+        return None
+    return square.sqrt() if square > 0 else arb(0, abs(square).abs_upper().sqrt().upper())
+
+
+@frozen
+class BallFeature:
+    """A contact feature in the wall's frame, in balls: middle, unit vector, radius (None of a line), and its row."""
+
+    middle: Point
+    axis: Point
+    radius: arb | None
+    row: list[float]
+
+    @property
+    def ends(self) -> tuple[float, float, float, float]:
+        """Half the extent, the sign, and the slacks of the end ahead and of the one behind."""
+        half, sign, high, low = (self.row[k] for k in (HALF_EXTENT, SIGN, HIGH_SLACK, LOW_SLACK))
+        return half, sign, high, low
+
+    def contact(self, point: Point) -> Contact:
+        """Return a peg's centre on it, the outward normal there, and the distances to its ends."""
+        half, sign, high, low = self.ends
+        (ax, ay), ray = self.axis, (point[0] - self.middle[0], point[1] - self.middle[1])
+        along = ax * ray[0] + ay * ray[1]
+        if self.radius is None:
+            return point, (ay, -ax), [half - along + high, half + along + low]
+        normal = sign * ray[0] / self.radius, sign * ray[1] / self.radius
+        if half >= arb.pi():
+            return point, normal, []
+        angle = arb.atan2(ax * ray[1] - ay * ray[0], along)
+        return point, normal, [(half - angle) * self.radius + high, (half + angle) * self.radius + low]
+
+
+def in_wall_frame(row: list[float], start: Point, tangent: Point) -> BallFeature:
+    """Return a feature as it lies on a hull edge from a start along a tangent."""
+    is_arc, x, y, ax, ay, _, radius, _, rest_x, rest_y, _, _ = row
+    tx, ty = tangent
+    dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
+    # Axes of features are unit vectors but for rounding.
+    size = (arb(ax) * ax + arb(ay) * ay).sqrt()
+    axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
+    return BallFeature((dx * tx + dy * ty, dy * tx - dx * ty), axis, arb(radius) if is_arc else None, row)

@@ -11,9 +11,8 @@ from flint import arb, ctx
 
 from workhold.contact.problem import Problem
 from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
-from workhold.kernels.base.feature import HALF_EXTENT, HIGH_SLACK, LOW_SLACK, SIGN
 from workhold.proof.deciding import BALLS
-from workhold.proof.flush import PRECISIONS, Contact, Point, line_of
+from workhold.proof.flush import PRECISIONS, BallFeature, Contact, Point, half_chord, in_wall_frame, line_of
 
 __all__ = ["LatticePair", "SharpPair", "verdict_on_pair"]
 
@@ -141,44 +140,3 @@ def on_line(between: Point, axis: Point, radius: arb, branch: int) -> Point | No
         return None
     along = ax * x + ay * y + branch * half
     return along * ax, along * ay
-
-
-def half_chord(square: arb) -> arb | None:
-    """Return the root of a square that may be zero; None where it is surely negative."""
-    if square < 0:
-        return None
-    return square.sqrt() if square > 0 else arb(0, abs(square).abs_upper().sqrt().upper())
-
-
-@frozen
-class BallFeature:
-    """A contact feature in the wall's frame, in balls: middle, unit vector, radius (None of a line), and its row."""
-
-    middle: Point
-    axis: Point
-    radius: arb | None
-    row: list[float]
-
-    def contact(self, point: Point) -> Contact:
-        """Return a peg's centre on it, the outward normal there, and the distances to its ends."""
-        half, sign, high, low = (self.row[k] for k in (HALF_EXTENT, SIGN, HIGH_SLACK, LOW_SLACK))
-        (ax, ay), ray = self.axis, (point[0] - self.middle[0], point[1] - self.middle[1])
-        along = ax * ray[0] + ay * ray[1]
-        if self.radius is None:
-            return point, (ay, -ax), [half - along + high, half + along + low]
-        normal = sign * ray[0] / self.radius, sign * ray[1] / self.radius
-        if half >= arb.pi():
-            return point, normal, []
-        angle = arb.atan2(ax * ray[1] - ay * ray[0], along)
-        return point, normal, [(half - angle) * self.radius + high, (half + angle) * self.radius + low]
-
-
-def in_wall_frame(row: list[float], start: Point, tangent: Point) -> BallFeature:
-    """Return a feature as it lies on a hull edge from a start along a tangent."""
-    is_arc, x, y, ax, ay, _, radius, _, rest_x, rest_y, _, _ = row
-    tx, ty = tangent
-    dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
-    # Axes of features are unit vectors but for rounding.
-    size = (arb(ax) * ax + arb(ay) * ay).sqrt()
-    axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
-    return BallFeature((dx * tx + dy * ty, dy * tx - dx * ty), axis, arb(radius) if is_arc else None, row)

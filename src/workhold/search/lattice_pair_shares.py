@@ -11,12 +11,12 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
-from workhold.conventions import GAP_SLACK, LEAST_SPAN, SAME_PLACE
+from workhold.conventions import GAP_SLACK, LEAST_SPAN
 from workhold.fixels.toolkit import Carrier
 from workhold.listing.clamp_placement import last_holes
 from workhold.listing.listed import Work
 from workhold.listing.ranked_table import RankedTable
-from workhold.listing.wall_fixtures import turned
+from workhold.listing.wall_fixtures import first_of_each, turned
 from workhold.model.notes import no_fixture_notes, no_place_note
 from workhold.model.proof import AT_AN_EDGE, Undecided
 from workhold.model.query import Query
@@ -144,14 +144,8 @@ class LatticePairSearch:
 
 def listed_once(pairs: LatticePairs) -> LatticePairs:
     """Return one of the pairs that are the same: contacts at a tangent joint are found on both features that meet there."""
-    # One number that mixes all places tells them apart, as in ``canonical_form.listed_once``.
     place = pairs.point.reshape(-1, 4) @ np.array([1.0, 0.7548776662, 0.5698402910, 0.4301597090])
-    order = np.lexsort([place, pairs.step[:, 1], pairs.step[:, 0]])
-    new = np.ones(len(order), np.bool_)
-    new[1:] = (np.diff(place[order]) > SAME_PLACE) | (np.diff(pairs.step[order], axis=0) != 0).any(axis=1)
-    run = np.cumsum(new)
-    best = np.lexsort([pairs.feature[order, 1], pairs.feature[order, 0], run])
-    return pairs.take(order[best[np.diff(run[best], prepend=0) > 0]])
+    return pairs.take(first_of_each((*pairs.step.T,), place, pairs.feature))
 
 
 @define(eq=False)
