@@ -54,7 +54,9 @@ def algebra_seconds(part: str, pitch: float, columns: int, peg_radius: float) ->
 def run(quick: bool, budget: float | None = None) -> Section:
     """Measure every row that the engine finishes within the budget; the rows with one column, in a quick trial."""
     budget = budget or (QUICK_BUDGET if quick else BUDGET)
-    section = Section("algebra", f"Against the paper's algebra, given up after {budget:g} s a row", COLUMNS).begin()
+    section = Section(
+        "algebra", f"Against the paper's algebra, given up after {budget:g} s a row", COLUMNS
+    ).begin()
     ratios, agree = [], True
     for row in ROWS:
         design = row.design
@@ -65,7 +67,9 @@ def run(quick: bool, budget: float | None = None) -> Section:
         ours = timed(design)
         if theirs is None:
             least = f"{budget / ours['seconds']:,.0f}"
-            section.row(*design.words, "", "", "", f"> {budget:g}", f"{ours['seconds']:.4f}", f"> {least}", "")
+            section.row(
+                *design.words, "", "", "", f"> {budget:g}", f"{ours['seconds']:.4f}", f"> {least}", ""
+            )
             continue
         same = theirs["found"] == ours["found"]
         ratios.append(theirs["seconds"] / ours["seconds"])
@@ -82,7 +86,9 @@ def run(quick: bool, budget: float | None = None) -> Section:
         )
     words = f"the ratio to the paper's algebra on the rows it finishes in {budget:g} s, with the same counts"
     value = (
-        f"{len(ratios)} rows, {min(ratios):,.0f} to {max(ratios):,.0f} times faster" if ratios else "no row finished"
+        f"{len(ratios)} rows, {min(ratios):,.0f} to {max(ratios):,.0f} times faster"
+        if ratios
+        else "no row finished"
     )
     section.target(6, words, value, bool(ratios) and agree)
     return section

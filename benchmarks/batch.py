@@ -16,11 +16,11 @@ from attrs import evolve
 
 from catalogue import catalogue
 from report import Column, Section, run_alone
-from workhold.batch.jobs import ANY_PART
-from workhold.batch.records import part_record
+from workhold.batch.run import ANY_PART
+from workhold.batch.store import part_record
 from workhold.batch.tasks import Answering, Task
 from workhold.batch.workers import LocalWorkers
-from workhold.files.toolkit.presets import load_toolkit
+from workhold.files.toolkit_file import load_toolkit
 from workhold.model.query import Query
 
 PRESETS = ("plate-20mm", "clamp-plate-20mm", "fence-20mm")
@@ -40,13 +40,13 @@ class Nobody:
     """Looks away."""
 
     def begun(self, worker: str, title: str) -> None:
-        """See ``batch.queues.Watcher``."""
+        """See ``batch.tasks.Watcher``."""
 
     def ended(self, worker: str) -> None:
-        """See ``batch.queues.Watcher``."""
+        """See ``batch.tasks.Watcher``."""
 
     def told(self, sentence: str) -> None:
-        """See ``batch.queues.Watcher``."""
+        """See ``batch.tasks.Watcher``."""
 
 
 def run(quick: bool) -> Section:
@@ -57,7 +57,9 @@ def run(quick: bool) -> Section:
     for workers in (1, 2):
         spent[workers] = seconds_of(partial(LocalWorkers, workers, Nobody()), tasks, workers)
         each = 1e3 * spent[workers] / len(tasks)
-        section.row(str(workers), str(len(tasks)), f"{spent[workers]:.1f}", f"{each:.0f}", f"{1e3 / each:.1f}")
+        section.row(
+            str(workers), str(len(tasks)), f"{spent[workers]:.1f}", f"{each:.0f}", f"{1e3 / each:.1f}"
+        )
     gain = spent[1] / spent[2]
     words = f"two workers do at least {LEAST_GAIN} times as much as one"
     section.target(10, words, f"{gain:.2f} times", gain >= LEAST_GAIN)

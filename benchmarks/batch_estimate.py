@@ -1,4 +1,4 @@
-"""How long a task of a batch takes, predicted and measured; ``--fit`` tells the constants of ``batch.estimate`` instead.
+"""How long a task of a batch takes, predicted and measured; ``--fit`` tells the constants of ``batch.durations`` instead.
 
 Seconds are those of a processor, so that what else the machine does counts little. Which order is best is reckoned from the
 measured times: longest first by the estimate, against the order of the catalogue and against longest first by the truth.
@@ -63,11 +63,11 @@ def run(quick: bool) -> Section:
 
 def measured_runs(length: int, presets: tuple[str, ...]) -> list[tuple[str, float, float, float, float]]:
     """The law, logarithms of faces and steps, seconds measured and predicted of every part in every toolkit."""
-    from workhold.batch.estimate import answering_seconds, measures
-    from workhold.batch.jobs import ANY_PART
-    from workhold.batch.records import part_record
+    from workhold.batch.durations import answering_seconds, measures
+    from workhold.batch.run import ANY_PART
+    from workhold.batch.store import part_record
     from workhold.batch.tasks import Answering, done
-    from workhold.files.toolkit.presets import load_toolkit
+    from workhold.files.toolkit_file import load_toolkit
     from workhold.model.query import Query
 
     runs = []

@@ -17,16 +17,20 @@ from attrs import frozen
 
 from batch import Nobody
 from report import Column, Section, run_alone
-from workhold.batch.measured import Measured
-from workhold.batch.records import refusal_record
-from workhold.batch.store import FolderStore
+from workhold.batch.durations import Measured
+from workhold.batch.store import FolderStore, refusal_record
 from workhold.batch.tasks import Task
 from workhold.batch.workers import LocalWorkers
 
 WORKERS = 2
 TASKS, QUICK_TASKS = 3000, 100
 
-COLUMNS = (Column("queue", 12, right=False), Column("tasks", 6), Column("processor s", 11), Column("ms a task", 9))
+COLUMNS = (
+    Column("queue", 12, right=False),
+    Column("tasks", 6),
+    Column("processor s", 11),
+    Column("ms a task", 9),
+)
 
 
 @frozen

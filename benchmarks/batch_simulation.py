@@ -29,7 +29,9 @@ COLUMNS = (
 
 def run(quick: bool) -> Section:
     """Simulate with more and more workers."""
-    section = Section("batch-simulation", f"{PARTS:,} parts in {TOOLKITS} toolkits, simulated", COLUMNS).begin()
+    section = Section(
+        "batch-simulation", f"{PARTS:,} parts in {TOOLKITS} toolkits, simulated", COLUMNS
+    ).begin()
     kept = kept_figures()["sections"]
     if not {"batch-queue", "batch-estimate"} <= kept.keys():
         section.remark("Nothing is measured yet to reckon with.")
@@ -50,7 +52,9 @@ def run(quick: bool) -> Section:
             words += [duration(end), f"{whole / (workers * end):.0%}"]
         section.row(*words)
     costs = ", ".join(f"{1e3 * cost:.2f} ms ({name})" for name, cost in queue.items())
-    section.remark(f"{count:,} tasks of {whole / count:.2f} s on average, {duration(whole)} of one processor.")
+    section.remark(
+        f"{count:,} tasks of {whole / count:.2f} s on average, {duration(whole)} of one processor."
+    )
     section.remark(f"The queue hands out a task in {costs}.")
     return section
 

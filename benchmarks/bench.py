@@ -31,8 +31,12 @@ from report import Section, machine
 def main() -> None:
     """Run as a script."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--quick", action="store_true", help="a small part of everything; no figures are kept")
-    parser.add_argument("--budget", type=float, metavar="SECONDS", help="seconds for each row of the paper's algebra")
+    parser.add_argument(
+        "--quick", action="store_true", help="a small part of everything; no figures are kept"
+    )
+    parser.add_argument(
+        "--budget", type=float, metavar="SECONDS", help="seconds for each row of the paper's algebra"
+    )
     options = parser.parse_args()
     for key, value in machine().items():
         sys.stdout.write(f"{key}: {value}\n")

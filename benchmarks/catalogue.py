@@ -19,7 +19,9 @@ SEED = 1996
 
 def catalogue(length: int) -> list[Workpiece]:
     """So many parts, the same ones each time."""
-    return list(islice((*(one.make() for one in PARTS), *islice(further(), max(length - len(PARTS), 0))), length))
+    return list(
+        islice((*(one.make() for one in PARTS), *islice(further(), max(length - len(PARTS), 0))), length)
+    )
 
 
 def further() -> Iterator[Workpiece]:
@@ -31,7 +33,14 @@ def further() -> Iterator[Workpiece]:
             [rectangle(a, b, chance.uniform(2, 8)), circle(0, 0, chance.uniform(8, 20))],
             [chamfered(a, b, chance.uniform(3, 10))],
             [lever(a, chance.uniform(12, 20), chance.uniform(6, 11))],
-            [[(0, 0, 0), (a, 0, 0), (a * chance.uniform(0.6, 0.9), b, 0), (a * 0.2, b * chance.uniform(0.7, 1), 0)]],
+            [
+                [
+                    (0, 0, 0),
+                    (a, 0, 0),
+                    (a * chance.uniform(0.6, 0.9), b, 0),
+                    (a * 0.2, b * chance.uniform(0.7, 1), 0),
+                ]
+            ],
             [rectangle(a, b), slot(0, 0, a * 0.3, 8)],
         )
         yield Workpiece.from_loops(f"part-{number}", families[number % len(families)])

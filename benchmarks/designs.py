@@ -86,7 +86,9 @@ def timed(design: Design, threads: int = 1, best: int | None = None) -> dict[str
 
 def counted(design: Design) -> int:
     """Simultaneous contacts A of a design, counted in a process of its own."""
-    outcome: int = measured("designs.contact_count", design.part, design.pitch, design.columns, design.peg_radius)
+    outcome: int = measured(
+        "designs.contact_count", design.part, design.pitch, design.columns, design.peg_radius
+    )
     return outcome
 
 
@@ -119,7 +121,7 @@ def warm() -> None:
 
 def contact_count(part: str, pitch: float, columns: int, peg_radius: float) -> int:
     """Task: simultaneous contacts, all four inside their features, before closure, jaw order and clamping."""
-    from workhold.search.contacts import count_contacts
+    from workhold.search.toolkit_search import count_contacts
 
     return count_contacts(*loaded(part, pitch, columns, peg_radius))
 

@@ -27,7 +27,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import workhold
 from shop_parts import PARTS, ShopPart
 from workhold.conventions import GENTLE_PEG, NEAR_EDGE
-from workhold.drawing.fixture_picture import draw_fixture
+from workhold.drawing.fixture_pictures import draw_fixture
 from workhold.drawing.render import render
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -59,7 +59,8 @@ def judged(quality: NDArray[np.float64]) -> dict[str, bool]:
     gentle_wanted = bool((among[:, CLAMP_AMPLIFICATION] <= GENTLE_PEG).any())
     return {
         "warnings": bool(fewest[0]),
-        "edges": bool(first[EDGE_DISTANCE] >= NEAR_EDGE) or not bool((quality[:, EDGE_DISTANCE] >= NEAR_EDGE).any()),
+        "edges": bool(first[EDGE_DISTANCE] >= NEAR_EDGE)
+        or not bool((quality[:, EDGE_DISTANCE] >= NEAR_EDGE).any()),
         "square": first[TILT] == 0 or not square_wanted,
         "gentle": bool(first[CLAMP_AMPLIFICATION] <= GENTLE_PEG) or not gentle_wanted,
     }
@@ -101,7 +102,9 @@ def chosen(part: ShopPart, seating: int | None = None) -> dict[str, Any]:
         "angle": first.pose.theta_deg,
         "best": best,
         "targets": judged(quality) | met,
-        "picture": draw_fixture(first, result.workpiece, part.vise, title=f"{part.name}: first choice", unit=part.unit),
+        "picture": draw_fixture(
+            first, result.workpiece, part.vise, title=f"{part.name}: first choice", unit=part.unit
+        ),
     }
 
 
@@ -125,7 +128,10 @@ def section(choice: dict[str, Any]) -> str:
         "",
         "| figure | first choice | best of the list |",
         "|---|---:|---:|",
-        *(f"| {FIGURES[n].words} | {value(n, first[n], part)} | {value(n, choice['best'][n], part)} |" for n in SHOWN),
+        *(
+            f"| {FIGURES[n].words} | {value(n, first[n], part)} | {value(n, choice['best'][n], part)} |"
+            for n in SHOWN
+        ),
         "",
         f"![First choice for {part.name}](figures/first-choice/{part.name}.svg)",
     ]
@@ -196,7 +202,9 @@ def main() -> None:
     if asked.seating:
         written(seated_table(choices, missed), SEATED_PLACE)
     else:
-        written(f"{targets - missed} of {targets} targets are met.\n\n" + "\n".join(map(section, choices)), PLACE)
+        written(
+            f"{targets - missed} of {targets} targets are met.\n\n" + "\n".join(map(section, choices)), PLACE
+        )
 
 
 if __name__ == "__main__":

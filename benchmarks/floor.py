@@ -55,7 +55,7 @@ def floor_seconds(part: str, peg_radius: float, tests: int) -> dict[str, Any]:
     """Task: seconds of so many closure tests, the fastest of five runs, and the part of them that close."""
     from numba import njit
 
-    from workhold.kernels.contact.closure import minors
+    from workhold.kernels.contact.rules import minors
 
     @njit(nogil=True, error_model="numpy")
     def closing(points: Array, normals: Array, length: float, tests: int) -> int:

@@ -42,7 +42,12 @@ def run(quick: bool) -> Section:
         size = measured("many.repeated", path, count)
         shown = measured("many.opened", path)
         section.row(
-            "open, show one", "", f"{count:,}", f"{size:.0f}", f"{shown['seconds']:.4f}", f"{shown['memory']:.0f}"
+            "open, show one",
+            "",
+            f"{count:,}",
+            f"{size:.0f}",
+            f"{shown['seconds']:.4f}",
+            f"{shown['memory']:.0f}",
         )
         words = f"one of {MILLION:,} fixtures is shown in under {MOST_SECONDS_TO_SHOW} s"
         section.target(9, words, f"{shown['seconds']:.4f} s", shown["seconds"] < MOST_SECONDS_TO_SHOW)
@@ -62,7 +67,12 @@ def run(quick: bool) -> Section:
     teeth = QUICK_TEETH if quick else TEETH
     cut = measured("many.gear_seconds", teeth)
     section.row(
-        f"gear of {4 * teeth} faces", "", f"{cut['fixtures']:,}", "", f"{cut['seconds']:.2f}", f"{cut['memory']:.0f}"
+        f"gear of {4 * teeth} faces",
+        "",
+        f"{cut['fixtures']:,}",
+        "",
+        f"{cut['seconds']:.2f}",
+        f"{cut['memory']:.0f}",
     )
     words = f"a gear of {4 * TEETH} faces takes at most {MOST_GEAR_SECONDS:g} s"
     section.target(9, words, f"{cut['seconds']:.2f} s", cut["seconds"] <= MOST_GEAR_SECONDS)

@@ -98,7 +98,14 @@ def listed_in(path: str) -> dict[str, bool | int]:
 
 def interrupted(large: Large, part: Path, out: Path, seconds: float) -> Watched:
     """Run the search on a terminal and interrupt it."""
-    vise = ["--pitch", f"{large.pitch:g}", "--columns", str(large.columns), "--peg-radius", f"{0.4 * large.pitch:g}"]
+    vise = [
+        "--pitch",
+        f"{large.pitch:g}",
+        "--columns",
+        str(large.columns),
+        "--peg-radius",
+        f"{0.4 * large.pitch:g}",
+    ]
     command = [*WORKHOLD, "design", str(part), *vise, "--best", str(large.best), "--out", str(out)]
     return watch(command, interrupt_after=seconds)
 
@@ -106,7 +113,9 @@ def interrupted(large: Large, part: Path, out: Path, seconds: float) -> Watched:
 def run(quick: bool, seconds: float | None = None) -> Section:
     """Interrupt the large search after some seconds; a much smaller one in a quick trial."""
     large, seconds = QUICK if quick else FULL, seconds or (QUICK_SECONDS if quick else SECONDS)
-    section = Section("memory", f"A search too large to list, interrupted after {seconds:g} s", COLUMNS).begin()
+    section = Section(
+        "memory", f"A search too large to list, interrupted after {seconds:g} s", COLUMNS
+    ).begin()
     # Compiling is no part of what is watched.
     measured("designs.warm")
     with tempfile.TemporaryDirectory() as folder:
@@ -130,19 +139,19 @@ def run(quick: bool, seconds: float | None = None) -> Section:
         f"{seen.memory:.0f}",
         f"{seen.stopping:.1f}",
     )
-    words = (
-        f"a part of {faces} faces in {large.columns} columns keeps the best {large.best} in under {MOST_MEMORY:g} MiB"
+    words = f"a part of {faces} faces in {large.columns} columns keeps the best {large.best} in under {MOST_MEMORY:g} MiB"
+    section.target(
+        7, words, f"{seen.memory:.0f} MiB at most", faces == large.faces and seen.memory < MOST_MEMORY
     )
-    section.target(7, words, f"{seen.memory:.0f} MiB at most", faces == large.faces and seen.memory < MOST_MEMORY)
     shown = f"{done or 'no'} % done, {remaining or 'nothing'} said to remain"
     section.target(7, "progress and an estimate of the rest are shown", shown, bool(done and remaining))
     finished = seen.code == 0 and kept is not None and kept["complete"]
     partial = seen.code == INTERRUPTED and kept is not None and not kept["complete"]
     clean = (finished or partial) and listed is not None and listed <= large.best
-    value = (
-        f"exit code {seen.code}, {'no file' if listed is None else f'{listed} fixtures'}, {seen.stopping:.1f} s to stop"
+    value = f"exit code {seen.code}, {'no file' if listed is None else f'{listed} fixtures'}, {seen.stopping:.1f} s to stop"
+    section.target(
+        7, "Ctrl-C leaves a clean partial result", value + (", finished before" if finished else ""), clean
     )
-    section.target(7, "Ctrl-C leaves a clean partial result", value + (", finished before" if finished else ""), clean)
     longest = max(seen.stopping, gear_stopped(section, 20 if quick else 100, LISTING * seconds))
     words = f"a search stops within {MOST_SECONDS_TO_STOP:g} s of Ctrl-C"
     section.target(7, words, f"{longest:.1f} s at most", longest <= MOST_SECONDS_TO_STOP)
@@ -158,7 +167,9 @@ def gear_stopped(section: Section, teeth: int, seconds: float) -> float:
         seen = watch(command, interrupt_after=seconds)
     done = seen.last(PER_CENT)
     numbers = f"{seen.seconds:.1f}", f"{done} %" if done else "none", seen.last(REMAINING) or "none", ""
-    section.row("gear", str(4 * teeth), "4", "5", "all", *numbers, f"{seen.memory:.0f}", f"{seen.stopping:.1f}")
+    section.row(
+        "gear", str(4 * teeth), "4", "5", "all", *numbers, f"{seen.memory:.0f}", f"{seen.stopping:.1f}"
+    )
     return seen.stopping
 
 

@@ -48,7 +48,9 @@ def content_of(name: str, figures: dict[str, Any]) -> str | None:
         return all_targets(figures["sections"]) or None
     if name == "plot":
         return (
-            f"![Time against simultaneous contacts, both logarithmic](figures/{PLOT.name})\n" if PLOT.exists() else None
+            f"![Time against simultaneous contacts, both logarithmic](figures/{PLOT.name})\n"
+            if PLOT.exists()
+            else None
         )
     section = figures["sections"].get(name)
     return None if section is None else section_text(section)
@@ -63,14 +65,19 @@ def section_text(section: dict[str, Any]) -> str:
         *(table_line(row) for row in section["rows"]),
         "",
         *(f"{remark}\n" for remark in section["remarks"]),
-        *(f"- target {t['number']}, {t['words']}: {t['value']}, **{verdict(t)}**" for t in section["targets"]),
+        *(
+            f"- target {t['number']}, {t['words']}: {t['value']}, **{verdict(t)}**"
+            for t in section["targets"]
+        ),
     ]
     return "\n".join(lines) + "\n"
 
 
 def all_targets(sections: dict[str, Any]) -> str:
     """One table of all targets in their order."""
-    targets = sorted((t for section in sections.values() for t in section["targets"]), key=lambda t: t["number"])
+    targets = sorted(
+        (t for section in sections.values() for t in section["targets"]), key=lambda t: t["number"]
+    )
     if not targets:
         return ""
     rows = [table_line([str(t["number"]), t["words"], t["value"], verdict(t)]) for t in targets]
@@ -90,7 +97,9 @@ def table_line(cells: list[str]) -> str:
 def main() -> None:
     """Run as a script."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--check", action="store_true", help="write nothing; exit code 1 if the page has other figures")
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit code 1 if the page has other figures"
+    )
     if parser.parse_args().check:
         page = PAGE.read_text(encoding="utf-8")
         sys.exit(0 if filled(page, kept_figures()) == page else 1)

@@ -66,7 +66,9 @@ def run(quick: bool) -> Section:
                 section.target(5, f"{name} under {FIRST_ANSWER:g} s", f"{first.seconds:.2f} s", met)
             compiling = watch([*DESIGN, out, "--force"], WORKHOLD_CACHE_DIR=cache, WORKHOLD_KERNELS="numba")
             is_told = WORD in compiling.shown
-            told = f"the user is told after {compiling.first_shown:.1f} s" if is_told else "the user is not told"
+            told = (
+                f"the user is told after {compiling.first_shown:.1f} s" if is_told else "the user is not told"
+            )
             name = "the first run, compiling on first use"
             section.row(name, f"{compiling.seconds:.1f}", f"{compiling.seconds:.1f}", f"{FIRST_RUN:g}")
             section.target(

@@ -29,7 +29,7 @@ from strategies import random_outline  # noqa: E402
 from workhold import Query, Result, Vise, Workpiece  # noqa: E402
 from workhold.algebra import answer_by_algebra  # noqa: E402
 from workhold.algebra.table_two import table_two  # noqa: E402
-from workhold.files.part.builtin import builtin_parts  # noqa: E402
+from workhold.files.part.finding import builtin_parts  # noqa: E402
 
 RANDOM_PARTS = 200
 # Differing fixtures shown of each case.
@@ -87,7 +87,9 @@ def undecided(result: Result) -> int:
 def described(words: str, fixture: Listed) -> str:
     """One differing fixture."""
     pegs = [f"{p['jaw'][0].upper()}({p['column']},{p['row']}) on {p['segment']}" for p in fixture["pegs"]]
-    return f"    {words}: {fixture['type']} {', '.join(pegs)}, {fixture['pose']}, {fixture['jaw_separation']}\n"
+    return (
+        f"    {words}: {fixture['type']} {', '.join(pegs)}, {fixture['pose']}, {fixture['jaw_separation']}\n"
+    )
 
 
 def compare(case: Case) -> Outcome:
@@ -116,7 +118,9 @@ def compare(case: Case) -> Outcome:
 def print_table_two() -> bool:
     """Print Table 2; whether no resultant has a spurious root and every real root is a pose."""
     rows = table_two(count=100)
-    sys.stdout.write("The paper's Table 2: degrees of the resultants in t, and roots of 100 random systems a row\n")
+    sys.stdout.write(
+        "The paper's Table 2: degrees of the resultants in t, and roots of 100 random systems a row\n"
+    )
     sys.stdout.write(f"{'type':4} {'arcs':>7} | {'paper':>5} {'ours':>4} {'true':>4} | ")
     sys.stdout.write(f"{'complex roots':>13} {'real':>4} {'poses':>5}\n")
     for row in rows:
@@ -124,13 +128,17 @@ def print_table_two() -> bool:
         sys.stdout.write(f"{row.type:4} {arcs:>7} | {row.paper:5} {row.ours:4} {row.general:4} | ")
         sys.stdout.write(f"{row.roots:13} {row.real:4} {row.poses:5}\n")
     good = all(r.ours == r.general and r.roots == r.systems * r.general and r.poses == r.real for r in rows)
-    sys.stdout.write(f"{'no spurious root, every real root is a pose' if good else 'roots and poses differ'}\n\n")
+    sys.stdout.write(
+        f"{'no spurious root, every real root is a pose' if good else 'roots and poses differ'}\n\n"
+    )
     return good
 
 
 def print_comparison(cases: list[Case], processes: int) -> bool:
     """Print a line for each case, in their order, and the verdict; whether all agree."""
-    sys.stdout.write(f"{'part':18} {'faces':>5} {'c':>3} | {'chord curves':>13} | {'algebra':>13} | {'differ':>6} ")
+    sys.stdout.write(
+        f"{'part':18} {'faces':>5} {'c':>3} | {'chord curves':>13} | {'algebra':>13} | {'differ':>6} "
+    )
     sys.stdout.write(f"{'undecided':>13} | {'seconds':>7} {'algebra':>8}\n")
     outcomes = []
     # The first design compiles the kernels; every process finds them on disk, and is to use one processor.

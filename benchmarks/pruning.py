@@ -14,7 +14,11 @@ from report import Column, Section, measured, run_alone
 KEPT = (1, 10, 100)
 # The only ranking that bounds can be given for.
 RANKING = ("closure-margin",)
-DESIGNS = (*(row.design for row in ROWS if row.design.columns > 1), ROWS[10].design, grown(ROWS[10].design, 4))
+DESIGNS = (
+    *(row.design for row in ROWS if row.design.columns > 1),
+    ROWS[10].design,
+    grown(ROWS[10].design, 4),
+)
 
 COLUMNS = (
     Column("part", 12, right=False),
@@ -87,7 +91,9 @@ def run(quick: bool) -> Section:
                 f"{outcome['seconds_all']:.4f}",
             )
     value = f"{'the same' if same else 'not the same'}, {100 * min(shares):.0f} to {100 * max(shares):.0f} % unexamined"
-    section.target(8, "the best K are the first K of all, and work is left out", value, same and max(shares) > 0.0)
+    section.target(
+        8, "the best K are the first K of all, and work is left out", value, same and max(shares) > 0.0
+    )
     return section
 
 

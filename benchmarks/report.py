@@ -138,7 +138,9 @@ def machine() -> dict[str, str]:
     return {
         "processor": first_value("/proc/cpuinfo", "model name") or platform.processor() or platform.machine(),
         "load when it was asked": f"{os.getloadavg()[0]:.1f}",
-        "processors used": str(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()),
+        "processors used": str(
+            len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+        ),
         "memory": f"{int((first_value('/proc/meminfo', 'MemTotal') or '0').split()[0]) / MIB**2:.1f} GiB",
         "system": f"{platform.system()} {platform.release()}, {platform.machine()}",
         "Python": platform.python_version(),
@@ -173,7 +175,12 @@ def measured(task: str, *arguments: Any, limit: float | None = None, **environme
     command = [sys.executable, __file__, task, json.dumps(arguments)]
     try:
         done = subprocess.run(
-            command, stdout=subprocess.PIPE, check=True, text=True, timeout=limit, env=child_environment(**environment)
+            command,
+            stdout=subprocess.PIPE,
+            check=True,
+            text=True,
+            timeout=limit,
+            env=child_environment(**environment),
         )
     except subprocess.TimeoutExpired:
         return None

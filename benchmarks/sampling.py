@@ -50,8 +50,15 @@ class Chords:
         longest = int(problem.diameter / problem.toolkit.pitch[1])
         steps = [(k, m) for k in range(most + 1) for m in range(-longest, longest + 1) if k > 0 or m > 0]
         arc = problem.rows[:, 0] != 0.0
-        pairs = [(a, b) for a in range(len(arc)) for b in range(len(arc)) if not same_lines(problem.rows, a, b)]
-        chosen = [(a, b, k, m, s) for a, b in pairs for k, m in steps for s in ((1, -1) if arc[a] or arc[b] else (1,))]
+        pairs = [
+            (a, b) for a in range(len(arc)) for b in range(len(arc)) if not same_lines(problem.rows, a, b)
+        ]
+        chosen = [
+            (a, b, k, m, s)
+            for a, b in pairs
+            for k, m in steps
+            for s in ((1, -1) if arc[a] or arc[b] else (1,))
+        ]
         a, b, k, m, branch = np.array(chosen).T
         shift = np.array([atan2(row * pitch_y, column * pitch_x) for column, row in zip(k, m, strict=True)])
         length = np.array([hypot(column * pitch_x, row * pitch_y) for column, row in zip(k, m, strict=True)])
@@ -101,7 +108,10 @@ def tail_places(a: Array, b: Array, w: Array, branch: Array) -> Array:
     across = np.stack([-unit[..., 1], unit[..., 0]], axis=-1)
     arcs = a[..., 1:3] + along[..., None] * unit + half[..., None] * across
     moved_line = np.concatenate([b[..., :1], moved, b[..., 3:]], axis=-1)
-    line_arc, arc_line = on_line(a, moved, b[..., 6], branch), on_line(moved_line, a[..., 1:3], a[..., 6], branch)
+    line_arc, arc_line = (
+        on_line(a, moved, b[..., 6], branch),
+        on_line(moved_line, a[..., 1:3], a[..., 6], branch),
+    )
     first, second = a[..., :1] != 0.0, b[..., :1] != 0.0
     return np.where(first, np.where(second, arcs, arc_line), np.where(second, line_arc, lines))
 
@@ -120,7 +130,9 @@ def key_of(jaws: list[tuple[int, int, int, int]], turned: bool) -> Key:
     return tuple(sorted(ways))
 
 
-def brackets(heights: Array, pitch: float) -> Iterator[tuple[int, NDArray[np.int64], NDArray[np.int64], Array]]:
+def brackets(
+    heights: Array, pitch: float
+) -> Iterator[tuple[int, NDArray[np.int64], NDArray[np.int64], Array]]:
     """For every chord: others whose height passes a whole number of pitches from it, the sample before, the target."""
     for one in range(len(heights)):
         (alive,) = np.nonzero(~np.isnan(heights[one]))
@@ -141,7 +153,10 @@ def sampled(problem: Problem, chords: Chords, count: int) -> dict[Key, list[floa
     found: dict[Key, list[float]] = {}
     for one, others, place, target in brackets(heights, problem.toolkit.pitch[1]):
         first, low, high = np.full(len(others), one), psi[place], psi[place + 1]
-        rising = heights[others, place + 1] - heights[one, place + 1] > heights[others, place] - heights[one, place]
+        rising = (
+            heights[others, place + 1] - heights[one, place + 1]
+            > heights[others, place] - heights[one, place]
+        )
         for _ in range(48):
             middle = (low + high) / 2
             above = chords.heights(others, middle) - chords.heights(first, middle) >= target
@@ -172,7 +187,9 @@ def expected(result: Result) -> list[tuple[Key, float]]:
 def main() -> None:
     """Print the table."""
     say = sys.stdout.write
-    say(f"{'part':13} {'pitch':>5} {'c':>2} | {'type I':>6} {'on curves':>9} | found with a number of samples, lost\n")
+    say(
+        f"{'part':13} {'pitch':>5} {'c':>2} | {'type I':>6} {'on curves':>9} | found with a number of samples, lost\n"
+    )
     for name, pitch, columns in CASES:
         start = perf_counter()
         vise = Vise(pitch=pitch, columns=columns, peg_radius=3)

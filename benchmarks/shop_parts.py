@@ -14,7 +14,7 @@ from attrs import frozen
 
 from workhold.files.part.load import load
 from workhold.fixels.vise import Vise
-from workhold.model.restrictions import Restrictions
+from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
 from workhold.units import INCH, MILLIMETRE, Unit
 
@@ -75,7 +75,15 @@ def rectangle(width: float, height: float, radius: float = 0.0, at: tuple[float,
 def chamfered(width: float, height: float, cut: float) -> Loop:
     """A rectangle about the origin, its corners cut."""
     a, b = width / 2, height / 2
-    corners = ((-a + cut, -b), (a - cut, -b), (a, -b + cut), (a, b - cut), (a - cut, b), (-a + cut, b), (-a, b - cut))
+    corners = (
+        (-a + cut, -b),
+        (a - cut, -b),
+        (a, -b + cut),
+        (a, b - cut),
+        (a - cut, b),
+        (-a + cut, b),
+        (-a, b - cut),
+    )
     return polygon(*corners, (-a, -b + cut))
 
 
@@ -196,7 +204,10 @@ PARTS = (
     ShopPart("bracket", "lever plate of the examples", drawing("bracket.dxf", EXAMPLES), Vise(10, 2, 3)),
     ShopPart("rectangle", "plain bar 60 x 40", part("rectangle", rectangle(60, 40)), FINE),
     ShopPart(
-        "nema-17", "motor plate", part("nema-17", chamfered(42.3, 42.3, 4), circle(0, 0, 22), *four(31, 3.2)), FINE
+        "nema-17",
+        "motor plate",
+        part("nema-17", chamfered(42.3, 42.3, 4), circle(0, 0, 22), *four(31, 3.2)),
+        FINE,
     ),
     ShopPart(
         "nema-23",
@@ -220,10 +231,18 @@ PARTS = (
         PLATE,
     ),
     ShopPart(
-        "channel", "steel channel in section, 12 inches deep (CadQuery, Apache-2.0)", drawing("mc_12x31.dxf"), TABLE
+        "channel",
+        "steel channel in section, 12 inches deep (CadQuery, Apache-2.0)",
+        drawing("mc_12x31.dxf"),
+        TABLE,
     ),
     ShopPart("v-slot", "2020 profile (CadQuery, Apache-2.0)", drawing("vslot_2020.dxf"), SMALL),
-    ShopPart("l-bracket", "angle bracket", part("l-bracket", L_BRACKET, circle(60, 10, 8), circle(10, 50, 8)), PLATE),
+    ShopPart(
+        "l-bracket",
+        "angle bracket",
+        part("l-bracket", L_BRACKET, circle(60, 10, 8), circle(10, 50, 8)),
+        PLATE,
+    ),
     ShopPart(
         "gusset",
         "gusset plate with a cut corner",
@@ -233,7 +252,10 @@ PARTS = (
     ShopPart("hinge", "hinge leaf", part("hinge", HINGE, circle(20, 20, 6), circle(60, 20, 6)), FINE),
     ShopPart("clevis", "fork", part("clevis", CLEVIS, circle(6, 0, 10)), FINE),
     ShopPart(
-        "lever", "lever with two bosses", part("lever", lever(90, 22, 12), circle(0, 0, 20), circle(90, 0, 10)), FINE
+        "lever",
+        "lever with two bosses",
+        part("lever", lever(90, 22, 12), circle(0, 0, 20), circle(90, 0, 10)),
+        FINE,
     ),
     ShopPart(
         "cover",
@@ -242,15 +264,24 @@ PARTS = (
         PLATE,
         avoid=(4,),
     ),
-    ShopPart("flat-flange", "round flange with two flats", part("flat-flange", flats(80, 64), circle(0, 0, 30)), FINE),
+    ShopPart(
+        "flat-flange",
+        "round flange with two flats",
+        part("flat-flange", flats(80, 64), circle(0, 0, 30)),
+        FINE,
+    ),
     ShopPart("oval-flange", "oval flange", (lambda: load("flange")), Vise(10, 2, 3)),
-    ShopPart("hexagon", "hexagon, 55 across flats, bored", part("hexagon", hexagon(55), circle(0, 0, 24)), FINE),
+    ShopPart(
+        "hexagon", "hexagon, 55 across flats, bored", part("hexagon", hexagon(55), circle(0, 0, 24)), FINE
+    ),
     ShopPart(
         "tee",
         "tee bracket in inches",
         part(
             "tee",
-            polygon((0, 0), (4, 0), (4, 0.75), (2.375, 0.75), (2.375, 3), (1.625, 3), (1.625, 0.75), (0, 0.75)),
+            polygon(
+                (0, 0), (4, 0), (4, 0.75), (2.375, 0.75), (2.375, 3), (1.625, 3), (1.625, 0.75), (0, 0.75)
+            ),
             unit=INCH,
         ),
         HALF_INCH,
@@ -263,6 +294,9 @@ PARTS = (
         FINE,
     ),
     ShopPart(
-        "bearing-block", "bearing block", part("bearing-block", bearing_block(90, 14, 26, 42), circle(0, 42, 32)), FINE
+        "bearing-block",
+        "bearing block",
+        part("bearing-block", bearing_block(90, 14, 26, 42), circle(0, 42, 32)),
+        FINE,
     ),
 )

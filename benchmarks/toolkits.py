@@ -60,7 +60,13 @@ def run(quick: bool) -> Section:
     )
     outcome = measured("toolkits.two_clamps", REPEATS)
     section.row(
-        "plate, two clamps, best 100", "100 × 60", "", f"{outcome['pairs']:,}", f"{outcome['seconds']:.3f}", "", ""
+        "plate, two clamps, best 100",
+        "100 × 60",
+        "",
+        f"{outcome['pairs']:,}",
+        f"{outcome['seconds']:.3f}",
+        "",
+        "",
     )
     words = f"the best 100 of a rectangle on 8 × 6 holes with two clamps in under {MOST_SECONDS:g} s"
     section.target(10, words, f"{outcome['seconds']:.3f} s", outcome["seconds"] < MOST_SECONDS)
@@ -84,7 +90,9 @@ def query_of(kind: str, part: str, pitch: float, columns: int, way: str) -> Any:
     if kind == "Vise":
         return workhold.Query(workpiece, workhold.Vise(pitch=pitch, columns=columns, peg_radius=3), way)
     if kind == "Fence":
-        return workhold.Query(workpiece, workhold.Fence(pitch=pitch, peg_radius=FENCE_PEG_RADIUS, wall_offset=5))
+        return workhold.Query(
+            workpiece, workhold.Fence(pitch=pitch, peg_radius=FENCE_PEG_RADIUS, wall_offset=5)
+        )
     plate = workhold.Plate(pitch=pitch, peg_radius=3, columns=columns, rows=columns, directions=[way])
     return workhold.Query(workpiece, plate)
 
@@ -97,7 +105,7 @@ def contacts(*task: Any) -> int:
 
         return int(workhold.answer(query, threads=1).statistics["contacts_examined"])
     from workhold.contact.problem import Problem
-    from workhold.search.contacts import contacts_of
+    from workhold.search.toolkit_search import contacts_of
 
     return contacts_of(Problem.of(query), 1)
 

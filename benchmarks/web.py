@@ -43,7 +43,9 @@ class Tally:
     found: dict[str, int] = field(factory=dict)
 
 
-async def ask(client: httpx.AsyncClient, tally: Tally, kind: str, method: str, url: str, **more: Any) -> httpx.Response:
+async def ask(
+    client: httpx.AsyncClient, tally: Tally, kind: str, method: str, url: str, **more: Any
+) -> httpx.Response:
     """Send a request; one that is told to come back later does."""
     while True:
         start = time.perf_counter()

@@ -47,7 +47,9 @@ def get_requires_for_build_wheel(config_settings: Any = None) -> list[str]:
     return [*build_meta.get_requires_for_build_wheel(config_settings), *([] if is_pure() else COMPILER)]
 
 
-def build_wheel(wheel_directory: str, config_settings: Any = None, metadata_directory: str | None = None) -> str:
+def build_wheel(
+    wheel_directory: str, config_settings: Any = None, metadata_directory: str | None = None
+) -> str:
     """Builds a wheel with the kernels of these sources in it."""
     if is_pure():
         return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)

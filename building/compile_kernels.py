@@ -185,7 +185,10 @@ def flat(arguments: Sequence[Any]) -> list[Any]:
 def emit(part: str, folder: Path) -> None:
     """Compile the kernels of a part and write an object file for each, and what it is called with."""
     # Before numba is imported.
-    os.environ["NUMBA_CPU_NAME"], os.environ["NUMBA_CPU_FEATURES"] = PLAIN.get(platform.machine(), "generic"), ""
+    os.environ["NUMBA_CPU_NAME"], os.environ["NUMBA_CPU_FEATURES"] = (
+        PLAIN.get(platform.machine(), "generic"),
+        "",
+    )
     os.environ["WORKHOLD_KERNELS"] = "building"
     sys.path.insert(0, str(SOURCES))
     import llvmlite.binding as llvm
@@ -207,7 +210,10 @@ def emit(part: str, folder: Path) -> None:
         own = module.get_function(compiled.fndesc.llvm_func_name)
         own.linkage, own.name = "external", OWN
         results = words_of(described(compiled.signature.return_type))
-        kinds, arguments = [str(argument.type) for argument in own.arguments], [described(kind) for kind in signature]
+        kinds, arguments = (
+            [str(argument.type) for argument in own.arguments],
+            [described(kind) for kind in signature],
+        )
         module.link_in(llvm.parse_assembly(taking_words(kernel.__name__, arguments, kinds, results)))
         own.linkage = "internal"
         tuning = llvm.create_pipeline_tuning_options(speed_level=0)
@@ -230,8 +236,7 @@ def build(folder: Path, parts: Sequence[str] = ()) -> Path:
     """
     os.environ["WORKHOLD_KERNELS"] = "building"
     sys.path.insert(0, str(SOURCES))
-    from workhold.kernels.base.built import Library
-    from workhold.kernels.base.sources import library_name, source_hash
+    from workhold.kernels.base.built import Library, library_name, source_hash
 
     path, wanted = folder / library_name(), source_hash()
     try:
@@ -246,7 +251,9 @@ def build(folder: Path, parts: Sequence[str] = ()) -> Path:
         objects = Path(name)
         from workhold.kernels.preparing import PARTS
 
-        compilers = [subprocess.Popen([sys.executable, __file__, EMIT, part, name]) for part in parts or PARTS]
+        compilers = [
+            subprocess.Popen([sys.executable, __file__, EMIT, part, name]) for part in parts or PARTS
+        ]
         codes = [process.wait() for process in compilers]
         if any(codes):
             sys.exit("The kernels could not be compiled.")
@@ -273,7 +280,9 @@ def write_exports(path: Path, description: Any) -> None:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     content = json.dumps(description).encode() + b"\0"
-    text = "".join(chr(byte) if 32 <= byte < 127 and byte not in b'"\\' else f"\\{byte:02X}" for byte in content)
+    text = "".join(
+        chr(byte) if 32 <= byte < 127 and byte not in b'"\\' else f"\\{byte:02X}" for byte in content
+    )
     names = {"description": DESCRIPTION, "release": RELEASE, "known": KNOWN, "count": 1 + len(ELEMENTS)}
     module = llvm.parse_assembly(EXPORTS.format(length=len(content), text=text, **names))
     machine = llvm.Target.from_default_triple().create_target_machine(reloc="pic", codemodel="default")

@@ -15,7 +15,11 @@ from pathlib import Path
 from house_rules import RULES, Finding, Rule, long_subjects, replaced_words, sources_of
 
 ROOT = Path(__file__).resolve().parent.parent
-SOURCES, GLOSSARY, RECORD = Path("src", "workhold"), Path("docs", "glossary.md"), Path("building", "house.json")
+SOURCES, GLOSSARY, RECORD = (
+    Path("src", "workhold"),
+    Path("docs", "glossary.md"),
+    Path("building", "house.json"),
+)
 # How many places a sentence names.
 PLACES = 6
 # Counts by rule, then by what the rule counts them for, such as a room.
@@ -26,7 +30,10 @@ Places = Mapping[str, Mapping[str, Sequence[str]]]
 def rules_of(root: Path) -> tuple[Rule, ...]:
     """Every rule of which findings are counted; those of words need the glossary."""
     words = replaced_words(root / GLOSSARY)
-    return (*RULES, Rule("words that the glossary replaces", "use the word that stands beside it there", words))
+    return (
+        *RULES,
+        Rule("words that the glossary replaces", "use the word that stands beside it there", words),
+    )
 
 
 def places_of(root: Path) -> Places:
@@ -70,7 +77,9 @@ def raised(places: Places, record: Counts, rules: Sequence[Rule]) -> list[str]:
             most = record.get(name, {}).get(key, 0)
             if len(where) > most:
                 named = ", ".join(dict.fromkeys(where[-PLACES:])) if name != "size" else str(SOURCES)
-                found.append(f"{name}, {key}: {len(where)} where {most} are recorded: {remedies[name]} ({named}).")
+                found.append(
+                    f"{name}, {key}: {len(where)} where {most} are recorded: {remedies[name]} ({named})."
+                )
     return found
 
 

@@ -110,7 +110,9 @@ class Rule:
 
 def sources_of(root: Path) -> list[Source]:
     """Every file of Python below a folder, in the order of their names."""
-    return [Source(path.relative_to(root).as_posix(), path.read_text()) for path in sorted(root.rglob("*.py"))]
+    return [
+        Source(path.relative_to(root).as_posix(), path.read_text()) for path in sorted(root.rglob("*.py"))
+    ]
 
 
 def outside_rooms_of_kinds(sources: Sequence[Source]) -> Iterator[Source]:
@@ -163,7 +165,9 @@ def is_kind_name(node: ast.AST | None) -> bool:
 def lines_asking_for_kind(sources: Sequence[Source]) -> Iterator[Finding]:
     """Each line that asks for the kind of a toolkit, by room."""
     for source in outside_rooms_of_kinds(sources):
-        lines = {node.lineno for node in ast.walk(source.tree) if asks_for_kind(node) and hasattr(node, "lineno")}
+        lines = {
+            node.lineno for node in ast.walk(source.tree) if asks_for_kind(node) and hasattr(node, "lineno")
+        }
         yield from (Finding(source.room, f"{source.name}:{line}") for line in sorted(lines))
 
 
@@ -269,7 +273,11 @@ def imports_by_name(sources: Sequence[Source]) -> Iterator[Finding]:
     """Each import of a module whose name is a text, by file."""
     for source in sources:
         for node in ast.walk(source.tree):
-            if isinstance(node, ast.Call) and last_name(node.func) in ("import_module", "__import__", "beyond"):
+            if isinstance(node, ast.Call) and last_name(node.func) in (
+                "import_module",
+                "__import__",
+                "beyond",
+            ):
                 yield Finding(source.name, f"{source.name}:{node.lineno}")
 
 

@@ -62,7 +62,9 @@ def public_members(kind: type) -> list[str]:
     """The names of a class's own methods and properties that have something to say."""
     made = (property, classmethod, staticmethod)
     found = {name for name, one in vars(kind).items() if isinstance(one, made) or inspect.isfunction(one)}
-    return [name for name in sorted(found) if not name.startswith("_") and inspect.getdoc(getattr(kind, name))]
+    return [
+        name for name in sorted(found) if not name.startswith("_") and inspect.getdoc(getattr(kind, name))
+    ]
 
 
 def member(kind: str, name: str, owner: type) -> str:
@@ -120,9 +122,13 @@ def entries(content: str, named: bool) -> str:
         if line[:1].strip():
             name, colon, words = line.partition(" : ")
             is_entry = bool(colon) if named else True
-            out.append(f"- `{name}`{': ' + inline(words) if colon else ''}" if is_entry else f"- {inline(line)}")
+            out.append(
+                f"- `{name}`{': ' + inline(words) if colon else ''}" if is_entry else f"- {inline(line)}"
+            )
         else:
-            out[-1] += ("" if out[-1].endswith((":", " ")) else " " if ": " in out[-1] else ": ") + inline(line.strip())
+            out[-1] += ("" if out[-1].endswith((":", " ")) else " " if ": " in out[-1] else ": ") + inline(
+                line.strip()
+            )
     return "\n".join(out)
 
 

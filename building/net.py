@@ -29,27 +29,82 @@ LOAD = ["--load", "force=200 at=10,5 direction=30..60", "--load", "moment=4"]
 QUERIES: dict[str, list[str]] = {
     "vise": [BRACKET, *JAWS],
     "vise-loads": [BRACKET, *JAWS, *LOAD, "--best", "20"],
-    "vise-limits": [BRACKET, *JAWS, "--rows", "6", "--max-opening", "60", "--row-offset", "5", "--blocked", "L-B3,R-A"],
-    "vise-body": [BRACKET, *JAWS, "--body-radius", "4.5", "--min-gap", "12", "--min-opening", "15", "--best", "9"],
+    "vise-limits": [
+        BRACKET,
+        *JAWS,
+        "--rows",
+        "6",
+        "--max-opening",
+        "60",
+        "--row-offset",
+        "5",
+        "--blocked",
+        "L-B3,R-A",
+    ],
+    "vise-body": [
+        BRACKET,
+        *JAWS,
+        "--body-radius",
+        "4.5",
+        "--min-gap",
+        "12",
+        "--min-opening",
+        "15",
+        "--best",
+        "9",
+    ],
     "vise-restricted": [BRACKET, *JAWS, "--avoid", "3", "--keep-out", "circle=20,15,8", "--angle=-10..10"],
     "vise-margin": [BRACKET, *JAWS, "--contact-margin", "1", "--prefer", "precise", "--best", "5"],
     "vise-flat": [BRACKET, *JAWS, "--flat", "2.5,1.5", "--best", "20"],
     "vise-none": [RECTANGLE, *JAWS, "--angle", "0..0.001"],
     "vise-preset": [BRACKET, "--toolkit", "plate-20mm", "--best", "20", "--unit", "inch"],
-    "vise-ranked": ["widget", "--pitch", "8", "--columns", "1", "--peg-radius", "3", "--rank-by", "end-distance"],
+    "vise-ranked": [
+        "widget",
+        "--pitch",
+        "8",
+        "--columns",
+        "1",
+        "--peg-radius",
+        "3",
+        "--rank-by",
+        "end-distance",
+    ],
     "gripper": ["widget", "--toolkit", "gripper", "--pitch", "10", "--peg-radius", "3"],
     "algebra": ["small4Handle", *JAWS, "--engine", "algebra", "--best", "20"],
     "opening": ["widget", "--toolkit", "opening-vise", "--pitch", "8", "--columns", "2", "--peg-radius", "2"],
     "opening-gap": ["widget", "--toolkit", "opening-vise", *JAWS, "--min-gap", "6", "--best", "9"],
     "plate": [BRACKET, *PLATE, "--best", "30"],
-    "plate-travel": [BRACKET, *PLATE, "--travel", "10,40", "--columns", "6", "--rows", "5", "--best", "30", *LOAD],
+    "plate-travel": [
+        BRACKET,
+        *PLATE,
+        "--travel",
+        "10,40",
+        "--columns",
+        "6",
+        "--rows",
+        "5",
+        "--best",
+        "30",
+        *LOAD,
+    ],
     "plate-directions": [BRACKET, *PLATE, "--direction=-x,+y", "--clamp-radius", "5", "--best", "20"],
     "plate-none": [RECTANGLE, *PLATE, "--best", "5", "--angle", "0..1"],
     "plate-flat": [BRACKET, *PLATE, "--flat", "2.5", "--best", "10"],
     "plate-preset": [NEMA, "--toolkit", "clamp-plate-20mm", "--avoid", "8,9,10,11,12", "--best", "10"],
     "plate-inch": [BRACKET, "--toolkit", "clamp-plate-one-inch", "--best", "10", "--unit", "inch"],
     "two-clamps": [RECTANGLE, "--toolkit", "two-clamp-plate-20mm", "--best", "20"],
-    "two-clamps-all": [RECTANGLE, *PLATE, "--clamps", "2", "--columns", "5", "--rows", "4", "--listing", "all"],
+    "two-clamps-all": [
+        RECTANGLE,
+        *PLATE,
+        "--clamps",
+        "2",
+        "--columns",
+        "5",
+        "--rows",
+        "4",
+        "--listing",
+        "all",
+    ],
     "two-clamps-pairs": [
         RECTANGLE,
         *PLATE,
@@ -66,7 +121,18 @@ QUERIES: dict[str, list[str]] = {
     "fence-direction": [BRACKET, *FENCE, "--direction=-x,-y", "--rows", "4", "--columns", "5"],
     "fence-none": [RECTANGLE, *FENCE],
     "fence-two": [RECTANGLE, *FENCE, "--clamps", "2", "--rows", "4", "--columns", "6", "--best", "20"],
-    "fence-two-all": [RECTANGLE, *FENCE, "--clamps", "2", "--rows", "3", "--columns", "4", "--listing", "all"],
+    "fence-two-all": [
+        RECTANGLE,
+        *FENCE,
+        "--clamps",
+        "2",
+        "--rows",
+        "3",
+        "--columns",
+        "4",
+        "--listing",
+        "all",
+    ],
 }
 # Of these the files that a shop takes away are made too.
 SHOWN = (
@@ -137,7 +203,9 @@ def run(*arguments: str) -> tuple[int, bytes]:
 
     outcome = CliRunner().invoke(app, list(arguments))
     text = re.sub(r"[0-9.]+\s+s\b", "", outcome.output)
-    return outcome.exit_code, re.sub(r"\s+", "", text).replace(",compilingonthisfirstrunincluded", "").encode()
+    return outcome.exit_code, re.sub(r"\s+", "", text).replace(
+        ",compilingonthisfirstrunincluded", ""
+    ).encode()
 
 
 def outputs(folder: Path) -> Iterator[tuple[str, str]]:
@@ -166,7 +234,9 @@ def files_of(name: str, folder: Path) -> Iterator[tuple[str, str]]:
     for ending in ("svg", "dxf", "step"):
         path = folder / f"{name}.{ending}"
         command = (
-            ["show", result, "1", "--draw", str(path)] if ending == "svg" else ["sheet", result, "1", "-o", str(path)]
+            ["show", result, "1", "--draw", str(path)]
+            if ending == "svg"
+            else ["sheet", result, "1", "-o", str(path)]
         )
         code, text = run(*command)
         content = path.read_bytes() if path.exists() else text

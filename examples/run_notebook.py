@@ -41,13 +41,17 @@ def outputs(source: str, names: dict[str, Any], number: int) -> list[dict[str, A
             value = eval(compile(ast.Expression(last.value), f"cell {number}", "eval"), names)
     shown = []
     if printed.getvalue():
-        shown.append({"name": "stdout", "output_type": "stream", "text": printed.getvalue().splitlines(keepends=True)})
+        shown.append(
+            {"name": "stdout", "output_type": "stream", "text": printed.getvalue().splitlines(keepends=True)}
+        )
     if value is not None:
         data = {TEXT: repr(value).splitlines(keepends=True)}
         picture = value._repr_svg_() if hasattr(value, "_repr_svg_") else None
         if picture is not None:
             data = {SVG: picture.splitlines(keepends=True), **data}
-        shown.append({"data": data, "execution_count": number, "metadata": {}, "output_type": "execute_result"})
+        shown.append(
+            {"data": data, "execution_count": number, "metadata": {}, "output_type": "execute_result"}
+        )
     return shown
 
 

@@ -62,7 +62,9 @@ def slides(part: Workpiece, face: int, center: tuple[float, float], radius: floa
     for step in (place + np.linspace(-reach, reach, 2 * STEPS + 1) / unit).tolist():
         (x, y), (nx, ny) = segment.at(step), segment.normal(step)
         points.append((x + radius * nx, y + radius * ny))
-    others = [distances(np.array(points), other).min() for number, other in segments.items() if number != face]
+    others = [
+        distances(np.array(points), other).min() for number, other in segments.items() if number != face
+    ]
     return bool(min(others, default=inf) >= radius - ROUNDING)
 
 
@@ -73,7 +75,8 @@ def clear_of_box(fixture: Fixture, result: Result, box: Box, within: float = WIT
     if any(peg.carrier == WALL for peg in fixture.pegs) and min(heights) < -within:
         return False
     return all(
-        hypot(max(x0 - x, 0.0, x - x1), max(y0 - y, 0.0, y - y1)) >= radius_of(peg, result) - within - ROUNDING
+        hypot(max(x0 - x, 0.0, x - x1), max(y0 - y, 0.0, y - y1))
+        >= radius_of(peg, result) - within - ROUNDING
         for peg, (x, y) in places_in_part(fixture)
     )
 
@@ -104,4 +107,6 @@ def lies_within(fixture: Fixture, angles: tuple[float, float], within: float = W
     """Whether the part lies at an angle in a range, or does so after the half turn that swaps the jaws."""
     turns, hair = (0.0, 180.0) if fixture.type == "I" else (0.0,), 100.0 * within
     low, high = angles
-    return any((fixture.pose.theta_deg + turn - low + hair) % 360.0 <= high - low + 2 * hair for turn in turns)
+    return any(
+        (fixture.pose.theta_deg + turn - low + hair) % 360.0 <= high - low + 2 * hair for turn in turns
+    )

@@ -92,13 +92,27 @@ def ell(random: Random) -> list[Loop]:
     corners = [(0.0, 0.0), (a, 0.0), (a, wide), (wide, wide), (wide, b), (0.0, b)]
     r = random.choice([0.0, 5.0, 8.0])
     outer = rounded(corners, [0.0, 0.0, 0.0, r, 0.0, 0.0])
-    return [outer, circle(wide / 2, wide / 2, 4.0), circle(a - 8.0, wide / 2, 3.3), circle(wide / 2, b - 8.0, 3.3)]
+    return [
+        outer,
+        circle(wide / 2, wide / 2, 4.0),
+        circle(a - 8.0, wide / 2, 3.3),
+        circle(wide / 2, b - 8.0, 3.3),
+    ]
 
 
 def channel(random: Random) -> list[Loop]:
     """A U of equal walls."""
     a, b, wall = size(random, 60, 120), size(random, 40, 80), size(random, 10, 18)
-    corners = [(0.0, 0.0), (a, 0.0), (a, b), (a - wall, b), (a - wall, wall), (wall, wall), (wall, b), (0.0, b)]
+    corners = [
+        (0.0, 0.0),
+        (a, 0.0),
+        (a, b),
+        (a - wall, b),
+        (a - wall, wall),
+        (wall, wall),
+        (wall, b),
+        (0.0, b),
+    ]
     r = random.choice([0.0, 4.0])
     return [rounded(corners, [0.0, 0.0, 0.0, 0.0, r, r, 0.0, 0.0]), circle(a / 2, wall / 2, 3.3)]
 
@@ -125,7 +139,12 @@ def rod(random: Random) -> list[Loop]:
     s = random.choice([r, size(random, 12, 20)])
     half = float(random.randrange(4, int(min(r, s)) - 3))
     x, y = sqrt(r * r - half * half), sqrt(s * s - half * half)
-    outer = [(x, -half, 0.0), (length - y, -half, (s + y) / half), (length - y, half, 0.0), (x, half, (r + x) / half)]
+    outer = [
+        (x, -half, 0.0),
+        (length - y, -half, (s + y) / half),
+        (length - y, half, 0.0),
+        (x, half, (r + x) / half),
+    ]
     return [outer, circle(0.0, 0.0, r / 2), circle(length, 0.0, s / 2)]
 
 
@@ -133,7 +152,11 @@ def slot(random: Random) -> list[Loop]:
     """A slot of two half circles, each about a bore."""
     half, r = size(random, 20, 70, 5), size(random, 12, 30)
     outer = [(-half, -r, 0.0), (half, -r, HALF_CIRCLE), (half, r, 0.0), (-half, r, HALF_CIRCLE)]
-    return [outer, circle(-half, 0.0, random.choice([r / 2, 8.0])), circle(half, 0.0, random.choice([r / 2, 8.0]))]
+    return [
+        outer,
+        circle(-half, 0.0, random.choice([r / 2, 8.0])),
+        circle(half, 0.0, random.choice([r / 2, 8.0])),
+    ]
 
 
 def link(random: Random) -> list[Loop]:
@@ -154,7 +177,13 @@ def ears(random: Random) -> list[Loop]:
     """A block on a base that ends in two round ears, each about a bore."""
     a, base, high = size(random, 90, 130), size(random, 12, 20), size(random, 40, 80)
     r, side = base / 2, size(random, 20, 30)
-    outer: Loop = [(0.0, 0.0, 0.0), (a, 0.0, HALF_CIRCLE), (a, base, 0.0), (a - side, base, 0.0), (a - side, high, 0.0)]
+    outer: Loop = [
+        (0.0, 0.0, 0.0),
+        (a, 0.0, HALF_CIRCLE),
+        (a, base, 0.0),
+        (a - side, base, 0.0),
+        (a - side, high, 0.0),
+    ]
     outer += [(side, high, 0.0), (side, base, 0.0), (0.0, base, HALF_CIRCLE)]
     return [outer, circle(0.0, r, r / 2), circle(a, r, r / 2)]
 
@@ -162,7 +191,10 @@ def ears(random: Random) -> list[Loop]:
 def wedge(random: Random) -> list[Loop]:
     """A rectangle with one slanted side, and a bore."""
     a, low, high = size(random, 60, 140), size(random, 20, 30, 5), size(random, 40, 60, 5)
-    return [[(0.0, 0.0, 0.0), (a, 0.0, 0.0), (a, low, 0.0), (0.0, high, 0.0)], circle(low + 4.0, low - 6.0, 8.0)]
+    return [
+        [(0.0, 0.0, 0.0), (a, 0.0, 0.0), (a, low, 0.0), (0.0, high, 0.0)],
+        circle(low + 4.0, low - 6.0, 8.0),
+    ]
 
 
 def cross(random: Random) -> list[Loop]:

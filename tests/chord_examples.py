@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from strategies import random_row
 from workhold.kernels.chord.coincidences import NONE, coincidence
+from workhold.kernels.chord.columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
 from workhold.kernels.chord.evaluation import chord, write_curve
 from workhold.kernels.chord.intervals import chord_intervals
-from workhold.kernels.curves.columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
 
 Array = NDArray[np.float64]
 
@@ -22,7 +22,9 @@ PAIRS = [(a, b) for a in KINDS for b in KINDS]
 TURN = 2 * pi
 
 
-def arc_row(x: float, y: float, radius: float, middle: float = 0.0, half: float = pi, sign: float = 1.0) -> Array:
+def arc_row(
+    x: float, y: float, radius: float, middle: float = 0.0, half: float = pi, sign: float = 1.0
+) -> Array:
     """A feature row of an arc."""
     return np.array([1.0, x, y, cos(middle), sin(middle), half, radius, sign, 0.0, 0.0])
 
@@ -100,7 +102,10 @@ def unlike_arcs(random: Random) -> tuple[Array, Array, float]:
     """A tiny arc or a small fillet beside a huge arc, in either order."""
     big, small = random.uniform(100, 900), 10 ** random.uniform(-1.5, 0.5)
     away = big + random.uniform(-30, 30)
-    arcs = [arc_row(0.0, -away, big, pi / 2, random.uniform(0.05, 1)), arc_row(random.uniform(-9, 9), 0.0, small)]
+    arcs = [
+        arc_row(0.0, -away, big, pi / 2, random.uniform(0.05, 1)),
+        arc_row(random.uniform(-9, 9), 0.0, small),
+    ]
     if random.random() < 0.5:
         arcs.reverse()
     return arcs[0], arcs[1], random.uniform(1, 40)
@@ -108,7 +113,10 @@ def unlike_arcs(random: Random) -> tuple[Array, Array, float]:
 
 def nearly_touching(random: Random) -> tuple[Array, Array, float]:
     """Arcs whose chord exists in a narrow range of directions only, or passes near a tangency."""
-    a, b = arc_row(random.uniform(-9, 9), 3.0, random.uniform(1, 15)), arc_row(0.0, 0.0, random.uniform(1, 15))
+    a, b = (
+        arc_row(random.uniform(-9, 9), 3.0, random.uniform(1, 15)),
+        arc_row(0.0, 0.0, random.uniform(1, 15)),
+    )
     d, way, inside = random.uniform(3, 30), random.uniform(-pi, pi), 10 ** random.uniform(-9, -1)
     apart = abs(d + random.choice([1, -1]) * (random.choice([a[6] + b[6], abs(a[6] - b[6])]) - inside))
     b[1:3] = a[1] + apart * cos(way), a[2] + apart * sin(way)
@@ -124,7 +132,10 @@ def nearly_a_diameter(random: Random) -> tuple[Array, Array, float]:
 
 def turning_fillet(random: Random) -> tuple[Array, Array, float]:
     """A line and a small fillet."""
-    pair = [line_row(0.0, 0.0, 0.0, 40.0), arc_row(random.uniform(-5, 5), random.uniform(1, 9), random.uniform(0.3, 2))]
+    pair = [
+        line_row(0.0, 0.0, 0.0, 40.0),
+        arc_row(random.uniform(-5, 5), random.uniform(1, 9), random.uniform(0.3, 2)),
+    ]
     if random.random() < 0.5:
         pair.reverse()
     return pair[0], pair[1], random.uniform(2, 15)
@@ -171,7 +182,9 @@ def any_ranges(random: Random, least: float = 1e-9) -> tuple[Array, Array, float
             return a, b, d, ranges
 
 
-def random_ranges(random: Random, kinds: tuple[str, str], least: float = 1e-6) -> tuple[Array, Array, float, Array]:
+def random_ranges(
+    random: Random, kinds: tuple[str, str], least: float = 1e-6
+) -> tuple[Array, Array, float, Array]:
     """A random chord that exists, with its ranges no narrower than ``least`` radians."""
     while True:
         a, b, d = random_chord(random, kinds)
@@ -232,7 +245,9 @@ def solutions(a: Array, b: Array, d: float, alphas: Array) -> list[Array]:
             out.append((a[1:3] + s * a[3:5])[None])
             continue
         if a[0] == 0.0 or b[0] == 0.0:
-            line, start, arc, center = (a, a[1:3], b, b[1:3] - w) if a[0] == 0.0 else (b, b[1:3] - w, a, a[1:3])
+            line, start, arc, center = (
+                (a, a[1:3], b, b[1:3] - w) if a[0] == 0.0 else (b, b[1:3] - w, a, a[1:3])
+            )
             gap = start - center
             s = np.roots([1.0, 2 * gap @ line[3:5], gap @ gap - arc[6] ** 2])
             points = start + s[np.isreal(s)].real[:, None] * line[3:5]

@@ -39,7 +39,11 @@ SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compile the kernels in two processes: on a first run each that shares the tests would compile all of them."""
-    if hasattr(config, "workerinput") or not config.getoption("numprocesses", None) or config.getoption("collectonly"):
+    if (
+        hasattr(config, "workerinput")
+        or not config.getoption("numprocesses", None)
+        or config.getoption("collectonly")
+    ):
         return
     from workhold.kernels.base.compiling import is_first_run
 

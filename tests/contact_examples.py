@@ -10,8 +10,8 @@ import numpy as np
 from attrs import define
 
 from workhold.kernels.base.given import Lattice, Limits, Setting
-from workhold.kernels.contact.closure import minors, outward_normal
-from workhold.kernels.contact.equations import WORK_LENGTH, touch
+from workhold.kernels.contact.record import WORK_LENGTH, touch
+from workhold.kernels.contact.rules import minors, outward_normal
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -56,7 +56,8 @@ class Held:
     def in_place(self, shift: Any = (0.0, 0.0, 0.0, 0.0)) -> tuple[Array, Array]:
         """Centres (4, 2) and arms from the first peg, with the unknowns moved by a shift in mm."""
         psi, x, y, separation = (
-            v + s / (self.length if k == 0 else 1.0) for k, (v, s) in enumerate(zip(self.unknowns, shift, strict=True))
+            v + s / (self.length if k == 0 else 1.0)
+            for k, (v, s) in enumerate(zip(self.unknowns, shift, strict=True))
         )
         steps = np.array(
             [(dx + slide * separation, dy) for (dx, dy), slide in zip(self.offsets, self.slides, strict=True)]
@@ -84,14 +85,22 @@ class Held:
         x = np.array([cos(psi), sin(psi)])
         along = points @ x
         left = self.standing
-        return null, size, -float(null[:left] @ normals[:left] @ x), float(along[left:].min() - along[:left].max())
+        return (
+            null,
+            size,
+            -float(null[:left] @ normals[:left] @ x),
+            float(along[left:].min() - along[:left].max()),
+        )
 
 
 def held(random: Random, lines: bool | None = None, spread: float = 20.0) -> Held:
     """Four pegs about (0, 0), on lines only, on arcs only, or on both."""
     psi, x, y, separation = random.uniform(-pi, pi), 0.0, 0.0, random.uniform(0.5, 1.5) * spread
     standing = random.choice([2, 3])
-    offsets = [(0.0, 0.0), *((random.uniform(-spread, spread), random.uniform(-spread, spread)) for _ in range(3))]
+    offsets = [
+        (0.0, 0.0),
+        *((random.uniform(-spread, spread), random.uniform(-spread, spread)) for _ in range(3)),
+    ]
     slides = [float(k >= standing) for k in range(4)]
     steps = [complex(dx + slide * separation, dy) for (dx, dy), slide in zip(offsets, slides, strict=True)]
     turn = complex(cos(psi), sin(psi))
@@ -104,11 +113,15 @@ def held(random: Random, lines: bool | None = None, spread: float = 20.0) -> Hel
         if random.random() < 0.5 if lines is None else lines:
             tangent = normal * 1j
             start = place + tangent * random.uniform(-5, 5)
-            rows.append([0.0, start.real, start.imag, tangent.real, tangent.imag, 1e3, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+            rows.append(
+                [0.0, start.real, start.imag, tangent.real, tangent.imag, 1e3, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]
+            )
         else:
             radius, sign = 10 ** random.uniform(0, 1.8), random.choice([1.0, -1.0])
             center = place - sign * radius * normal
             way = sign * normal
-            rows.append([1.0, center.real, center.imag, way.real, way.imag, pi, radius, sign, 0.0, 0.0, 0.0, 0.0])
+            rows.append(
+                [1.0, center.real, center.imag, way.real, way.imag, pi, radius, sign, 0.0, 0.0, 0.0, 0.0]
+            )
     length = max(hypot((a - b).real, (a - b).imag) for a in steps for b in steps) / 2
     return Held(np.array(rows), offsets, slides, [psi, x, y, separation], length)

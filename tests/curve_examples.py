@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from chord_examples import KINDS, random_chord
 from strategies import random_row
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table
+from workhold.kernels.chord.columns import COLUMN_STEP, LENGTH, PIECE_LENGTH, ROW_STEP
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION
-from workhold.kernels.crossing.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
-from workhold.kernels.curves.columns import COLUMN_STEP, LENGTH, ROW_STEP
-from workhold.kernels.curves.edges import kept_edges
-from workhold.kernels.curves.piece_columns import PIECE_LENGTH
+from workhold.kernels.curves.piece_bounds import kept_edges
 from workhold.kernels.curves.pieces import cell_pieces
+from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_at
 
 Array = NDArray[np.float64]
 
@@ -45,7 +44,9 @@ def random_table(random: Random, count: int = 4, first: str = "") -> tuple[Array
     return features, curve_table(features, lattice(random.uniform(8, 14), 2, 2))
 
 
-def special_table(random: Random, make: Callable[[Random], tuple[Array, Array, float]]) -> tuple[Array, CurveTable]:
+def special_table(
+    random: Random, make: Callable[[Random], tuple[Array, Array, float]]
+) -> tuple[Array, CurveTable]:
     """Two features in a special position (see ``chord_examples.SPECIAL``) and their chords on a lattice of that pitch."""
     a, b, d = make(random)
     features = np.array([a, b])
@@ -56,9 +57,12 @@ def steps_of(table: CurveTable) -> LatticeSteps:
     """The lattice steps of one length that a table's first curve has."""
     length, pitch = float(table.curves.reals[0, LENGTH]), pitch_of(table)
     whole = np.array(
-        [(k, m) for k in range(-2, 3) for m in range(-2, 3) if abs(hypot(k, m) * pitch - length) < 1e-9], np.int64
+        [(k, m) for k in range(-2, 3) for m in range(-2, 3) if abs(hypot(k, m) * pitch - length) < 1e-9],
+        np.int64,
     )
-    return LatticeSteps(np.array([length]), np.array([0, len(whole)]), whole, np.arctan2(whole[:, 1], whole[:, 0]))
+    return LatticeSteps(
+        np.array([length]), np.array([0, len(whole)]), whole, np.arctan2(whole[:, 1], whole[:, 0])
+    )
 
 
 def pitch_of(table: CurveTable) -> float:
@@ -73,7 +77,9 @@ def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode:
     pitch = pitch_of(table) if len(table) else 1.0
     kept = kept_edges(len(members))
     room = np.empty((1, PIECE_LENGTH))
-    pieces, count = cell_pieces(low, high, members, features, table.curves, pitch, 0.0, mode, kept, np.inf, room)
+    pieces, count = cell_pieces(
+        low, high, members, features, table.curves, pitch, 0.0, mode, kept, np.inf, room
+    )
     return pieces[:count]
 
 

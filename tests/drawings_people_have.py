@@ -74,7 +74,9 @@ def size(loop: Loop) -> tuple[float, float]:
     return max(xs) - min(xs), max(ys) - min(ys)
 
 
-def arc_of(p: tuple[float, ...], q: tuple[float, ...], bulge: float) -> tuple[tuple[float, float], float, float, float]:
+def arc_of(
+    p: tuple[float, ...], q: tuple[float, ...], bulge: float
+) -> tuple[tuple[float, float], float, float, float]:
     """Centre, radius, first angle and sweep of a segment with a bulge."""
     (x0, y0), (x1, y1) = p[:2], q[:2]
     chord, lift = hypot(x1 - x0, y1 - y0), (1 - bulge * bulge) / (4 * bulge)
@@ -96,7 +98,9 @@ def chords(loop: Loop, turn: int, digits: int = 12) -> Path:
             (cx, cy), radius, first, sweep = arc_of(p, q, p[2])
             count = max(2, round(turn * abs(sweep) / (2 * pi)))
             angles = [first + sweep * k / count for k in range(1, count)]
-            out += [(round(cx + radius * cos(a), digits), round(cy + radius * sin(a), digits)) for a in angles]
+            out += [
+                (round(cx + radius * cos(a), digits), round(cy + radius * sin(a), digits)) for a in angles
+            ]
     return out
 
 
@@ -133,7 +137,9 @@ def dxf(draw: Callable[[Any], None], version: str = "R2010", units: int = 4) -> 
     return stream.getvalue().encode()
 
 
-def polyline(space: Any, loop: Loop, at: tuple[float, float] = (0, 0), scale: float = 1.0, **attributes: Any) -> None:
+def polyline(
+    space: Any, loop: Loop, at: tuple[float, float] = (0, 0), scale: float = 1.0, **attributes: Any
+) -> None:
     """A closed polyline with bulges."""
     points = [(at[0] + scale * x, at[1] + scale * y, bulge) for x, y, bulge in loop]
     space.add_lwpolyline(points, format="xyb", close=True, dxfattribs=attributes)
@@ -177,7 +183,10 @@ def path(loop: Loop, digits: int = 4, arcs: str = "A", relative: bool = False, s
             base = here if relative else (0.0, 0.0)
             told = " ".join(word(px - base[0], py - base[1]) for px, py in points)
             words.append(
-                f"{'C' if p[2] else 'L'}".lower() * relative + ("C" if p[2] else "L") * (not relative) + " " + told
+                f"{'C' if p[2] else 'L'}".lower() * relative
+                + ("C" if p[2] else "L") * (not relative)
+                + " "
+                + told
             )
             end = points[-1]
             here = (round(end[0], digits), round(end[1], digits))
@@ -189,7 +198,9 @@ def units_missing() -> Iterator[Drawing]:
     for k, (outline, holes) in enumerate(SHAPES):
         width, height = size(outline)
 
-        def draw(space: Any, outline: Loop = outline, holes: Any = holes, exploded: bool = k % 2 == 0) -> None:
+        def draw(
+            space: Any, outline: Loop = outline, holes: Any = holes, exploded: bool = k % 2 == 0
+        ) -> None:
             (lines_and_arcs if exploded else polyline)(space, outline)
             for x, y, radius in holes:
                 space.add_circle((x, y), radius)
@@ -205,7 +216,9 @@ def disguised_circles() -> Iterator[Drawing]:
     for k, (outline, holes) in enumerate(SHAPES):
         width, height = size(outline)
 
-        def draw(space: Any, outline: Loop = outline, holes: Any = holes, rational: bool = k % 2 == 0) -> None:
+        def draw(
+            space: Any, outline: Loop = outline, holes: Any = holes, rational: bool = k % 2 == 0
+        ) -> None:
             lines_and_arcs(space, outline)
             for x, y, radius in holes:
                 if rational:
@@ -254,7 +267,9 @@ def several_parts() -> Iterator[Drawing]:
         width, height = size(outline)
 
         def draw(
-            space: Any, parts: Any = ((outline, 0, 1.0), (other, 100, 0.5), (small, 180, 0.3)), holes: Any = holes
+            space: Any,
+            parts: Any = ((outline, 0, 1.0), (other, 100, 0.5), (small, 180, 0.3)),
+            holes: Any = holes,
         ) -> None:
             for loop, x, scale in parts:
                 polyline(space, loop, (x, 0), scale)
@@ -263,7 +278,9 @@ def several_parts() -> Iterator[Drawing]:
 
         yield Drawing(f"parts-{k}.dxf", dxf(draw), width, height)
         rings = "".join(path(circle(*hole)) for hole in holes)
-        body = f'<g id="a">{path(outline)}{rings}</g><g transform="translate(90,0) scale(0.4)">{path(other)}</g>'
+        body = (
+            f'<g id="a">{path(outline)}{rings}</g><g transform="translate(90,0) scale(0.4)">{path(other)}</g>'
+        )
         yield Drawing(
             f"parts-{k}.svg", svg(body, 'width="200mm" height="80mm" viewBox="-10 -20 200 80"'), width, height
         )
@@ -294,7 +311,9 @@ def true_splines() -> Iterator[Drawing]:
             if fitted:
                 space.add_spline([(x, y, 0) for x, y in [*ring, ring[0]]])
             else:
-                space.add_spline().apply_construction_tool(closed_uniform_bspline([(x, y, 0) for x, y in ring]))
+                space.add_spline().apply_construction_tool(
+                    closed_uniform_bspline([(x, y, 0) for x, y in ring])
+                )
             space.add_circle((0, 0), 6)
 
         yield Drawing(f"cam-{k}.dxf", dxf(cam), 0, 0)

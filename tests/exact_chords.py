@@ -12,7 +12,16 @@ from typing import Any
 from attrs import frozen
 from flint import arb, arb_mat, ctx
 
-__all__ = ["BITS", "ExactChord", "exact_chord", "exact_distance", "exact_solution", "exact_speed", "exactly", "within"]
+__all__ = [
+    "BITS",
+    "ExactChord",
+    "exact_chord",
+    "exact_distance",
+    "exact_solution",
+    "exact_speed",
+    "exactly",
+    "within",
+]
 
 BITS = 200
 Row = Sequence[float]
@@ -119,7 +128,9 @@ def exact_chord(a: Row, b: Row, d: float, alpha: arb, branch: float) -> ExactCho
             return None
         r = plus((reach * way[0], reach * way[1]), (-way[1], way[0]), branch * square.sqrt())
         q = minus(r, gap)
-        return ExactChord(plus(center_a, r), (r[0] / radius, r[1] / radius), (q[0] / other, q[1] / other), step, a)
+        return ExactChord(
+            plus(center_a, r), (r[0] / radius, r[1] / radius), (q[0] / other, q[1] / other), step, a
+        )
     # The line's peg, moved onto the arc's, lies where a line cuts the arc's circle.
     line_first = a[0] == 0.0
     start, t, center, radius = (

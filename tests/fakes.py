@@ -7,7 +7,6 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.fixels.vise import Vise
-from workhold.model.proof import Proof, Undecided
 from workhold.model.quality import (
     CLOSURE_MARGIN,
     FIGURES,
@@ -19,6 +18,7 @@ from workhold.model.quality import (
 )
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
+from workhold.model.search_report import Proof, Undecided
 from workhold.model.workpiece import Workpiece
 
 PLATE = [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, -0.2]], [[20, 20, -1], [30, 20, -1]]]
@@ -49,7 +49,10 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
     )
     counts = vise.arrangements_counted(arrangement)
     result = Result(
-        Query(plate(), vise, ranking="closure_margin"), table, counts, {"I": counts["I"] // 2, "II": counts["II"] // 2}
+        Query(plate(), vise, ranking="closure_margin"),
+        table,
+        counts,
+        {"I": counts["I"] // 2, "II": counts["II"] // 2},
     )
     return evolve(result, **changes)  # type: ignore[arg-type]
 
@@ -71,6 +74,11 @@ def fake_proof(undecided: int, **changes: int) -> Proof:
         Undecided("II" if k % 2 else "I", (0, 1, 2, 4), (0, 1, 0, -k), (0, -3, 1, k), 7.25 * k, f"reason {k}")
         for k in range(undecided)
     )
-    counts = {"cells": 288, "discarded_by_bound": 81_440, "verified": 1324, "escalated": 32 + undecided} | changes
+    counts = {
+        "cells": 288,
+        "discarded_by_bound": 81_440,
+        "verified": 1324,
+        "escalated": 32 + undecided,
+    } | changes
     candidates = counts["discarded_by_bound"] + counts["verified"] + undecided
     return Proof(candidates=candidates, undecided=lost, **counts)

@@ -19,7 +19,10 @@ def shop_parts(count: int, seed: int = 1) -> list[Workpiece]:
         kind, loop = [
             ("rectangle", [[0, 0, 0], [w, 0, 0], [w, h, 0], [0, h, 0]]),
             ("ell", [[0, 0, 0], [w, 0, 0], [w, low, 0], [thin, low, 0], [thin, h, 0], [0, h, 0]]),
-            ("bracket", [[0, 0, 0], [w, 0, 0], [w, round(0.6 * h, 1), 0], [round(0.7 * w, 1), h, 0], [0, h, 0]]),
+            (
+                "bracket",
+                [[0, 0, 0], [w, 0, 0], [w, round(0.6 * h, 1), 0], [round(0.7 * w, 1), h, 0], [0, h, 0]],
+            ),
         ][number % 3]
         parts.append(Workpiece.from_loops(f"{kind}-{number}", [loop]))
     return parts

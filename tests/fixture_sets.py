@@ -73,7 +73,9 @@ class Judge:
 
     def identity(self, fixture: Listed) -> tuple[Any, float, tuple[float, float]]:
         """What names a fixture: its pattern of faces and holes, its orientation in radians, its place on the part in mm."""
-        key, sign = check_result.canonical(fixture["pegs"], self.face, *self.vise["pitch"], self.vise["row_offset"])
+        key, sign = check_result.canonical(
+            fixture["pegs"], self.face, *self.vise["pitch"], self.vise["row_offset"]
+        )
         theta = (radians(fixture["pose"]["theta_deg"]) + (0 if sign == 1 else pi)) % tau
         return key, theta, tuple(check_result.on_part(fixture))  # type: ignore[return-value]
 
@@ -100,7 +102,9 @@ def missing(ours: list[Listed], expected: list[Listed], judge: Judge) -> list[Li
     lost = []
     for fixture in expected:
         key, theta, place = judge.identity(fixture)
-        found = any(abs((theta - t + pi) % tau - pi) < 1e-5 and dist(place, p) < 1e-5 for t, p in have.get(key, []))
+        found = any(
+            abs((theta - t + pi) % tau - pi) < 1e-5 and dist(place, p) < 1e-5 for t, p in have.get(key, [])
+        )
         if not found and not judge.check(fixture)[1] and not near_an_end(judge, fixture):
             lost.append(fixture)
     return lost
@@ -130,7 +134,8 @@ def mirrored(fixtures: list[Listed], face: Callable[[int], int]) -> list[Listed]
         fixture
         | {
             "pegs": [
-                peg | {"segment": face(peg["segment"]), "y": -peg["y"], "row": -peg["row"]} for peg in fixture["pegs"]
+                peg | {"segment": face(peg["segment"]), "y": -peg["y"], "row": -peg["row"]}
+                for peg in fixture["pegs"]
             ],
             "pose": {
                 "theta_deg": -fixture["pose"]["theta_deg"],

@@ -75,7 +75,9 @@ class Flood:
         """Ends (M, 2) of straight pieces about the middle of the part's box."""
         starts, ends = [], []
         for face in self.obstacle.faces:
-            half, count = (face.half_extent, 1) if isinstance(face, Line) else (face.half_sweep, self.chords(face))
+            half, count = (
+                (face.half_extent, 1) if isinstance(face, Line) else (face.half_sweep, self.chords(face))
+            )
             points = np.array([face.at(t) for t in np.linspace(-half, half, count + 1)])
             starts.append(points[:-1] - self.obstacle.center)
             ends.append(points[1:] - self.obstacle.center)
@@ -158,7 +160,12 @@ class Flood:
             theta = self.start[0] + number * self.steps[0]
             still, moving = (self.gaps(theta, self.heights(number), moves) for moves in (False, True))
             known[number] = [
-                [(number, k, one, other) for one in ones for other in others if one[0] - other[1] < self.opening]
+                [
+                    (number, k, one, other)
+                    for one in ones
+                    for other in others
+                    if one[0] - other[1] < self.opening
+                ]
                 for k, (ones, others) in enumerate(zip(still, moving, strict=True))
             ]
         return known[number]
@@ -206,7 +213,12 @@ class Flood:
         """Least and largest turn, and shifts along and across the way: (3, 2)."""
         told = np.array(
             [
-                (i * self.steps[0], self.heights(i)[k] - self.start[2], one[0], min(one[1], other[1] + self.opening))
+                (
+                    i * self.steps[0],
+                    self.heights(i)[k] - self.start[2],
+                    one[0],
+                    min(one[1], other[1] + self.opening),
+                )
                 for i, k, one, other in self.cells()
             ]
         )

@@ -12,7 +12,7 @@ from typing import Any
 
 from attrs import frozen
 
-from workhold.kernels.base.shallow import is_shallow
+from workhold.kernels.base.feature import is_shallow
 
 __all__ = ["ROUNDED", "Rounded", "error_of"]
 
@@ -36,13 +36,17 @@ class Rounded:
 
     def __mul__(self, other: Any) -> Rounded:
         one, two = self.value, float(other)
-        return rounded(one * two, abs(one) * error_of(other) + abs(two) * self.error + self.error * error_of(other))
+        return rounded(
+            one * two, abs(one) * error_of(other) + abs(two) * self.error + self.error * error_of(other)
+        )
 
     def __truediv__(self, other: Any) -> Rounded:
         two = float(other)
         least = abs(two) - error_of(other)
         quotient = self.value / two
-        return rounded(quotient, (self.error + abs(quotient) * error_of(other)) / least if least > 0 else math.inf)
+        return rounded(
+            quotient, (self.error + abs(quotient) * error_of(other)) / least if least > 0 else math.inf
+        )
 
     def __rsub__(self, other: float) -> Rounded:
         return Rounded(other) - self
@@ -96,7 +100,8 @@ def sqrt(x: Any) -> Rounded:
     value, error = float(x), error_of(x)
     least = max(value - error, 0.0)
     return rounded(
-        math.sqrt(value), math.sqrt(value) - math.sqrt(least) if error >= value else error / (2 * math.sqrt(least))
+        math.sqrt(value),
+        math.sqrt(value) - math.sqrt(least) if error >= value else error / (2 * math.sqrt(least)),
     )
 
 

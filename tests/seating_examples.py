@@ -25,10 +25,14 @@ Array = NDArray[np.float64]
 SAMPLED = json.loads((Path(__file__).parent / "data" / "seating" / "sampled.json").read_text())["cases"]
 LEFT, RIGHT = "left", "right"
 # Two parallel faces, and two corners in which a peg has room: pairs, triples, slides and pockets.
-STEP = Workpiece.from_loops("step", [[[0, 0, 0], [50, 0, 0], [50, 20, 0], [28, 20, 0], [28, 44, 0], [0, 36, 0]]])
+STEP = Workpiece.from_loops(
+    "step", [[[0, 0, 0], [50, 0, 0], [50, 20, 0], [28, 20, 0], [28, 44, 0], [0, 36, 0]]]
+)
 
 
-def held(pegs: list[tuple[str, float, float]], pose: tuple[float, float, float], separation: float) -> Fixture:
+def held(
+    pegs: list[tuple[str, float, float]], pose: tuple[float, float, float], separation: float
+) -> Fixture:
     """A fixture of which only what seating needs is told."""
     placed = tuple(Peg(carrier, 0, 0, x, y, 0, 0.0) for carrier, x, y in pegs)
     return Fixture("I", placed, Pose(*pose), separation, {})
@@ -120,11 +124,17 @@ class Obstacle:
         out = []
         for face in self.faces if self.has_wall else ():
             lowest = -pi / 2 - config[0]
-            low = [] if isinstance(face, Line) else touched(face, face.center + np.array([cos(lowest), sin(lowest)]))
+            low = (
+                []
+                if isinstance(face, Line)
+                else touched(face, face.center + np.array([cos(lowest), sin(lowest)]))
+            )
             # A whole circle, a hole, has no corner and never is the lowest.
             for x, y in [np.array(face.at(-face.half_extent)), *low] - self.center:
                 up = sin(config[0]) * x + cos(config[0]) * y
-                out.append((config[2] + up, np.array([cos(config[0]) * x - sin(config[0]) * y, 0.0, 1.0, 0.0])))
+                out.append(
+                    (config[2] + up, np.array([cos(config[0]) * x - sin(config[0]) * y, 0.0, 1.0, 0.0]))
+                )
         return out
 
     def free(self, config: Array) -> float:
@@ -155,7 +165,10 @@ def closed(obstacle: Obstacle, config: Array, size: float, stop: float) -> Array
         slopes = np.array([g * scale for _, g in near]).reshape(-1, 4)
         room = np.array([max(d, 0.0) for d, _ in near])
         told = linprog(
-            [0, 0, 0, sign], -slopes if len(near) else None, room if len(near) else None, bounds=[(-trust, trust)] * 4
+            [0, 0, 0, sign],
+            -slopes if len(near) else None,
+            room if len(near) else None,
+            bounds=[(-trust, trust)] * 4,
         )
         step = told.x * scale
         gain = -sign * told.x[3]
@@ -191,7 +204,11 @@ def on_pieces(row, given, config):
     for k in range(3):
         peg, piece = int(row[PEG + k]), given.rows[int(row[PIECE + k])]
         qx, qy = given.pegs[peg, 0] + given.right[peg] * s - x, given.pegs[peg, 1] - y
-        yield piece, cos(theta) * qx + sin(theta) * qy - piece[X], cos(theta) * qy - sin(theta) * qx - piece[Y]
+        yield (
+            piece,
+            cos(theta) * qx + sin(theta) * qy - piece[X],
+            cos(theta) * qy - sin(theta) * qx - piece[Y],
+        )
 
 
 def touching(row, given, config):

@@ -28,7 +28,9 @@ Kernel = Callable[..., Any]
 MANUAL = Path(__file__).parents[1] / "docs" / "belief.md"
 
 
-def changed(kernel: Kernel, literal: float | None = None, at: int = 0, times: float = 0.1, **names: Any) -> Kernel:
+def changed(
+    kernel: Kernel, literal: float | None = None, at: int = 0, times: float = 0.1, **names: Any
+) -> Kernel:
     """The Python form of a kernel in which one number is multiplied.
 
     Parameters

@@ -86,7 +86,9 @@ def distances(points: Array, face: Segment) -> Array:
     return np.where(np.abs(s) <= face.half_extent, across, np.minimum(*ends))
 
 
-def touches(part: Workpiece, line: tuple[Point, Point], radius: float, low: float, high: float) -> list[Touch]:
+def touches(
+    part: Workpiece, line: tuple[Point, Point], radius: float, low: float, high: float
+) -> list[Touch]:
     """Where a peg about a point of a line (a point and a direction) touches inside one face."""
     start, along = np.array(line[0]), np.array(line[1])
     faces = [face.segment for face in part.faces]
@@ -118,7 +120,9 @@ def touches(part: Workpiece, line: tuple[Point, Point], radius: float, low: floa
     return found
 
 
-def lines_of(fence: Fence, way: str, u: float, laid: Workpiece, rows: list[float]) -> Iterator[tuple[int, Any, Any]]:
+def lines_of(
+    fence: Fence, way: str, u: float, laid: Workpiece, rows: list[float]
+) -> Iterator[tuple[int, Any, Any]]:
     """The clamp's lines with a locator at u: row, or column from the locator's; the line; and how far to look."""
     low, _, high, top = laid.bounds
     if way[1] == "x":
@@ -140,7 +144,9 @@ def slow_fence(part: Workpiece, fence: Fence) -> set[tuple[Any, ...]]:
         loops = [[(*turned((x, y), angle), b) for x, y, b in loop] for loop in part.loops]
         laid = Workpiece.from_loops("laid", [[(x - x0, y - y0, b) for x, y, b in loop] for loop in loops])
         low, _, high, top = laid.bounds
-        rows = [fence.wall_offset + k * fence.pitch[1] for k in range(int(top / fence.pitch[1]) + 2)][: fence.rows]
+        rows = [fence.wall_offset + k * fence.pitch[1] for k in range(int(top / fence.pitch[1]) + 2)][
+            : fence.rows
+        ]
         known: dict[Any, list[Touch]] = {}
 
         def on(*asked: Any, laid: Workpiece = laid, known: dict[Any, list[Touch]] = known) -> list[Touch]:
@@ -158,7 +164,10 @@ def slow_fence(part: Workpiece, fence: Fence) -> set[tuple[Any, ...]]:
                         apart = hypot(x - u, v - y) >= fence.peg_radius + fence.clamp_radius
                         if push <= 1e-6 or v < fence.clamp_radius or not apart:
                             continue
-                        pegs = [(*t.normal, t.center[0] * t.normal[1] - t.center[1] * t.normal[0]) for t in (one, two)]
+                        pegs = [
+                            (*t.normal, t.center[0] * t.normal[1] - t.center[1] * t.normal[0])
+                            for t in (one, two)
+                        ]
                         force = np.linalg.svd(np.array([*ends, *pegs]).T)[2][-1]
                         if force.min() > 1e-6 or force.max() < -1e-6:
                             places = (round(value, 3) + 0.0 for value in (u, x, v))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from slow_fence import WAYS, distances
 from workhold import Plate, Result, Workpiece
-from workhold.geometry.face import Face
+from workhold.geometry.loop import Face
 from workhold.geometry.segment import Line
 
 Array = NDArray[np.float64]
@@ -48,7 +48,9 @@ class Carrier:
         if isinstance(segment, Line):
             normal = np.array(segment.normal())
             return cls(face, True, normal, float(normal @ np.array(segment.middle)) + radius, 1.0)
-        return cls(face, False, np.array(segment.center), segment.radius + segment.sign * radius, segment.sign)
+        return cls(
+            face, False, np.array(segment.center), segment.radius + segment.sign * radius, segment.sign
+        )
 
     def misfit(self, points: Array) -> Array:
         """Signed distance (...) in mm of points (..., 2) from the carrier."""
@@ -75,7 +77,9 @@ def on_both(one: Carrier, other: Carrier, shift: Array, branch: int) -> Array:
             return np.asarray(
                 np.linalg.solve(
                     np.broadcast_to(np.array([one.point, other.point]), (len(shift), 2, 2)),
-                    np.stack([np.full(len(shift), one.size), other.size - shift @ other.point], axis=1)[..., None],
+                    np.stack([np.full(len(shift), one.size), other.size - shift @ other.point], axis=1)[
+                        ..., None
+                    ],
                 )[..., 0]
             )
         if one.is_line or other.is_line:
@@ -168,7 +172,11 @@ class Searched:
 
         What touches another face too is at an end, and marginal, unless the faces are tangent there.
         """
-        place, segment, normal = (float(point[0]), float(point[1])), carrier.face.segment, carrier.normal(point)
+        place, segment, normal = (
+            (float(point[0]), float(point[1])),
+            carrier.face.segment,
+            carrier.normal(point),
+        )
         if abs(segment.parameter(place)) > segment.half_extent + 1e-9:
             return False
         for face in self.part.faces:
@@ -191,7 +199,9 @@ class Searched:
         """Which points (N, 2) are within some mm of a face's stretch of its carrier, beyond its ends and across."""
         return np.asarray(np.abs(distances(points, carrier.face.segment) - self.plate.peg_radius) <= slack)
 
-    def placed(self, i: int, j: int, chord: tuple[float, float], branch: int) -> tuple[Array, NDArray[np.bool_]]:
+    def placed(
+        self, i: int, j: int, chord: tuple[float, float], branch: int
+    ) -> tuple[Array, NDArray[np.bool_]]:
         """Places (N, 2) on the grid of a chord's tail on two carriers, and beside where both pegs may touch."""
         key = i, j, chord, branch
         if key not in self.chords:
@@ -223,11 +233,17 @@ class Searched:
                 near = near | np.roll(near, 1) | np.roll(near, -1)
 
                 def place(
-                    psi: Array, one: Carrier = one, other: Carrier = other, chord: Array = chord, branch: int = branch
+                    psi: Array,
+                    one: Carrier = one,
+                    other: Carrier = other,
+                    chord: Array = chord,
+                    branch: int = branch,
                 ) -> Array:
                     return on_both(one, other, turns(psi) @ chord, branch)
 
-                def misfit(psi: Array, place: Any = place, third: Carrier = third, reach: Array = reach) -> Array:
+                def misfit(
+                    psi: Array, place: Any = place, third: Carrier = third, reach: Array = reach
+                ) -> Array:
                     return third.misfit(place(psi) + turns(psi) @ reach)
 
                 for psi in zeros(misfit, self.grid[near]):
@@ -248,7 +264,10 @@ class Searched:
                 for psi, tail in self.orientations(pegs, chosen):
                     centers = tail + (pegs - pegs[0]) @ turns(np.array([psi]))[0].T
                     pairs = list(zip(carriers, centers, strict=True))
-                    if not all(abs(c.misfit(q)) < 1e-7 and self.touches(c, q, self.plate.peg_radius) for c, q in pairs):
+                    if not all(
+                        abs(c.misfit(q)) < 1e-7 and self.touches(c, q, self.plate.peg_radius)
+                        for c, q in pairs
+                    ):
                         continue
                     wrenches = np.stack([self.wrench(c, q) for c, q in pairs], axis=1)
                     key = tuple(np.round([cos(psi), sin(psi), *tail], 5) + 0.0)
@@ -260,7 +279,9 @@ class Searched:
         """Clamps of a seat: direction, line, place along it in mm from hole (0, 0), and reactions of the locators times
         the push, (3,)."""
         turn, pegs = turns(np.array([seat.psi]))[0], np.array(seat.holes) * self.pitch
-        names = sorted({name for pair in self.plate.directions for name in ([pair] if isinstance(pair, str) else pair)})
+        names = sorted(
+            {name for pair in self.plate.directions for name in ([pair] if isinstance(pair, str) else pair)}
+        )
         for name in names:
             way, axis = np.array(WAYS[name]), "xy".index(name[1])
             most = (self.plate.rows, self.plate.columns)[axis]
@@ -274,7 +295,10 @@ class Searched:
                         tip = origin + s * along
                         push = -float(carrier.normal(tip) @ turn @ way)
                         apart = np.linalg.norm(pegs - (start + s * np.abs(way)), axis=1).min()
-                        if push <= LEAST_PUSH or apart < self.plate.peg_radius + self.plate.clamp_radius - 1e-9:
+                        if (
+                            push <= LEAST_PUSH
+                            or apart < self.plate.peg_radius + self.plate.clamp_radius - 1e-9
+                        ):
                             continue
                         if round(s, 5) not in seen and self.touches(carrier, tip, self.plate.clamp_radius):
                             seen.add(round(s, 5))

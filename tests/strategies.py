@@ -58,7 +58,11 @@ def star(random: Random, count: int, arcs: bool) -> Loop:
 
 def hole_about_middle(random: Random, arcs: bool) -> Loop:
     """A round or polygonal hole about a point near (0, 0), run either way."""
-    x, y, radius = round(random.uniform(-3, 3), 3), round(random.uniform(-3, 3), 3), round(random.uniform(1.0, 9.0), 3)
+    x, y, radius = (
+        round(random.uniform(-3, 3), 3),
+        round(random.uniform(-3, 3), 3),
+        round(random.uniform(1.0, 9.0), 3),
+    )
     way = random.choice([1.0, -1.0])
     if arcs and random.random() < 0.5:
         return [[x - radius, y, way], [x + radius, y, way]]

@@ -74,7 +74,9 @@ def symmetric_parts() -> dict[str, Symmetric]:
     return {
         "slot": placed(2, slot, circle(30, 0, 6), circle(-30, 0, 6)),
         "box": placed(2, rounded(box, 6.0), *(circle(x, y, 5) for x, y in holes), turn=90.0, at=40 + 7j),
-        "parallelogram": placed(2, [(-35, -20, 0), (15, -20, 0), (35, 20, 0), (-15, 20, 0)], turn=11.0, at=3 - 5j),
+        "parallelogram": placed(
+            2, [(-35, -20, 0), (15, -20, 0), (35, 20, 0), (-15, 20, 0)], turn=11.0, at=3 - 5j
+        ),
         "three": placed(3, rounded(ring(3, 46.0), 9.0), *(circle(x, y, 6) for x, y in ring(3, 20.0))),
         "square": placed(4, rounded(ring(4, 36.0, pi / 4), 8.0), circle(0, 0, 9), at=12 + 60j),
         "pinwheel": placed(4, wheel, turn=7.0, at=-20 + 4j),
@@ -103,7 +105,9 @@ def as_the_part_sees(fixture: Fixture, kept: complex, query: Query) -> tuple[str
     for peg in fixture.pegs:
         place = (complex(peg.x, peg.y) - at) * backwards - kept
         place = 0j if stands_for_all and peg.carrier.startswith("clamp") else place
-        rows.append((place, REACH * PUSHES.get(peg.carrier, 0) * backwards, REACH * peg.carrier.endswith("y")))
+        rows.append(
+            (place, REACH * PUSHES.get(peg.carrier, 0) * backwards, REACH * peg.carrier.endswith("y"))
+        )
     return f"{fixture.type} {fixture.direction if query.toolkit.wall is not None else ''}", np.array(rows)
 
 

@@ -17,8 +17,7 @@ from workhold import Query, Result, Vise, Workpiece, answer, load, verify
 from workhold.algebra import answer_by_algebra
 from workhold.completeness import other_entries
 from workhold.files.result.writer import write_result
-from workhold.model.notes import kept_note, stopped_note
-from workhold.model.proof import Proof, Undecided
+from workhold.model.search_report import Proof, Undecided, kept_note, stopped_note
 from workhold.search.seated import seated_answer
 from workhold.verification import Verification
 
@@ -82,7 +81,8 @@ def test_the_best_that_a_server_kept_are_the_best_of_all(whole: Result, tmp_path
     assert compared(kept, tmp_path).holds
     others = attrs.evolve(kept, table=whole.table.take(np.arange(1, 41)))
     assert any(
-        "does not find 1 fixture of it, the first of them fixture 40" in x for x in compared(others, tmp_path).faults
+        "does not find 1 fixture of it, the first of them fixture 40" in x
+        for x in compared(others, tmp_path).faults
     )
 
 

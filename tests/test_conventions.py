@@ -43,7 +43,9 @@ def table() -> list[tuple[str, list[float]]]:
     """What each row of the table is about, and its numbers."""
     text = BELIEF.read_text().partition("| what | number | why |\n|---|---|---|\n")[2].partition("\n\n")[0]
     cells = [[cell.strip() for cell in line.split("|")[1:3]] for line in text.splitlines()]
-    return [(what, [float(number) for number in re.findall(r"\d+e-?\d+", numbers)]) for what, numbers in cells]
+    return [
+        (what, [float(number) for number in re.findall(r"\d+e-?\d+", numbers)]) for what, numbers in cells
+    ]
 
 
 def test_every_row_is_known_once() -> None:
@@ -107,4 +109,6 @@ def test_the_verification_judges_by_the_numbers_of_the_order() -> None:
     group = Path(conventions.__file__).read_text().partition("# == What is warned of")[2]
     names = set(re.findall(r"\b([A-Z_]{4,})\b(?=[A-Z_, ]* = )", group)) - {"FIGURE_DECIMALS"}
     assert len(names) == 14
-    assert {name: getattr(rules, name) for name in names} == {name: getattr(conventions, name) for name in names}
+    assert {name: getattr(rules, name) for name in names} == {
+        name: getattr(conventions, name) for name in names
+    }

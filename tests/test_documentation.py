@@ -72,12 +72,17 @@ def test_every_benchmark_has_a_place_on_the_page() -> None:
 def test_each_term_with_a_source_has_one() -> None:
     """The terms of the glossary's sources are named once each, with a year or the paper."""
     text = (
-        (ROOT / "docs" / "glossary.md").read_text().partition("## Where the terms come from")[2].partition("\n## ")[0]
+        (ROOT / "docs" / "glossary.md")
+        .read_text()
+        .partition("## Where the terms come from")[2]
+        .partition("\n## ")[0]
     )
     rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", text, flags=re.M)[2:]
     terms = [term for names, _ in rows for term in names.split(", ")]
     assert len(terms) == len(set(terms)) > 20
-    assert all(re.search(r"\b(?:18|19|20)\d\d\b", source) or source.startswith("the paper") for _, source in rows)
+    assert all(
+        re.search(r"\b(?:18|19|20)\d\d\b", source) or source.startswith("the paper") for _, source in rows
+    )
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -90,7 +95,9 @@ def test_every_make_that_a_page_names_is_there(page: Path) -> None:
 def layers_checked() -> list[set[str]]:
     """The layers of the import-linter from the highest to the lowest, each with its rooms."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
-    return [{name.strip().removeprefix("workhold.") for name in row.split("|")} for row in contracts[0]["layers"]]
+    return [
+        {name.strip().removeprefix("workhold.") for name in row.split("|")} for row in contracts[0]["layers"]
+    ]
 
 
 def test_the_layers_listed_are_those_that_are_checked() -> None:
@@ -98,7 +105,9 @@ def test_the_layers_listed_are_those_that_are_checked() -> None:
     layers = layers_checked()
     rows = re.findall(r"^\| ((?:`[a-z]+`(?:, )?)+) \|", (ROOT / "CONTRIBUTING.md").read_text(), flags=re.M)
     listed = [name for row in rows for name in re.findall(r"`([a-z]+)`", row)]
-    heights = [next(height for height, names in enumerate(reversed(layers)) if name in names) for name in listed]
+    heights = [
+        next(height for height, names in enumerate(reversed(layers)) if name in names) for name in listed
+    ]
     assert len(listed) > 15
     assert heights == sorted(heights)
 
@@ -110,7 +119,8 @@ def test_every_room_is_in_the_architecture() -> None:
     assert sorted(described) == sorted(rooms)
     picture = (ROOT / "docs" / "images" / "rooms.svg").read_text()
     places = {
-        name: int(y) for y, name in re.findall(r'y="(\d+)" font-size="14" font-weight="bold"[^>]*>(\w+)<', picture)
+        name: int(y)
+        for y, name in re.findall(r'y="(\d+)" font-size="14" font-weight="bold"[^>]*>(\w+)<', picture)
     }
     below = re.search(r'y="(\d+)"[^>]*>and, below these: (.*?)<', picture)
     places |= dict.fromkeys(below[2].split(" · "), int(below[1]))
@@ -160,7 +170,9 @@ def test_the_smallest_toolkit_is_as_small_as_stated() -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_named_in_the_documentation_exist(page: Path) -> None:
     """What a page names in a folder of the project is there."""
-    named = re.findall(r"`(?:python )?((?:benchmarks|building|docs|examples|tests)/[\w./-]+)`", page.read_text())
+    named = re.findall(
+        r"`(?:python )?((?:benchmarks|building|docs|examples|tests)/[\w./-]+)`", page.read_text()
+    )
     assert [name for name in named if not (ROOT / name).exists()] == []
 
 
@@ -168,7 +180,9 @@ def test_files_named_in_the_documentation_exist(page: Path) -> None:
 def test_modules_named_in_the_documentation_exist(page: Path) -> None:
     """What a page names as a module, or as something in one, is there; rooms of the kernels may stand by themselves."""
     roots = [ROOT / "src" / "workhold", ROOT / "src" / "workhold" / "kernels"]
-    rooms = "|".join({path.stem for root in roots for path in root.iterdir() if not path.stem.startswith("_")})
+    rooms = "|".join(
+        {path.stem for root in roots for path in root.iterdir() if not path.stem.startswith("_")}
+    )
     for name in set(re.findall(rf"`(?:workhold\.)?((?:{rooms})(?:\.(?!js\b)\w+)+)[`(]", page.read_text())):
         assert any(is_there(root, name.split(".")) for root in roots), name
 

@@ -22,9 +22,8 @@ from workhold.cli.values import optional_force
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.limits import lacks_memory, thread_count
-from workhold.model.load import Load
 from workhold.model.query import Query
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Load, Tolerance
 from workhold.statics.loads import load_cases
 from workhold.web.worker import said_of
 
@@ -56,13 +55,13 @@ import json, sys
 from workhold import Workpiece, design
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
-from workhold.model.load import Load
+from workhold.model.requirements import Load
 from workhold.model.query import Query
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Tolerance
 from workhold.limits import thread_count
 from workhold.statics.loads import load_cases
-from workhold.files.toolkit.form import checked
-from workhold.files.toolkit.reader import described_toolkit
+from workhold.files.input_forms import checked
+from workhold.files.toolkit_file import described_toolkit
 
 for searched, loops, vise in json.load(sys.stdin):
     try:
@@ -118,7 +117,10 @@ def test_what_lies_within_the_limits_is_designed() -> None:
 @pytest.mark.parametrize("bulge", [1.9e-6, 3e-8, 1e-9, -1e-12, 1e-300])
 def test_an_arc_that_is_nowhere_off_its_chord_is_a_line(tmp_path: Path, bulge: float) -> None:
     """Its middle is bulge times half the chord away from it."""
-    straight, bent = Workpiece.from_loops("plate", with_bulge(0.0)), Workpiece.from_loops("plate", with_bulge(bulge))
+    straight, bent = (
+        Workpiece.from_loops("plate", with_bulge(0.0)),
+        Workpiece.from_loops("plate", with_bulge(bulge)),
+    )
     assert [loop.tolist() for loop in bent.loops] == [loop.tolist() for loop in straight.loops]
     assert straight.remarks == ()
     said = "1 arc that is nowhere farther than 1e-06 mm, or a millionth of its length, from a line taken for one."
@@ -136,11 +138,13 @@ def test_an_arc_with_a_sagitta_stays_one() -> None:
 
 
 def test_the_algebra_tells_when_it_is_asked_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
-    from workhold.algebra import answer_by_algebra, wedges
+    from workhold.algebra import answer_by_algebra, candidates
 
-    monkeypatch.setattr(wedges, "MOST_PEG_PAIRS", 10)
+    monkeypatch.setattr(candidates, "MOST_PEG_PAIRS", 10)
     with pytest.raises(InputError, match="more than 10 ways"):
-        answer_by_algebra(Query(Workpiece.from_loops("plate", [PLATE]), Vise(pitch=10, columns=2, peg_radius=2)))
+        answer_by_algebra(
+            Query(Workpiece.from_loops("plate", [PLATE]), Vise(pitch=10, columns=2, peg_radius=2))
+        )
 
 
 def caused(cause: Exception) -> Exception:
@@ -171,11 +175,17 @@ def test_too_little_memory_is_known_by_what_libraries_say(error: Exception, lack
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        (lambda: Load(points=[(0, 0)], force=1e308), "force 1e+308 is beyond 1e+09 N: check the number and its unit."),
+        (
+            lambda: Load(points=[(0, 0)], force=1e308),
+            "force 1e+308 is beyond 1e+09 N: check the number and its unit.",
+        ),
         (lambda: Load(moment=-1.1e9), "moment -1.1e+09 is beyond 1e+09 N mm"),
         (lambda: Load(points=[(0, 0), (1, -2e6)], force=1), "a load's point -2e+06 is beyond 1e+06 mm"),
         (lambda: Tolerance(peg=1e300), "peg tolerance 1e+300 is beyond 1e+06 mm"),
-        (lambda: Query(load("widget"), Vise(**VISE), contact_margin=1e300), "contact margin 1e+300 is beyond 1e+06 mm"),  # type: ignore[arg-type]
+        (
+            lambda: Query(load("widget"), Vise(**VISE), contact_margin=1e300),
+            "contact margin 1e+300 is beyond 1e+06 mm",
+        ),  # type: ignore[arg-type]
         (lambda: Query(load("widget"), Vise(**VISE), jaw_force=1e300), "jaw force 1e+300 is beyond 1e+09 N"),  # type: ignore[arg-type]
         (lambda: load_cases_of(jaw_force=1e300), "jaw force 1e+300 is beyond 1e+09 N"),
         (lambda: load_cases_of(friction=1e300), "friction 1e+300 is beyond 100: give the coefficient"),

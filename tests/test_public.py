@@ -71,7 +71,9 @@ MAKERS: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
 
 def same(one: Any, other: Any) -> bool:
     """Errors are never equal; what they say is."""
-    return bool((type(one), str(one)) == (type(other), str(other)) if isinstance(one, Exception) else one == other)
+    return bool(
+        (type(one), str(one)) == (type(other), str(other)) if isinstance(one, Exception) else one == other
+    )
 
 
 def test_every_public_class_is_tried() -> None:
@@ -95,7 +97,11 @@ def test_what_is_public_pickles_copies_and_compares(name: str) -> None:
 def test_what_is_large_is_told_in_a_short_line(name: str) -> None:
     """Neither arrays nor lists of pegs."""
     told = repr(MAKERS[name][0]())
-    assert len(told) < LONGEST and "\n" not in told and told.startswith(f"<{name} ".replace("Result ", "Result:"))
+    assert (
+        len(told) < LONGEST
+        and "\n" not in told
+        and told.startswith(f"<{name} ".replace("Result ", "Result:"))
+    )
 
 
 def test_the_lines_say_what_there_is() -> None:

@@ -31,14 +31,20 @@ def texts(source: str) -> Iterator[str]:
     tree = ast.parse(source)
     documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     docstrings = {
-        id(node.body[0].value) for node in ast.walk(tree) if isinstance(node, documented) and is_text(node.body)
+        id(node.body[0].value)
+        for node in ast.walk(tree)
+        if isinstance(node, documented) and is_text(node.body)
     }
     inner: set[int] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.JoinedStr):
             inner |= {id(part) for part in node.values}
             yield "".join(part.value if isinstance(part, ast.Constant) else " " for part in node.values)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings | inner:
+        elif (
+            isinstance(node, ast.Constant)
+            and isinstance(node.value, str)
+            and id(node) not in docstrings | inner
+        ):
             yield node.value
 
 
@@ -57,7 +63,9 @@ def test_no_sentence_outside_the_command_names_an_option(module: Path) -> None:
                 assert f"see workhold {command}" not in text, text
 
 
-@pytest.mark.parametrize("path", sorted((SOURCES / "web" / "static").glob("*.[jh]*")), ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "path", sorted((SOURCES / "web" / "static").glob("*.[jh]*")), ids=lambda path: path.name
+)
 def test_no_sentence_of_the_page_names_an_option(path: Path) -> None:
     """Only names of colours begin with two dashes there."""
     for line in path.read_text().splitlines():

@@ -25,7 +25,18 @@ VISE = ("--peg-radius", "3", "--threads")
 DESIGNS = (
     ("widget.json", "widget", "--pitch", "10", "--columns", "1", *VISE, "1"),
     ("oblong.json", "oblongPart", "--pitch", "8", "--columns", "5", *VISE, "2"),
-    ("bracket.json", "bracket.dxf", "--pitch", "10", "--columns", "1", "--load", "force=200 at=10,5", *VISE, "2"),
+    (
+        "bracket.json",
+        "bracket.dxf",
+        "--pitch",
+        "10",
+        "--columns",
+        "1",
+        "--load",
+        "force=200 at=10,5",
+        *VISE,
+        "2",
+    ),
     ("seats.json", "widget", "--pitch", "8", "--columns", "1", "--best", "20", "--seating", "2", *VISE, "2"),
     ("flange.csv", "flange", "--pitch", "8", "--columns", "2", *VISE, "1"),
 )
@@ -36,12 +47,25 @@ def built(tmp_path_factory) -> Path:
     """A folder with the sdist of these sources, and the wheel that it makes."""
     folder = tmp_path_factory.mktemp("built")
     source = folder / "source"
-    left_out = shutil.ignore_patterns(".*", "*.so", "*.egg-info", "__pycache__", "build", "dist", "demo", "site")
+    left_out = shutil.ignore_patterns(
+        ".*", "*.so", "*.egg-info", "__pycache__", "build", "dist", "demo", "site"
+    )
     shutil.copytree(ROOT, source, ignore=left_out)
     program = "import sys; sys.path.insert(0, 'building'); import backend; backend.build_sdist(sys.argv[1])"
     subprocess.run([sys.executable, "-c", program, folder], cwd=source, check=True, capture_output=True)
     (sdist,) = folder.glob("workhold-*.tar.gz")
-    make = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, sdist]
+    make = [
+        sys.executable,
+        "-m",
+        "pip",
+        "wheel",
+        "-q",
+        "--no-deps",
+        "--no-build-isolation",
+        "-w",
+        folder,
+        sdist,
+    ]
     subprocess.run(make, check=True)
     return folder
 
@@ -54,7 +78,18 @@ def without_numba(built, tmp_path_factory) -> dict[str, str]:
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", home], check=True)
     (packages,) = home.glob("lib/python3*/site-packages")
     python = str(home / "bin" / "python")
-    install = [sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-deps", "--no-index", wheel]
+    install = [
+        sys.executable,
+        "-m",
+        "pip",
+        "--python",
+        python,
+        "install",
+        "-q",
+        "--no-deps",
+        "--no-index",
+        wheel,
+    ]
     subprocess.run(install, check=True)
     for name in needed_by(metadata.Distribution.at(next(packages.glob("workhold-*.dist-info")))):
         for top in {path.parts[0] for path in metadata.files(name) or () if path.parts[0] != ".."}:
@@ -103,7 +138,13 @@ def test_the_sdist_has_what_it_takes_to_build_test_and_cite(built):
         "mkdocs.yml",
     ):
         assert name in names
-    for folder, ending in (("docs", "md"), ("tests", "py"), ("benchmarks", "py"), ("src", "py"), ("examples", "dxf")):
+    for folder, ending in (
+        ("docs", "md"),
+        ("tests", "py"),
+        ("benchmarks", "py"),
+        ("src", "py"),
+        ("examples", "dxf"),
+    ):
         there = {str(path.relative_to(ROOT)) for path in (ROOT / folder).rglob(f"*.{ending}")}
         assert there and there <= names
     assert not [name for name in names if name.endswith((".so", ".pyc"))]

@@ -34,7 +34,12 @@ def rectangle(width: float, height: float) -> Workpiece:
 def checked(result: Result, path: Path, truth: Path | None = None) -> str:
     """What the independent checker says of a result; it fails the test for any fault."""
     workhold.save(result, path)
-    command = [sys.executable, str(TESTS / "check_toolkit.py"), str(path), *(["--truth", str(truth)] if truth else [])]
+    command = [
+        sys.executable,
+        str(TESTS / "check_toolkit.py"),
+        str(path),
+        *(["--truth", str(truth)] if truth else []),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
     return done.stdout
@@ -64,7 +69,9 @@ def assert_all_proven(result: Result, folder: Path, search_files: bool = False) 
         assert outcome.faults == () and outcome.bits == 128 and outcome.is_compared == searched
 
 
-def verify_edited(data: dict[str, Any], edit: Callable[[dict[str, Any]], object], folder: Path) -> Verification:
+def verify_edited(
+    data: dict[str, Any], edit: Callable[[dict[str, Any]], object], folder: Path
+) -> Verification:
     """Verify a result file of some JSON after an edit of it."""
     content = copy.deepcopy(data)
     edit(content)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from workhold import Fixture
-from workhold.model.proof import AT_AN_EDGE, Undecided
+from workhold.model.search_report import AT_AN_EDGE, Undecided
 
 __all__ = ["as_undecided"]
 

@@ -26,14 +26,12 @@ if TYPE_CHECKING:
     from workhold.fixels.plate import Plate
     from workhold.fixels.vise import OpeningVise, Vise
     from workhold.model.fixture import Fixture, Peg, Pose
-    from workhold.model.load import Load
     from workhold.model.query import Query
-    from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
+    from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
     from workhold.model.result import Result
-    from workhold.model.tolerance import Tolerance
     from workhold.model.workpiece import Workpiece
-    from workhold.search.contacts import count_contacts
     from workhold.search.design import answer, design
+    from workhold.search.toolkit_search import count_contacts
     from workhold.seating.solver import seatings
 
 __all__ = [
@@ -72,25 +70,25 @@ HOMES = {
     "Fixture": "workhold.model.fixture",
     "WorkholdError": "workhold.errors",
     "InputError": "workhold.errors",
-    "Load": "workhold.model.load",
+    "Load": "workhold.model.requirements",
     "Peg": "workhold.model.fixture",
     "Plate": "workhold.fixels.plate",
     "Pose": "workhold.model.fixture",
     "Query": "workhold.model.query",
-    "Restrictions": "workhold.model.restrictions",
+    "Restrictions": "workhold.model.requirements",
     "Result": "workhold.model.result",
-    "Tolerance": "workhold.model.tolerance",
+    "Tolerance": "workhold.model.requirements",
     "OpeningVise": "workhold.fixels.vise",
     "Vise": "workhold.fixels.vise",
     "Workpiece": "workhold.model.workpiece",
     "answer": "workhold.search.design",
     "answer_to_file": "workhold.files.result.columns",
-    "circle_zone": "workhold.model.restrictions",
-    "count_contacts": "workhold.search.contacts",
+    "circle_zone": "workhold.model.requirements",
+    "count_contacts": "workhold.search.toolkit_search",
     "design": "workhold.search.design",
     "load": "workhold.files.part.load",
     "open": "workhold.files.result.reader:read_result",
-    "polygon_zone": "workhold.model.restrictions",
+    "polygon_zone": "workhold.model.requirements",
     "save": "workhold.files.result.save",
     "seatings": "workhold.seating.solver",
     "verify": "workhold.completeness",
@@ -99,15 +97,15 @@ HOMES = {
 
 # What methods of the model's classes end in, see ``delegates``.
 DELEGATES = {
-    "fixture_picture": "workhold.presenting.pictures",
+    "fixture_picture": "workhold.presenting.papers",
     "preset_fields": "workhold.presenting.presets",
     "preset_names_of": "workhold.presenting.presets",
     "preset_tolerance": "workhold.presenting.presets",
-    "result_picture": "workhold.presenting.pictures",
+    "result_picture": "workhold.presenting.papers",
     "save_sheet": "workhold.presenting.papers",
-    "to_arrow": "workhold.presenting.frames",
-    "to_pandas": "workhold.presenting.frames",
-    "workpiece_picture": "workhold.presenting.pictures",
+    "to_arrow": "workhold.presenting.data",
+    "to_pandas": "workhold.presenting.data",
+    "workpiece_picture": "workhold.presenting.papers",
 }
 
 

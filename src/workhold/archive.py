@@ -96,7 +96,9 @@ class Member:
         sizes = struct.pack("<2H2Q", SIZES, 16, self.size, self.size)
         extra = sizes + struct.pack("<2H", ROOM, self.room) + bytes(self.room)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
-        return LOCAL.pack(FIRST_BYTES, VERSION, 0, 0, 0, FIRST_DAY, self.checksum, *lengths) + self.name + extra
+        return (
+            LOCAL.pack(FIRST_BYTES, VERSION, 0, 0, 0, FIRST_DAY, self.checksum, *lengths) + self.name + extra
+        )
 
     def central_header(self) -> bytes:
         """The entry of the directory."""
@@ -171,7 +173,9 @@ class ArchiveWriter:
             self.put(one.start, one.local_header())
         place, count = member.content + member.size, len(self.members)
         directory = b"".join(one.central_header() for one in self.members)
-        end = END_64.pack(b"PK\x06\x06", END_64.size - 12, VERSION, VERSION, 0, 0, count, count, len(directory), place)
+        end = END_64.pack(
+            b"PK\x06\x06", END_64.size - 12, VERSION, VERSION, 0, 0, count, count, len(directory), place
+        )
         locator = LOCATOR.pack(b"PK\x06\x07", 0, place + len(directory), 1)
         last_words = END.pack(
             b"PK\x05\x06", 0, 0, count, count, len(directory), min(place, IN_EXTRA), len(mark.encode())
@@ -342,7 +346,9 @@ def mapped(content: mmap.mmap, first: int, end: int, name: str, column: Column) 
     """
     (length,) = struct.unpack_from("<H", content[first : min(first + 10, end)], 8)
     rows, rest = divmod(end - first - 10 - length, column.row_bytes)
-    header, wanted = (b"".join(part.split()) for part in (content[first : first + 10 + length], column.header(rows)))
+    header, wanted = (
+        b"".join(part.split()) for part in (content[first : first + 10 + length], column.header(rows))
+    )
     if rows < 0 or rest or header[:8] + header[10:] != wanted[:8] + wanted[10:]:
         raise BadZipFile(f"{name}.npy is not an array of {column.kind} with rows of shape {column.shape}")
     if rows == 0:

@@ -14,9 +14,8 @@ from typing import Any
 from attrs import astuple, evolve, fields
 
 from workhold.model.fixture import Fixture
-from workhold.model.notes import kept_note
-from workhold.model.proof import Proof, Undecided
 from workhold.model.result import Result
+from workhold.model.search_report import Proof, Undecided, kept_note
 from workhold.verification.account import is_by_algebra
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.repeats import Seen
@@ -69,11 +68,17 @@ def verify(
         return verify_listing(listing, tell)
     outcome = verify_listing(listing, lambda fraction, count: tell(fraction / 2, count))
     return completed(
-        outcome, listing, threads=threads, cancel=cancel, progress=lambda done, count: tell((1 + done) / 2, count)
+        outcome,
+        listing,
+        threads=threads,
+        cancel=cancel,
+        progress=lambda done, count: tell((1 + done) / 2, count),
     )
 
 
-def completed(outcome: Verification, listing: Listing, *, threads: int | None = None, **watching: Any) -> Verification:
+def completed(
+    outcome: Verification, listing: Listing, *, threads: int | None = None, **watching: Any
+) -> Verification:
     """A verification with what the search of the listing's query finds wrong with it; as it was when that is
     cancelled.
 
@@ -148,7 +153,9 @@ def first_other(written: Any, derived: Any, key: str = "") -> str:
         pairs = [(key or name, written.get(name), value) for name, value in derived.items()]
         return next((other for name, a, b in pairs if (other := first_other(a, b, name))), "")
     if isinstance(derived, list) and isinstance(written, list) and len(written) == len(derived):
-        return next((other for a, b in zip(written, derived, strict=True) if (other := first_other(a, b, key))), "")
+        return next(
+            (other for a, b in zip(written, derived, strict=True) if (other := first_other(a, b, key))), ""
+        )
     if isinstance(derived, float) and isinstance(written, float | int):
         return "" if abs(written - derived) <= SAME_SEATING else key
     return "" if written == derived else key

@@ -1,13 +1,16 @@
-"""How large what is given may be: a number of a few bytes must not ask for all memory, or for arithmetic that says nothing.
+"""How numbers given are taken, and how large they may be.
 
-The same hold for files, Python and the page. What a file or a request may be in bytes, segments and seconds is said where
-these are read (``files.part.load``, ``web.limits``).
+A number of a few bytes must not ask for all memory, or for arithmetic that says nothing. The limits hold alike for files,
+Python and the page. What a file or a request may be in bytes, segments and seconds is said where these are read
+(``files.part.load``, ``web.guard``).
 """
 
 from __future__ import annotations
 
 import errno
 import os
+from math import inf, nan
+from typing import Any
 
 from workhold.errors import InputError
 
@@ -23,13 +26,52 @@ __all__ = [
     "MOST_STEPS",
     "MOST_THREADS",
     "NO_ROOM",
+    "counting_number",
     "lacks_memory",
+    "real",
     "refuse_little_space",
     "refuse_long",
     "refuse_many_steps",
     "refuse_strong",
     "thread_count",
 ]
+
+
+def real(value: Any) -> float:
+    """A number as a float: infinite when it is a whole number beyond all floats, NaN when it is no number.
+
+    So that what refuses numbers that are not finite refuses these as well.
+
+    Examples
+    --------
+    >>> real(3), real(-(10**400)), real("three")
+    (3.0, -inf, nan)
+    """
+    try:
+        return float(value)
+    except OverflowError:
+        return inf if value > 0 else -inf
+    except (TypeError, ValueError):
+        return nan
+
+
+def counting_number(name: str, value: Any) -> int | None:
+    """A count from 1, or None.
+
+    Raises
+    ------
+    InputError
+        Naming what is counted, for anything else.
+    """
+    if value is None:
+        return None
+    try:
+        if value == int(value) and value >= 1:
+            return int(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(f"{name} {value} is not a positive whole number: give 1 or more.")
+
 
 # Coordinates and lengths in mm: a double of this size is known to 1e-10 mm, a tenth of the width of a rule's edge.
 MOST_LENGTH = 1e6

@@ -53,7 +53,9 @@ def test_complete_sets(name: str) -> None:
     judge = Judge(workpiece, vise)
     have = [judge.identity(fixture) for fixture in listed(answer_by_algebra(Query(workpiece, vise)))]
     for fixture in truth["fixtures"]:
-        key, theta, _ = judge.identity(fixture | {"pose": {"theta_deg": fixture["theta_deg"], "x": 0.0, "y": 0.0}})
+        key, theta, _ = judge.identity(
+            fixture | {"pose": {"theta_deg": fixture["theta_deg"], "x": 0.0, "y": 0.0}}
+        )
         near = [t for k, t, _ in have if k == key and abs((theta - t + 3) % (2 * pi) - 3) < 1e-5]
         assert len(near) == 1 or fixture["marginal"]
     assert assert_engines_agree(workpiece, vise) > 0
@@ -64,25 +66,44 @@ def test_random_parts(seed: int) -> None:
     """Parts of three and four faces, lines and arcs, jaws with rows at different heights."""
     part = straightened(star(Random(seed), 3 + seed % 2, True))
     assert part is not None
-    assert assert_engines_agree(part, Vise(pitch=24.0, columns=1 + seed % 2, peg_radius=2.0, row_offset=1.7 * seed)) > 0
+    assert (
+        assert_engines_agree(
+            part, Vise(pitch=24.0, columns=1 + seed % 2, peg_radius=2.0, row_offset=1.7 * seed)
+        )
+        > 0
+    )
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3])
 def test_equal_arcs_one_step_apart_and_parallel_lines(angle: float) -> None:
     """Fillets whose centres are lattice steps apart slide: that orientation is found apart from the resultants."""
-    assert assert_engines_agree(rounded(20.0, 20.0, 6.0, angle), Vise(pitch=10.0, columns=2, peg_radius=2.0)) > 0
+    assert (
+        assert_engines_agree(rounded(20.0, 20.0, 6.0, angle), Vise(pitch=10.0, columns=2, peg_radius=2.0)) > 0
+    )
 
 
 @pytest.mark.parametrize("miss", [1e-3, 1e-6])
 def test_nearly_equal_steps(miss: float) -> None:
     """Centres almost a step apart crowd up to eight roots together; ball arithmetic takes them apart."""
-    assert assert_engines_agree(rounded(20.0 + miss, 20.0, 6.0, 0.0), Vise(pitch=10.0, columns=1, peg_radius=2.0)) > 0
+    assert (
+        assert_engines_agree(
+            rounded(20.0 + miss, 20.0, 6.0, 0.0), Vise(pitch=10.0, columns=1, peg_radius=2.0)
+        )
+        > 0
+    )
 
 
 def bumps(width: float, smaller: float, tilt: float) -> Workpiece:
     """Two fillets of radius 6, their centres ``width`` apart, one ``smaller``; two lines ``tilt`` off being parallel."""
     radius = 6.0 - smaller
-    loop = [[-6, 0, QUARTER], [0, -6, 0], [width - radius, 0, QUARTER], [width, -radius, 0], [38, 3, 0], [31, 27, 0]]
+    loop = [
+        [-6, 0, QUARTER],
+        [0, -6, 0],
+        [width - radius, 0, QUARTER],
+        [width, -radius, 0],
+        [38, 3, 0],
+        [31, 27, 0],
+    ]
     return Workpiece.from_loops("bumps", [[*loop, [-6, 27 + 37 * tilt, 0]]])
 
 

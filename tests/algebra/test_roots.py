@@ -7,12 +7,11 @@ from math import pi, tau
 import numpy as np
 import pytest
 
+from workhold.algebra.candidates import SECTORS
 from workhold.algebra.exact import exact_roots
-from workhold.algebra.poses import poses_at
+from workhold.algebra.poses import orientations, poses_at
 from workhold.algebra.resultants import PAPER_DEGREES
-from workhold.algebra.roots import orientations
 from workhold.algebra.table_two import random_contacts
-from workhold.algebra.wedges import SECTORS
 
 
 @pytest.mark.parametrize("case", [case for case in PAPER_DEGREES if case[0] > 0])

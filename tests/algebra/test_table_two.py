@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from workhold.algebra.exact import exact_resultant, exact_roots
+from workhold.algebra.poses import companion_roots
 from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
-from workhold.algebra.roots import companion_roots
 from workhold.algebra.table_two import random_contacts, table_two
 
 

@@ -9,10 +9,9 @@ import pytest
 
 from workhold import Query, Vise, Workpiece
 from workhold.algebra import answer_by_algebra, engine
-from workhold.algebra.quartets import Systems
+from workhold.algebra.candidates import SECTORS, Systems
+from workhold.algebra.engine import MOST_NAMED, undecided_notes
 from workhold.algebra.sliding_pairs import two_and_two_sliding_pairs
-from workhold.algebra.undecided import MOST_NAMED, undecided_notes
-from workhold.algebra.wedges import SECTORS
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
 VISE = Vise(pitch=15, columns=2, peg_radius=2)
@@ -58,4 +57,6 @@ def test_a_resultant_that_vanishes_is_named(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(engine, "alike", lambda contacts: np.zeros(len(contacts.rows), np.bool_))
     result = answer_by_algebra(Query(WEDGE, VISE, "I"))
     assert result.statistics["undecided"] == 1
-    assert result.notes[-1].startswith("Undecided: pegs in left column +0, row +0 on face 0; left column +0, row +1 on")
+    assert result.notes[-1].startswith(
+        "Undecided: pegs in left column +0, row +0 on face 0; left column +0, row +1 on"
+    )

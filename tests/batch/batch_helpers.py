@@ -10,11 +10,9 @@ from threading import Event
 
 from attrs import define, field, frozen
 
-from workhold.batch.jobs import ANY_PART, HeldIn, Request
-from workhold.batch.measured import Measured
-from workhold.batch.records import refusal_record
-from workhold.batch.run import Batch, Work, run_batch
-from workhold.batch.store import FolderStore, Store
+from workhold.batch.durations import Measured
+from workhold.batch.run import ANY_PART, Batch, HeldIn, Request, Work, run_batch
+from workhold.batch.store import FolderStore, Store, refusal_record
 from workhold.batch.tasks import Outcome, Task, done
 from workhold.errors import InputError
 from workhold.files.part_list import part_list
@@ -86,7 +84,10 @@ def run_in(
 
 def records_in(folder: Path) -> dict[str, bytes]:
     """All records of a folder, by their paths."""
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(folder.rglob("work/*/*.json"))}
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in sorted(folder.rglob("work/*/*.json"))
+    }
 
 
 @frozen

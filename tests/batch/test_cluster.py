@@ -20,14 +20,11 @@ from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, run_in
 from test_command import run, started, wait_for_records
 from test_run import square
 
-from workhold.batch.measured import Measured
-from workhold.batch.records import plain_record, refusal_record
-from workhold.batch.report import Summary
-from workhold.batch.results import write_results
-from workhold.batch.store import FolderStore
+from workhold.batch.durations import Measured
+from workhold.batch.report import Summary, write_results
+from workhold.batch.store import FolderStore, UrlStore, plain_record, refusal_record, store_at
 from workhold.batch.tables import table_names
 from workhold.batch.tasks import Outcome
-from workhold.batch.url_store import UrlStore, store_at
 from workhold.errors import InputError
 
 pytest.importorskip("distributed", reason="needs distributed")
@@ -64,7 +61,8 @@ def test_a_cluster_makes_what_one_process_makes(shop: Path, tmp_path: Path) -> N
         assert told.startswith("24 jobs: 22 held, 2 not readable.")
     alone, cluster = tmp_path / "--workers", tmp_path / "--local-cluster"
     kept = {
-        f"work/{path.relative_to(tmp_path / 'records')}": path.read_bytes() for path in tmp_path.glob("records/*/*")
+        f"work/{path.relative_to(tmp_path / 'records')}": path.read_bytes()
+        for path in tmp_path.glob("records/*/*")
     }
     assert records_in(alone) == kept and not (cluster / "work").exists()
     for name in table_names():
@@ -84,7 +82,9 @@ def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: 
     store.write("abcd", refusal_record("no")[:-1])
     assert not store.has("abcd") and store.read("abcd") is None
     assert run_in(tmp_path, shop / "p30.json", queue=InlineQueue(0), store=store).is_complete
-    write_results(batch, store, Measured(tmp_path / "none"), tmp_path, "r.html", Summary("x", [], []), tmp_path)
+    write_results(
+        batch, store, Measured(tmp_path / "none"), tmp_path, "r.html", Summary("x", [], []), tmp_path
+    )
     text = (tmp_path / "r.html").read_text()
     assert store.place(name) in text and text.count("<img") == 1 and "workhold sheet" not in text
     assert len(list(tmp_path.glob("*.pdf"))) == 1
@@ -106,7 +106,9 @@ def test_a_worker_puts_records_where_they_belong(tmp_path: Path, monkeypatch: py
     assert lost.record is None and "cannot be written" in lost.failure
 
 
-@pytest.mark.parametrize("address", ["foo", "tcp://", "127.0.0.1:99999", "tcp://:8786", "inproc://x:1", "tcp://a:1x"])
+@pytest.mark.parametrize(
+    "address", ["foo", "tcp://", "127.0.0.1:99999", "tcp://:8786", "inproc://x:1", "tcp://a:1x"]
+)
 def test_words_that_are_no_address_are_refused(address: str) -> None:
     from workhold.batch.cluster import ClusterWorkers
 
@@ -147,7 +149,13 @@ def test_a_task_that_ends_its_workers_is_given_up_and_others_are_not(
 
 @pytest.mark.parametrize(
     ("address", "threads", "started", "words"),
-    [(None, 1, [2], ""), (None, 2, [], ""), (None, 0, [2], ""), ("a:1", 0, [], "no worker"), ("a:1", 1, [], "")],
+    [
+        (None, 1, [2], ""),
+        (None, 2, [], ""),
+        (None, 0, [2], ""),
+        ("a:1", 0, [], "no worker"),
+        ("a:1", 1, [], ""),
+    ],
 )
 def test_workers_that_stay_away_are_started_again_on_this_machine(
     monkeypatch: pytest.MonkeyPatch, address: str | None, threads: int, started: list[int], words: str
@@ -166,7 +174,9 @@ def test_workers_that_stay_away_are_started_again_on_this_machine(
     assert not scaled and not onlooker.sentences
     for now[0] in (121.0, 124.0, 139.0):
         queue.count_threads()
-    assert scaled == started and [words in sentence for sentence in onlooker.sentences] == [True] * bool(words)
+    assert scaled == started and [words in sentence for sentence in onlooker.sentences] == [True] * bool(
+        words
+    )
 
 
 @define(eq=False)
@@ -188,8 +198,12 @@ class Remade:
         return Outcome(self.task.name, refusal_record("done again"), "")
 
 
-@pytest.mark.parametrize("states", [["finished"], ["lost", "lost", "finished"], ["pending", "lost", "finished"]])
-def test_what_is_lost_with_its_worker_before_it_is_fetched_is_made_again(tmp_path: Path, states: list[str]) -> None:
+@pytest.mark.parametrize(
+    "states", [["finished"], ["lost", "lost", "finished"], ["pending", "lost", "finished"]]
+)
+def test_what_is_lost_with_its_worker_before_it_is_fetched_is_made_again(
+    tmp_path: Path, states: list[str]
+) -> None:
     from workhold.batch.cluster import ClusterWorkers
 
     onlooker = Onlooker()
@@ -241,7 +255,10 @@ def test_a_lost_scheduler_is_told_and_the_next_one_goes_on(shop: Path, tmp_path:
         _, error = command.communicate(timeout=300)
     assert command.returncode in (0, 2) and "Traceback" not in error, error
     if command.returncode == 2:
-        assert f"the scheduler at {address} is lost; what is done is kept: start it, and then the same command" in error
+        assert (
+            f"the scheduler at {address} is lost; what is done is kept: start it, and then the same command"
+            in error
+        )
         assert f"The scheduler at {address} is lost" in (out / "report.html").read_text()
     with scheduler(tmp_path) as (address, _, _):
         code, _, warned = run(shop, *MANY_TOOLS, "--out", out, "--cluster", address)

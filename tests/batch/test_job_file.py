@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from workhold.cli.job_file import read_jobs
+from workhold.cli.jobs import read_jobs
 from workhold.errors import InputError
 
 TOML = """
@@ -39,7 +39,13 @@ widget;fence-20mm;inch;;;;;;;0.5;5;0.1in;Yes
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    for name, text in (("jobs.toml", TOML), ("jobs.csv", CSV), ("own.toml", ""), ("a.json", ""), ("loads.toml", "")):
+    for name, text in (
+        ("jobs.toml", TOML),
+        ("jobs.csv", CSV),
+        ("own.toml", ""),
+        ("a.json", ""),
+        ("loads.toml", ""),
+    ):
         (tmp_path / name).write_text(text)
     return tmp_path
 
@@ -56,7 +62,11 @@ def test_words_are_those_of_the_command_line(folder: Path, name: str) -> None:
         "loads": str(folder / "loads.toml"),
         "tolerance": "0.01,0.02",
     }
-    assert (second.part, second.toolkits, second.query) == ("widget", ("fence-20mm",), {"contact_margin": "0.5"})
+    assert (second.part, second.toolkits, second.query) == (
+        "widget",
+        ("fence-20mm",),
+        {"contact_margin": "0.5"},
+    )
     assert (first.seating, second.seating) == ({}, {"seating": "5", "opening": "0.1in", "foolproof": True})
 
 
@@ -71,7 +81,11 @@ def test_words_are_those_of_the_command_line(folder: Path, name: str) -> None:
             "job 2 has an unknown word 'angel': give",
         ),
         ("j.toml", '[[job]]\npart = "a"\navoid = [true]\n', "job 1: avoid is neither text nor a number"),
-        ("j.toml", '[[job]]\npart = "a"\nfoolproof = "maybe"\n', "job 1: foolproof is neither true nor false"),
+        (
+            "j.toml",
+            '[[job]]\npart = "a"\nfoolproof = "maybe"\n',
+            "job 1: foolproof is neither true nor false",
+        ),
         ("j.toml", "job = 3\n", "its jobs are no tables"),
         ("j.toml", "[[job]\n", "not valid TOML"),
         ("j.csv", "part\n", "has no jobs"),

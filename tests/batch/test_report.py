@@ -11,9 +11,8 @@ from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
 from test_run import square
 
 from workhold.batch import report as module
-from workhold.batch.measured import Measured
-from workhold.batch.report import Report, Summary
-from workhold.batch.results import write_results
+from workhold.batch.durations import Measured
+from workhold.batch.report import Report, Summary, write_results
 from workhold.batch.store import FolderStore
 from workhold.cli.outputs import is_own
 
@@ -70,7 +69,9 @@ def test_what_there_is_no_room_for_is_told(
     monkeypatch.setattr(module, "MOST_ROWS", 2)
     monkeypatch.setattr(module, "MOST_PICTURES", 1)
     folder = written[0]
-    batch = run_in(folder, folder / "p30.json", folder / "p44.json", folder / "p52.json", queue=InlineQueue(0))
+    batch = run_in(
+        folder, folder / "p30.json", folder / "p44.json", folder / "p52.json", queue=InlineQueue(0)
+    )
     store = FolderStore(folder / "work")
     write_results(batch, store, Measured(tmp_path / "none"), tmp_path, "r.html", Summary("x", [], []), None)
     text = (tmp_path / "r.html").read_text()

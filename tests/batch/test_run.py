@@ -12,7 +12,7 @@ from attrs import define
 from batch_helpers import COARSE, FINE, IMPOSSIBLE, InlineQueue, records_in, run_in
 
 from workhold.batch import store as store_module
-from workhold.batch.measured import Measured
+from workhold.batch.durations import Measured
 from workhold.batch.store import FolderStore
 from workhold.batch.tables import job_rows
 from workhold.batch.tasks import Outcome, Task, done
@@ -157,7 +157,9 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
         write(path, record)
 
     monkeypatch.setattr(store_module, "write_bytes", until_full)
-    with pytest.raises(InputError, match=r"No space left on device\. What is done is kept: make room, and start"):
+    with pytest.raises(
+        InputError, match=r"No space left on device\. What is done is kept: make room, and start"
+    ):
         run_in(tmp_path, shop, queue=InlineQueue(), held_in=(COARSE, FINE))
     monkeypatch.undo()
     assert len(records_in(tmp_path)) == 5

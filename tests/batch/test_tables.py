@@ -11,9 +11,8 @@ import pytest
 from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
 
 from workhold.batch import tables
-from workhold.batch.jobs import ANY_PART, HeldIn
-from workhold.batch.measured import Measured
-from workhold.batch.run import Batch
+from workhold.batch.durations import Measured
+from workhold.batch.run import ANY_PART, Batch, HeldIn
 from workhold.batch.store import FolderStore
 from workhold.batch.tables import BEST, RESULTS, JobRow, job_rows, table_names, write_tables
 from workhold.cli.outputs import is_own
@@ -86,7 +85,10 @@ def test_both_forms_have_the_same_rows(
     monkeypatch.setattr(tables, "has_parquet", lambda: False)
     assert table_names() == ("results.csv", "best.csv")
     written()
-    for name, wanted in (("results", [one.row for one in rows]), ("best", [row for one in rows for row in one.best])):
+    for name, wanted in (
+        ("results", [one.row for one in rows]),
+        ("best", [row for one in rows for row in one.best]),
+    ):
         table = parquet.read_table(tmp_path / f"{name}.parquet").to_pylist()
         assert table == wanted
         with (tmp_path / f"{name}.csv").open(newline="") as stream:

@@ -10,14 +10,12 @@ from attrs import evolve
 from batch_helpers import COARSE, FINE, Failing, Unprepared
 
 from workhold import load
-from workhold.batch import naming
-from workhold.batch.naming import name_of, program
-from workhold.batch.records import is_whole, plain_record, workpiece_of
-from workhold.batch.store import FolderStore
+from workhold.batch import tasks
+from workhold.batch.store import FolderStore, is_whole, plain_record, workpiece_of
 from workhold.batch.tables import BEST, seating_figures
-from workhold.batch.tasks import Answering, Reading, done
+from workhold.batch.tasks import Answering, Reading, done, name_of, program
 from workhold.errors import InputError
-from workhold.files.part.builtin import builtin_path
+from workhold.files.part.finding import builtin_path
 from workhold.files.result.writer import result_text
 from workhold.model.query import Query
 from workhold.search.design import answer
@@ -70,11 +68,16 @@ def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes) -> None:
     for kept in (3, 1):
         record = done(Answering("name", "title", part, query, kept)).record
         first = evolve(whole.part(slice(0, kept)), query=evolve(whole.query, best=kept))
-        assert len(first.seating) == min(kept, 2) and first.notes and record == "".join(result_text(first)).encode()
+        assert (
+            len(first.seating) == min(kept, 2)
+            and first.notes
+            and record == "".join(result_text(first)).encode()
+        )
         fixtures = plain_record(record)["fixtures"]
         told = [seating_figures(fixture.get("seating")) for fixture in fixtures]
         assert told[: len(first.seating)] == [
-            {key: pytest.approx(value, abs=1e-9) for key, value in one.figures.items()} for one in first.seating
+            {key: pytest.approx(value, abs=1e-9) for key, value in one.figures.items()}
+            for one in first.seating
         ]
         assert not any(told[2:]) and all(set(one) < set(BEST) for one in told)
 
@@ -115,11 +118,18 @@ def test_a_full_disk_is_told_from_other_failures() -> None:
 def test_names_tell_apart_all_that_has_a_say(monkeypatch: pytest.MonkeyPatch) -> None:
     names = {
         name_of(*content)
-        for content in ((b"a", b"b"), (b"ab",), (b"a", "b"), (b"a", {"k": 1}), (COARSE.entry, 3), (COARSE.entry, 4))
+        for content in (
+            (b"a", b"b"),
+            (b"ab",),
+            (b"a", "b"),
+            (b"a", {"k": 1}),
+            (COARSE.entry, 3),
+            (COARSE.entry, 4),
+        )
     }
     assert len(names | {name_of(FINE.entry, 3)}) == 7
     before = name_of(b"a")
-    monkeypatch.setattr(naming, "program", lambda: "another")
+    monkeypatch.setattr(tasks, "program", lambda: "another")
     assert name_of(b"a") != before
 
 
@@ -127,7 +137,7 @@ def test_the_program_is_all_that_has_a_say(tmp_path: Path, monkeypatch: pytest.M
     for place in ("search/a.py", "cli/b.py"):
         (tmp_path / place).parent.mkdir()
         (tmp_path / place).write_text("1")
-    monkeypatch.setattr(naming, "PACKAGE", tmp_path)
+    monkeypatch.setattr(tasks, "PACKAGE", tmp_path)
 
     def now() -> str:
         program.cache_clear()

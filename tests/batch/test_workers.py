@@ -9,7 +9,7 @@ import pytest
 from batch_helpers import Fatal, Onlooker, ends_at_once
 
 from workhold.batch import workers as module
-from workhold.batch.records import plain_record
+from workhold.batch.store import plain_record
 from workhold.batch.workers import LocalWorkers
 from workhold.errors import InputError
 
@@ -28,7 +28,9 @@ def test_a_task_whose_worker_dies_is_tried_again_and_named_when_it_dies_twice(tm
         record = outcomes[name].record
         assert record is not None and plain_record(record)["refusal"] == f"{name} was done."
     assert outcomes["task3"].record is None
-    assert outcomes["task3"].failure.startswith("Two workers ended, the last by signal 9, while they worked on this")
+    assert outcomes["task3"].failure.startswith(
+        "Two workers ended, the last by signal 9, while they worked on this"
+    )
     assert sorted(p.name for p in tmp_path.iterdir()) == ["task1-0", "task3-0", "task3-1"]
     told = sorted(sentence.partition(" ended ")[2] for sentence in onlooker.sentences)
     assert told == [
@@ -53,5 +55,8 @@ def test_no_worker_is_started_for_nothing() -> None:
 def test_workers_that_cannot_be_started_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "worker", ends_at_once)
     monkeypatch.setattr(module, "MOST_FAILED_STARTS", 2)
-    with LocalWorkers(1, Onlooker()) as queue, pytest.raises(InputError, match="2 in a row ended with code 3 before"):
+    with (
+        LocalWorkers(1, Onlooker()) as queue,
+        pytest.raises(InputError, match="2 in a row ended with code 3 before"),
+    ):
         list(queue.run(iter(tasks(tmp_path, 0)), Event()))

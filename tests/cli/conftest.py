@@ -59,10 +59,22 @@ def process(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run the command line in a process of its own, in the test's folder."""
 
     def started(*arguments: object, **options: Any) -> subprocess.CompletedProcess[str]:
-        command: Sequence[str] = [sys.executable, "-m", "workhold", *(str(argument) for argument in arguments)]
+        command: Sequence[str] = [
+            sys.executable,
+            "-m",
+            "workhold",
+            *(str(argument) for argument in arguments),
+        ]
         environment = {**os.environ, "COLUMNS": "100", **options.pop("environment", {})}
         return subprocess.run(
-            command, capture_output=True, text=True, timeout=600, cwd=tmp_path, env=environment, check=False, **options
+            command,
+            capture_output=True,
+            text=True,
+            timeout=600,
+            cwd=tmp_path,
+            env=environment,
+            check=False,
+            **options,
         )
 
     return started

@@ -7,16 +7,36 @@ from typing import Any
 
 import pytest
 
-from workhold.fixels.holes import Holes
-from workhold.model.tolerance import Tolerance
+from workhold.fixels.carrier import Holes
+from workhold.model.requirements import Tolerance
 
 WIDGET = ("design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3")
 
 
 def test_restrictions_reach_the_search(run: Any, searched: dict[str, Any]) -> None:
     """Faces, zones, angles, blocked holes and bodies; lengths in the unit that was asked for."""
-    words = ["--avoid", "3,7", "--avoid", "1", "--keep-out", "circle=1,2,3", "--keep-out", "polygon=0,0;4,0;4,25.4mm"]
-    words += ["--angle", "-10..20", "--angle", "90", "--blocked", "L-B3,R-A", "--body-radius", "0.15", "--unit", "inch"]
+    words = [
+        "--avoid",
+        "3,7",
+        "--avoid",
+        "1",
+        "--keep-out",
+        "circle=1,2,3",
+        "--keep-out",
+        "polygon=0,0;4,0;4,25.4mm",
+    ]
+    words += [
+        "--angle",
+        "-10..20",
+        "--angle",
+        "90",
+        "--blocked",
+        "L-B3,R-A",
+        "--body-radius",
+        "0.15",
+        "--unit",
+        "inch",
+    ]
     inches = ("design", "widget", "--pitch", "0.4", "--columns", "2", "--peg-radius", "0.1")
     assert run(*inches, *words).exit_code == 0
     asked = searched["asked"]
@@ -30,11 +50,16 @@ def test_restrictions_reach_the_search(run: Any, searched: dict[str, Any]) -> No
     assert asked.toolkit.body_radius == pytest.approx(3.81)
 
 
-def test_loads_ranking_and_tolerance_reach_the_search(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
+def test_loads_ranking_and_tolerance_reach_the_search(
+    run: Any, searched: dict[str, Any], tmp_path: Path
+) -> None:
     """From the command line and from a file."""
     (tmp_path / "loads.toml").write_text('[[load]]\nname = "drill"\nmoment = 5000\n')
     words = ["--load", "force=200 at=10,5 direction=30..60", "--loads", tmp_path / "loads.toml"]
-    assert run(*WIDGET, *words, "--rank-by", "load-reaction,end-distance", "--tolerance", "0.02,0.05").exit_code == 0
+    assert (
+        run(*WIDGET, *words, "--rank-by", "load-reaction,end-distance", "--tolerance", "0.02,0.05").exit_code
+        == 0
+    )
     asked = searched["asked"]
     first, second = asked.loads
     assert (first.force, first.points, first.directions) == (200.0, ((10.0, 5.0),), (30.0, 60.0))
@@ -43,9 +68,14 @@ def test_loads_ranking_and_tolerance_reach_the_search(run: Any, searched: dict[s
     assert asked.tolerance == Tolerance(0.02, 0.05)
 
 
-def test_a_named_vise_brings_its_tolerance_and_gives_way_to_options(run: Any, searched: dict[str, Any]) -> None:
+def test_a_named_vise_brings_its_tolerance_and_gives_way_to_options(
+    run: Any, searched: dict[str, Any]
+) -> None:
     """What is typed wins over what the vise says."""
-    assert run("design", "widget", "--vise", "plate-20mm", "--columns", "3", "--min-opening", "44").exit_code == 0
+    assert (
+        run("design", "widget", "--vise", "plate-20mm", "--columns", "3", "--min-opening", "44").exit_code
+        == 0
+    )
     vise, tolerance = searched["asked"].toolkit, searched["asked"].tolerance
     assert (vise.pitch, vise.columns, vise.min_gap) == ((20.0, 20.0), 3, 44.0)
     assert tolerance != Tolerance()
@@ -115,14 +145,27 @@ def test_no_fixture_is_explained_and_the_nearest_miss_drawn(run: Any, tmp_path: 
 def test_explore_lists_every_toolkit(run: Any, tmp_path: Path) -> None:
     """With counts as a design of its own finds them, the toolkits that cannot be, and the best."""
     table = tmp_path / "table.csv"
-    words = ["--pitch", "8,10x12,5", "--columns", "1", "--peg-radius", "3", "--out", table, "--rank-by", "end-distance"]
+    words = [
+        "--pitch",
+        "8,10x12,5",
+        "--columns",
+        "1",
+        "--peg-radius",
+        "3",
+        "--out",
+        table,
+        "--rank-by",
+        "end-distance",
+    ]
     outcome = run("explore", "widget", *words)
     assert outcome.exit_code == 0
     rows = [line.split(",") for line in table.read_text().splitlines()]
     assert rows[0][:4] == ["toolkit", "fixtures", "type_I", "type_II"]
     assert len(rows) == 4
     assert "505" in outcome.stdout and "pegs of radius 3 overlap" in outcome.stdout
-    assert "First choice: pitch" in outcome.stdout and "its first fixture has end distance mm" in outcome.stdout
+    assert (
+        "First choice: pitch" in outcome.stdout and "its first fixture has end distance mm" in outcome.stdout
+    )
 
 
 @pytest.mark.parametrize(

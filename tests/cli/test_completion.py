@@ -33,7 +33,9 @@ def test_bash_completes_commands_and_options(tmp_path: Path) -> None:
     starter.write_text(f"#!{sys.executable}\nfrom workhold.__main__ import run\nrun()\n")
     starter.chmod(0o755)
     environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
-    outcome = subprocess.run([str(BASH), "--norc", "-c", TRY], capture_output=True, text=True, env=environment)
+    outcome = subprocess.run(
+        [str(BASH), "--norc", "-c", TRY], capture_output=True, text=True, env=environment
+    )
     assert (
         outcome.stdout.splitlines() == [" ".join(COMMANDS), "features", "--draw", "--version --help"]
         and not outcome.stderr

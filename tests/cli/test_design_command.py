@@ -22,7 +22,19 @@ VISE = ("--pitch", "10,12.7", "--columns", "3", "--peg-radius", "3")
 
 def test_the_search_is_asked_what_the_user_asked(run: Any, searched: dict[str, Any]) -> None:
     outcome = run(
-        *("design", "widget", *VISE, "--rows", 9, "--min-gap", 2.5, "--max-opening", 80, "--row-offset", -1.5),
+        *(
+            "design",
+            "widget",
+            *VISE,
+            "--rows",
+            9,
+            "--min-gap",
+            2.5,
+            "--max-opening",
+            80,
+            "--row-offset",
+            -1.5,
+        ),
         *("--contact-margin", 0.5, "--type", "ii", "--best", 4, "--threads", 2),
     )
     assert outcome.exit_code == 0, outcome.stderr
@@ -40,7 +52,13 @@ def test_what_is_not_said_has_the_defaults_of_the_model(run: Any, searched: dict
     assert run("design", "widget", "--pitch", 10, "--columns", 1, "--peg-radius", 0).exit_code == 0
     asked = searched["asked"]
     vise = asked.toolkit
-    assert (vise.pitch, vise.rows, vise.min_gap, vise.max_opening, vise.row_offset) == ((10, 10), None, 10, None, 0)
+    assert (vise.pitch, vise.rows, vise.min_gap, vise.max_opening, vise.row_offset) == (
+        (10, 10),
+        None,
+        10,
+        None,
+        0,
+    )
     assert (asked.arrangements, asked.contact_margin, asked.best) == (("I", "II"), 0, None)
 
 
@@ -63,7 +81,9 @@ def test_result_and_table(run: Any, searched: dict[str, Any], tmp_path: Path) ->
     assert outcome.stderr == ""
 
 
-def test_best_says_how_many_there_are_and_how_many_are_kept(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
+def test_best_says_how_many_there_are_and_how_many_are_kept(
+    run: Any, searched: dict[str, Any], tmp_path: Path
+) -> None:
     outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json", "--best", 2, "--list", 0)
     assert "7 fixtures" in outcome.stdout
     assert "the best 2 are kept" in outcome.stdout
@@ -134,7 +154,9 @@ def test_the_algebra_goes_through_no_cells(run: Any, searched: dict[str, Any]) -
     ]
 
 
-@pytest.mark.parametrize(("count", "rest"), [(1, None), (3, None), (4, "The other one is"), (9, "The other 6 are")])
+@pytest.mark.parametrize(
+    ("count", "rest"), [(1, None), (3, None), (4, "The other one is"), (9, "The other 6 are")]
+)
 def test_what_is_undecided_is_said_plainly(
     run: Any, searched: dict[str, Any], tmp_path: Path, count: int, rest: str | None
 ) -> None:
@@ -143,7 +165,10 @@ def test_what_is_undecided_is_said_plainly(
     lines = told(run("design", "widget", *VISE, "--out", tmp_path / "r.json"))
     total = f"{82_764 + count:,} candidates, 1,324 verified, 32 decided by interval arithmetic, {count} undecided:"
     assert lines[0] == f"Not proven throughout: {total}"
-    named = [f"  Type {'I' * (k % 2 + 1)} on faces 0, 1, 2, 4 at {7.25 * k:.6f} degrees: reason {k}." for k in range(3)]
+    named = [
+        f"  Type {'I' * (k % 2 + 1)} on faces 0, 1, 2, 4 at {7.25 * k:.6f} degrees: reason {k}."
+        for k in range(3)
+    ]
     assert lines[1 : 1 + min(count, 3)] == named[:count]
     if rest:
         assert lines[4] == f'  {rest} under "proof" in {tmp_path / "r.json"}.'
@@ -158,7 +183,9 @@ def test_an_interrupted_search_is_proven_so_far(run: Any, searched: dict[str, An
     assert told(run("design", "widget", *VISE))[0].startswith("Proven so far: 82,764 candidates")
 
 
-def test_an_incomplete_result_is_written_and_marked(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
+def test_an_incomplete_result_is_written_and_marked(
+    run: Any, searched: dict[str, Any], tmp_path: Path
+) -> None:
     searched["result"] = fake_result(3, complete=False)
     outcome = run("design", "widget", *VISE, "--out", tmp_path / "r.json", "--draw", tmp_path / "d")
     assert outcome.exit_code == 130
@@ -174,12 +201,16 @@ def test_the_best_twelve_are_drawn(run: Any, searched: dict[str, Any], tmp_path:
     assert outcome.exit_code == 0, outcome.stderr
     assert f"Drawn: 26 pictures in {folder}." in outcome.stdout
     names = ["thumbnails", *(f"fixture-{rank:02d}" for rank in range(1, 13))]
-    assert sorted(p.name for p in folder.iterdir()) == sorted(f"{n}{e}" for n in names for e in (".svg", ".png"))
+    assert sorted(p.name for p in folder.iterdir()) == sorted(
+        f"{n}{e}" for n in names for e in (".svg", ".png")
+    )
     assert (folder / "fixture-12.svg").read_text().lstrip().startswith("<")
     assert (folder / "thumbnails.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_pictures_of_an_earlier_design_do_not_linger(run: Any, searched: dict[str, Any], tmp_path: Path) -> None:
+def test_pictures_of_an_earlier_design_do_not_linger(
+    run: Any, searched: dict[str, Any], tmp_path: Path
+) -> None:
     (tmp_path / "fixture-09.png").write_bytes(b"tEXtSoftware\0workhold")
     (tmp_path / "fixture-99.png").write_text("not ours")
     (tmp_path / "notes.txt").write_text("not ours")

@@ -19,7 +19,9 @@ from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
 from workhold.model.workpiece import Workpiece
 
-NO_MEMORY = "this needs more memory than there is: close other programs, use fewer threads, or raise the limit."
+NO_MEMORY = (
+    "this needs more memory than there is: close other programs, use fewer threads, or raise the limit."
+)
 EXAMPLES = Path(__file__).parents[2] / "examples"
 INTERRUPTED_AT_START = """
 import sys
@@ -100,7 +102,9 @@ def test_more_threads_than_there_is_memory_for_is_one_sentence(tmp_path: Path) -
 
 def test_interrupted_while_it_is_loaded_it_leaves_no_traceback() -> None:
     """Ctrl-C in the first half second ends it as it does later."""
-    done = subprocess.run([sys.executable, "-c", INTERRUPTED_AT_START], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED_AT_START], capture_output=True, text=True, check=False
+    )
     assert (done.returncode, done.stdout) == (130, "")
     assert done.stderr == "workhold: interrupted; no unfinished file was left behind.\n"
 
@@ -112,7 +116,11 @@ def test_fifty_million_bytes_are_refused_unread(tmp_path: Path, ending: str) -> 
     with path.open("wb") as stream:
         stream.truncate(50_000_000)
     done = features(path)
-    assert done.returncode == 2 and "the file is larger than 40 MB" in done.stderr and done.stderr.count("\n") == 1
+    assert (
+        done.returncode == 2
+        and "the file is larger than 40 MB" in done.stderr
+        and done.stderr.count("\n") == 1
+    )
 
 
 def test_twenty_thousand_segments_are_read_and_one_more_is_not(tmp_path: Path) -> None:
@@ -131,7 +139,9 @@ def test_names_do_not_steer_the_terminal(tmp_path: Path) -> None:
     """A part whose name clears the screen, sets the window's title and turns the direction of writing."""
     path = tmp_path / "part.json"
     loop = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]
-    path.write_text(json.dumps({"name": "\x1b[2J\x1b]0;owned\x07\u202eabc\r\n", "units": "mm", "loops": [loop]}))
+    path.write_text(
+        json.dumps({"name": "\x1b[2J\x1b]0;owned\x07\u202eabc\r\n", "units": "mm", "loops": [loop]})
+    )
     done = features(path)
     assert done.returncode == 0
     assert done.stdout.startswith("?[2J?]0;owned??abc") and done.stdout.replace("\n", "").isprintable()

@@ -10,7 +10,7 @@ import pytest
 
 from family_parts import shop_parts
 from workhold.cli import family_command
-from workhold.family.losses import loss_text
+from workhold.family.members import loss_text
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -23,14 +23,18 @@ def drawings(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("drawings")
     for part in shop_parts(3):
         loops = [loop.tolist() for loop in part.loops]
-        (folder / f"{part.name}.json").write_text(json.dumps({"name": part.name, "units": "mm", "loops": loops}))
+        (folder / f"{part.name}.json").write_text(
+            json.dumps({"name": part.name, "units": "mm", "loops": loops})
+        )
     disc = {"name": "disc", "units": "mm", "loops": [[[0, 0, 1], [40, 0, 1]]]}
     (folder / "disc.json").write_text(json.dumps(disc))
     (folder / "odd.dxf").write_text("0\nSECTION\n")
     return folder
 
 
-def test_curve_plan_and_file(run: Any, drawings: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_curve_plan_and_file(
+    run: Any, drawings: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     out = tmp_path / "f.json"
     monkeypatch.setattr("workhold.cli.tables.width_of", lambda stream: 80)
     outcome = run("family", drawings, *VISE, "--setups", 2, "--out", out)
@@ -89,15 +93,39 @@ def test_curve_and_sheets_are_drawn(run: Any, drawings: Path, tmp_path: Path) ->
 def test_rules_reach_every_part(run: Any, drawings: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     seen = asked_by(monkeypatch)
     outcome = run(
-        *("family", drawings, *VISE, "--avoid", "1", "--angle", "0..90", "--keep-out", "circle=1,2,3", "--type", "II"),
-        *("--contact-margin", "0.5", "--rank-by", "closure-margin,tilt", "--limit", "location-error=0.05", "--unfit"),
+        *(
+            "family",
+            drawings,
+            *VISE,
+            "--avoid",
+            "1",
+            "--angle",
+            "0..90",
+            "--keep-out",
+            "circle=1,2,3",
+            "--type",
+            "II",
+        ),
+        *(
+            "--contact-margin",
+            "0.5",
+            "--rank-by",
+            "closure-margin,tilt",
+            "--limit",
+            "location-error=0.05",
+            "--unfit",
+        ),
         *("--time-limit", "3", "--tolerance", "0.02", "--max-loss", "1.5", "--threads", "1"),
     )
     assert outcome.exit_code == 130
     assert len(seen["asked"]) == 4
     for query in (one.query for one in seen["asked"]):
         assert query.restrictions.avoid == (1,) and query.restrictions.angles == ((0.0, 90.0),)
-        assert len(query.restrictions.zones) == 1 and query.arrangements == ("II",) and query.contact_margin == 0.5
+        assert (
+            len(query.restrictions.zones) == 1
+            and query.arrangements == ("II",)
+            and query.contact_margin == 0.5
+        )
         assert query.ranking == ("closure_margin", "tilt") and query.tolerance.peg == 0.02
     (limit,) = seen["thresholds"]
     assert (limit.figure.key, limit.value) == ("location_error", 0.05)
@@ -175,7 +203,9 @@ def test_both_sides_and_the_zero(run: Any, drawings: Path, monkeypatch: pytest.M
         (("widget", *VISE, "--type", "III"), "--type"),
     ],
 )
-def test_refusals(run: Any, drawings: Path, monkeypatch: pytest.MonkeyPatch, arguments: Any, message: str) -> None:
+def test_refusals(
+    run: Any, drawings: Path, monkeypatch: pytest.MonkeyPatch, arguments: Any, message: str
+) -> None:
     monkeypatch.chdir(drawings)
     outcome = run("family", *arguments)
     assert outcome.exit_code == 2

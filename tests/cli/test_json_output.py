@@ -49,7 +49,9 @@ def test_every_command_that_prints_has_it(run: Any, name: str) -> None:
 
 def test_show_tells_the_fixture(run: Any, folder: Path) -> None:
     """Its rank, pegs, pose and settings, in mm whatever the unit, and what loads do to it."""
-    content = told(run("show", "r.json", 2, "--json", "--unit", "inch", "--load", "moment=500", "--draw", "two.svg"))
+    content = told(
+        run("show", "r.json", 2, "--json", "--unit", "inch", "--load", "moment=500", "--draw", "two.svg")
+    )
     fixture, opened = content["fixture"], workhold.open("r.json")[1]
     assert (fixture["rank"], content["listed"], content["complete"]) == (2, 6, True)
     assert [(peg["hole"], *peg["faces"], peg["x"], peg["force"]) for peg in fixture["pegs"]] == [
@@ -106,7 +108,9 @@ def test_features_tell_faces_layers_and_parts(run: Any, folder: Path) -> None:
 
 def test_arcs_tell_their_circle() -> None:
     """Of a hole the loop, that it is hollow, and its whole turn."""
-    ring = workhold.Workpiece.from_loops("ring", [[[0, 0, 0], [60, 0, 0], [60, 40, 0]], [[40, 15, -1], [44, 15, -1]]])
+    ring = workhold.Workpiece.from_loops(
+        "ring", [[[0, 0, 0], [60, 0, 0], [60, 40, 0]], [[40, 15, -1], [44, 15, -1]]]
+    )
     face = part_data(ring)["faces"][-1]
     assert (face["kind"], face["loop"], face["concave"], face["radius"], face["sweep_deg"]) == (
         "arc",
@@ -121,7 +125,9 @@ def test_lists_tell_all_of_it(run: Any, folder: Path) -> None:
     """Parts, toolkits and schemas."""
     assert [part["name"] for part in told(run("parts", "--json"))["parts"]][-1] == "widget"
     assert {one["name"] for one in told(run("toolkits", "--json"))["toolkits"]} == {
-        name for kind in (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw) for name in kind.presets()
+        name
+        for kind in (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw)
+        for name in kind.presets()
     }
     (one,) = told(run("toolkits", "plate-20mm", "--json"))["toolkits"]
     assert one["fields"]["pitch"] == [20.0, 20.0] and one["tolerance"]["peg"] == 0.0145

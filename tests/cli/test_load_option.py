@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from workhold.cli.load_option import parse_load
+from workhold.cli.search_options import parse_load
 from workhold.errors import InputError
-from workhold.model.load import ANY_DIRECTION, Load
+from workhold.model.requirements import ANY_DIRECTION, Load
 
 
 @pytest.mark.parametrize(
@@ -62,4 +62,9 @@ def test_bad_loads_are_refused_in_one_sentence(text: str, said: str) -> None:
     with pytest.raises(InputError) as refused:
         parse_load(text, 1.0)
     message = str(refused.value)
-    assert said in message and message.startswith(f'--load "{text}"') and message.endswith(".") and "\n" not in message
+    assert (
+        said in message
+        and message.startswith(f'--load "{text}"')
+        and message.endswith(".")
+        and "\n" not in message
+    )

@@ -15,7 +15,7 @@ import pytest
 
 import workhold
 from workhold.cli.agent_tools import TOOLS
-from workhold.cli.mcp_command import REQUIREMENT, outcome
+from workhold.cli.serving_commands import REQUIREMENT, outcome
 
 WEDGE = '{"name": "wedge", "units": "mm", "loops": [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]}'
 VISE = {"toolkit": "vise", "fields": {"pitch": [15, 15], "columns": 1, "peg_radius": 2}}
@@ -53,7 +53,9 @@ def test_the_whole_way(folder: Path) -> None:
     assert opened.query.ranking[:2] == ("warnings", "load_reaction")
     shown = told("show", folder, result_file="some.json", rank=2, jaw_force=5)
     assert shown["fixture"]["rank"] == 2 and shown["loads"][0]["jaw_force"] == 5.0
-    assert told("sheet", folder, result_file="some.json", path="setup.svg", zero="centre")["written"] == ["setup.svg"]
+    assert told("sheet", folder, result_file="some.json", path="setup.svg", zero="centre")["written"] == [
+        "setup.svg"
+    ]
     assert "SHA-256" in Path("setup.svg").read_text()
 
 
@@ -64,7 +66,8 @@ def test_seating_is_told_where_it_is_asked_for(folder: Path) -> None:
     assert made["fixtures"][0]["seating"]["capture_opening"] > 0.0
     assert workhold.open("some.json").query.seating == 2
     shown = [
-        told("show", folder, result_file="some.json", rank=3, seating=asked, picture=False) for asked in (True, False)
+        told("show", folder, result_file="some.json", rank=3, seating=asked, picture=False)
+        for asked in (True, False)
     ]
     [right] = workhold.seatings(workhold.open("some.json"), [workhold.open("some.json")[2]])
     assert shown[0]["fixture"]["seating"]["reading"] == pytest.approx(right.reading_of(), abs=1e-8)
@@ -89,7 +92,9 @@ def test_with_two_clamps_agents_are_told_what_to_do_by_hand(folder: Path) -> Non
 
 
 def test_design_keeps_results_apart(folder: Path) -> None:
-    first, second = (told("design", folder, part="wedge.json", **VISE, best=1)["result_file"] for _ in range(2))
+    first, second = (
+        told("design", folder, part="wedge.json", **VISE, best=1)["result_file"] for _ in range(2)
+    )
     assert first != second and workhold.open(first) == workhold.open(second)
 
 
@@ -105,7 +110,9 @@ def test_faces_to_avoid_and_angles_are_heeded(folder: Path) -> None:
 
 
 def test_presets_are_toolkits_and_bring_their_tolerance(folder: Path) -> None:
-    told("design", folder, part="wedge.json", toolkit="plate-20mm", fields={"columns": 2}, best=1, out="p.json")
+    told(
+        "design", folder, part="wedge.json", toolkit="plate-20mm", fields={"columns": 2}, best=1, out="p.json"
+    )
     query = workhold.open("p.json").query
     assert query.toolkit == workhold.Vise.preset("plate-20mm", columns=2)
     assert query.tolerance == workhold.Tolerance.preset("plate-20mm")
@@ -126,7 +133,9 @@ def test_a_search_that_is_ended_says_so(folder: Path) -> None:
     data, _, failed = outcome("design", {"part": "wedge.json", **VISE}, folder, cancel)
     assert not failed and isinstance(data, dict) and data["complete"] is False
     data, _, failed = outcome("explain", {"part": "wedge.json", **VISE}, folder, cancel)
-    assert not failed and isinstance(data, dict) and not data["complete"] and "ended before" in data["sentence"]
+    assert (
+        not failed and isinstance(data, dict) and not data["complete"] and "ended before" in data["sentence"]
+    )
 
 
 def test_the_time_for_a_search_is_kept(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -145,13 +154,18 @@ def test_the_time_for_a_search_is_kept(folder: Path, monkeypatch: pytest.MonkeyP
             self.is_cancelled = True
 
     monkeypatch.setattr("workhold.cli.agent_tools.Timer", Clock)
-    content = told("design", folder, part="wedge.json", **VISE, seconds=7.5, contact_margin=0.25, out="late.json")
+    content = told(
+        "design", folder, part="wedge.json", **VISE, seconds=7.5, contact_margin=0.25, out="late.json"
+    )
     assert not content["complete"] and [(one.seconds, one.is_cancelled) for one in clocks] == [(7.5, True)]
     assert workhold.open("late.json").query.contact_margin == 0.25
 
 
 def test_pictures_are_shown_where_asked_for(folder: Path) -> None:
-    for name, asked in (("load", {"part": "wedge.json"}), ("design", {"part": "wedge.json", **VISE, "out": "w.json"})):
+    for name, asked in (
+        ("load", {"part": "wedge.json"}),
+        ("design", {"part": "wedge.json", **VISE, "out": "w.json"}),
+    ):
         assert outcome(name, asked, folder, Event())[1] is None
         _, picture, _ = outcome(
             name, {**asked, "picture": True, **({"force": True} if name == "design" else {})}, folder, Event()
@@ -166,7 +180,11 @@ def test_pictures_are_shown_where_asked_for(folder: Path) -> None:
         ("nothing", {}, "there is no tool 'nothing': the tools are load, design, show, sheet, explain."),
         ("load", None, "part is not as it should be: field required."),
         ("load", {"part": "none.dxf"}, "'none.dxf': file not found, and no built-in part has that name"),
-        ("load", {"part": "wedge.json", "what": 1}, "what is not as it should be: extra inputs are not permitted."),
+        (
+            "load",
+            {"part": "wedge.json", "what": 1},
+            "what is not as it should be: extra inputs are not permitted.",
+        ),
         (
             "load",
             {"part": "wedge.json", "unit": "mm"},
@@ -218,7 +236,9 @@ def test_a_fault_is_owned_up_to(folder: Path, monkeypatch: pytest.MonkeyPatch) -
 def test_without_the_library_the_command_says_so(run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mcp.server.stdio", None)
     told = run("mcp")
-    assert told.exit_code == 2 and told.stderr.count("\n") == 1 and f"pip install '{REQUIREMENT}'" in told.stderr
+    assert (
+        told.exit_code == 2 and told.stderr.count("\n") == 1 and f"pip install '{REQUIREMENT}'" in told.stderr
+    )
 
 
 class Spoken:
@@ -251,13 +271,19 @@ def spoken(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Spoken]:
     folder = tmp_path_factory.mktemp("agent")
     (folder / "wedge.json").write_text(WEDGE)
     process = subprocess.Popen(
-        [sys.executable, "-m", "workhold", "mcp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=folder
+        [sys.executable, "-m", "workhold", "mcp"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=folder,
     )
     with process:
         spoken = Spoken(process)
         client = {"name": "test", "version": "1"}
         greeting = spoken.ask("initialize", protocolVersion="2025-06-18", capabilities={}, clientInfo=client)
-        assert greeting["serverInfo"]["name"] == "workhold" and "find all fixtures" in greeting["instructions"]
+        assert (
+            greeting["serverInfo"]["name"] == "workhold" and "find all fixtures" in greeting["instructions"]
+        )
         spoken.say(method="notifications/initialized")
         yield spoken
         assert process.stdin is not None
@@ -271,13 +297,17 @@ def test_the_protocol_lists_the_tools(spoken: Spoken) -> None:
     assert list(tools) == list(TOOLS) == ["load", "design", "show", "sheet", "explain"]
     for name, tool in tools.items():
         assert tool["description"] == TOOLS[name].words
-        assert tool["inputSchema"]["type"] == "object" and tool["inputSchema"]["additionalProperties"] is False
+        assert (
+            tool["inputSchema"]["type"] == "object" and tool["inputSchema"]["additionalProperties"] is False
+        )
     assert tools["design"]["inputSchema"]["required"] == ["part", "toolkit"]
 
 
 def test_the_protocol_calls_a_tool(spoken: Spoken) -> None:
     """Its data as text and as such, its picture as PNG, and what it cannot do as an error for the agent to read."""
-    told = spoken.ask("tools/call", name="design", arguments={"part": "wedge.json", **VISE, "best": 3, "picture": True})
+    told = spoken.ask(
+        "tools/call", name="design", arguments={"part": "wedge.json", **VISE, "best": 3, "picture": True}
+    )
     text, picture = told["content"]
     assert json.loads(text["text"]) == told["structuredContent"] and told["structuredContent"]["listed"] == 3
     assert picture["mimeType"] == "image/png" and b64decode(picture["data"]).startswith(b"\x89PNG")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from importlib import import_module
 from inspect import cleandoc
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ import pytest
 
 from fakes import fake_result
 from workhold import __version__
-from workhold.cli.main import COMMANDS
+from workhold.cli.main import COMMANDS, command_of
 from workhold.files.result.writer import write_result
 
 
@@ -94,7 +93,15 @@ def test_parts_lists_the_built_in_parts(run: Any) -> None:
     outcome = run("parts")
     assert outcome.exit_code == 0
     names = [line.split()[0] for line in outcome.stdout.splitlines()[2:]]
-    assert names == ["8Handle", "flange", "large4Handle", "oblongPart", "small4Handle", "thin4Handle", "widget"]
+    assert names == [
+        "8Handle",
+        "flange",
+        "large4Handle",
+        "oblongPart",
+        "small4Handle",
+        "thin4Handle",
+        "widget",
+    ]
 
 
 def test_version_and_help(run: Any) -> None:
@@ -112,14 +119,14 @@ def test_version_and_help(run: Any) -> None:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_help_of_all_begins_like_that_of_each(run: Any, name: str) -> None:
     """What stands for a command that is not imported is what the command says of itself."""
-    function = getattr(import_module(f"workhold.cli.{name}_command"), name)
+    function = command_of(name)
     assert " ".join(cleandoc(function.__doc__).split("\n\n")[0].split()) == COMMANDS[name]
     assert COMMANDS[name].split()[:3] == run(name, "--help").stdout.split("\n\n")[1].split()[:3]
 
 
 def test_the_help_imports_no_command() -> None:
     words = "import sys; from workhold.cli.main import app; app(['--help'], standalone_mode=False); "
-    words += "sys.exit(any(name.endswith('_command') for name in sys.modules))"
+    words += "sys.exit(any(name.endswith(('_command', '_commands')) for name in sys.modules))"
     assert subprocess.run([sys.executable, "-c", words], capture_output=True, check=False).returncode == 0
 
 
@@ -137,7 +144,10 @@ def test_no_command_and_an_unknown_one(run: Any) -> None:
     assert "Examples" in outcome.output
     outcome = run("desing")
     assert outcome.exit_code == 2
-    assert outcome.stderr == "workhold: error: No such command 'desing'. Did you mean 'design'?; see workhold --help.\n"
+    assert (
+        outcome.stderr
+        == "workhold: error: No such command 'desing'. Did you mean 'design'?; see workhold --help.\n"
+    )
 
 
 def test_a_result_goes_from_one_form_to_the_other_and_back(run: Any, tmp_path: Path) -> None:
@@ -148,7 +158,11 @@ def test_a_result_goes_from_one_form_to_the_other_and_back(run: Any, tmp_path: P
         outcome = run("convert", tmp_path / source, tmp_path / target, *form)
         assert outcome.exit_code == 0 and "5 fixtures written to" in outcome.stdout
     assert (tmp_path / "a.json").read_bytes() == (tmp_path / "c.json").read_bytes()
-    assert (tmp_path / "b").read_bytes() == (tmp_path / "d.npz").read_bytes() != (tmp_path / "a.json").read_bytes()
+    assert (
+        (tmp_path / "b").read_bytes()
+        == (tmp_path / "d.npz").read_bytes()
+        != (tmp_path / "a.json").read_bytes()
+    )
     assert run("convert", tmp_path / "b", "-").stdout == (tmp_path / "a.json").read_text()
     shown = [run("show", tmp_path / name, 4).stdout for name in ("a.json", "b")]
     assert shown[0] == shown[1] and "Fixture 4 of 5" in shown[0]

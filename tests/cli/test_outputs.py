@@ -11,7 +11,7 @@ import pytest
 from reading_helpers import RECTANGLE, new_dxf
 
 from fakes import fake_result
-from workhold.cli import pictures
+from workhold.cli import design_report
 from workhold.errors import InputError
 from workhold.files import atomic
 from workhold.files.result.writer import write_result
@@ -64,16 +64,26 @@ def test_what_is_read_is_not_written_over(run: Any, folder: Path, command: str, 
         (link or os.link)(folder / read, folder / output)
     outcome = run(*COMMANDS[command], output, "--force")
     assert outcome.exit_code == 2
-    assert outcome.stderr == f"workhold: error: {output} is also what is read: give the output another name.\n"
+    assert (
+        outcome.stderr == f"workhold: error: {output} is also what is read: give the output another name.\n"
+    )
     assert (folder / read).read_bytes() == before
 
 
 @pytest.mark.parametrize(
     ("command", "name"),
-    [("design", "o.json"), ("design", "o.csv"), ("features", "o.png"), ("features", "o.svg"), ("show", "o.svg")]
+    [
+        ("design", "o.json"),
+        ("design", "o.csv"),
+        ("features", "o.png"),
+        ("features", "o.svg"),
+        ("show", "o.svg"),
+    ]
     + [("sheet", f"o.{ending}") for ending in ("pdf", "svg", "png", "dxf")],
 )
-def test_foreign_files_are_kept_and_own_ones_replaced(run: Any, folder: Path, command: str, name: str) -> None:
+def test_foreign_files_are_kept_and_own_ones_replaced(
+    run: Any, folder: Path, command: str, name: str
+) -> None:
     """A foreign file stays as it is, until --force is given; then it is a file of workhold's, and may be replaced."""
     (folder / name).write_bytes(FOREIGN)
     outcome = run(*COMMANDS[command], name)
@@ -120,7 +130,7 @@ def test_a_full_disk_leaves_no_half_of_the_pictures(tmp_path: Path, monkeypatch:
 
     monkeypatch.setattr(atomic, "write_bytes", write)
     with pytest.raises(InputError):
-        pictures.write_pictures({"a": svg, "b": svg}, tmp_path)
+        design_report.write_pictures({"a": svg, "b": svg}, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -39,9 +39,7 @@ run()
 """
 
 # Something is found, so that the end waits for it; who is told once more does not go on.
-OBEDIENT = (
-    "options['progress'](0.1, 3); print('found', flush=True); cancel.wait(600); return fake_result(3, complete=False)"
-)
+OBEDIENT = "options['progress'](0.1, 3); print('found', flush=True); cancel.wait(600); return fake_result(3, complete=False)"
 STUBBORN = "options['progress'](0.1, 3); print('found', flush=True); cancel.wait(600); time.sleep(600)"
 # Deaf in compiled code, with a thread that the interpreter waits for, a file half written, and nothing found.
 DEAF = """
@@ -115,7 +113,9 @@ def test_ctrl_c_keeps_what_was_found(tmp_path: Path) -> None:
     assert data["complete"] is False
     assert len(data["fixtures"]) == 3
     assert "3 fixtures" in out
-    assert "stopping; what was found is kept as far as it is soon proven (Ctrl-C again ends at once).\n" in err
+    assert (
+        "stopping; what was found is kept as far as it is soon proven (Ctrl-C again ends at once).\n" in err
+    )
     assert "r.json is marked so" in err
     assert "Traceback" not in err
 
@@ -244,11 +244,17 @@ def test_a_fault_shows_its_traceback_on_request(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("arguments", [("parts",), ("--help",), ("features", "widget")])
-def test_nobody_reading_the_output_is_no_reason_to_complain(tmp_path: Path, arguments: tuple[str, ...]) -> None:
+def test_nobody_reading_the_output_is_no_reason_to_complain(
+    tmp_path: Path, arguments: tuple[str, ...]
+) -> None:
     reader, writer = os.pipe()
     os.close(reader)
     done = subprocess.run(
-        [sys.executable, "-m", "workhold", *arguments], stdout=writer, stderr=subprocess.PIPE, text=True, check=False
+        [sys.executable, "-m", "workhold", *arguments],
+        stdout=writer,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
     )
     os.close(writer)
     assert (done.returncode, done.stderr) == (141, "")
@@ -258,7 +264,11 @@ def test_nobody_reading_the_output_is_no_reason_to_complain(tmp_path: Path, argu
 def test_a_full_disk_is_no_fault_of_ours() -> None:
     with Path("/dev/full").open("w") as full:
         outcome = subprocess.run(
-            [sys.executable, "-m", "workhold", "parts"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+            [sys.executable, "-m", "workhold", "parts"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
         )
     assert outcome.returncode == 2
     assert outcome.stderr == "workhold: error: the output cannot be written: No space left on device.\n"
@@ -328,7 +338,9 @@ import atexit, sys
 atexit.register(lambda: sys.stderr.write(" ".join(m for m in {NUMBERS + OTHERS} if m in sys.modules)))
 {program}
 """
-    outcome = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=folder, check=True)
+    outcome = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=folder, check=True
+    )
     return outcome.stderr.split()
 
 
@@ -337,7 +349,12 @@ COMMAND = "from workhold.cli.main import run; sys.argv[1:] = {!r}; run()"
 
 @pytest.mark.parametrize(
     "program",
-    ["import workhold", "import workhold.cli.main", COMMAND.format(["--help"]), COMMAND.format(["design", "--help"])],
+    [
+        "import workhold",
+        "import workhold.cli.main",
+        COMMAND.format(["--help"]),
+        COMMAND.format(["design", "--help"]),
+    ],
 )
 def test_neither_the_package_nor_the_help_needs_anything_heavy(program: str, tmp_path: Path) -> None:
     assert loaded(program, tmp_path) == []
@@ -353,7 +370,9 @@ def test_a_design_of_a_built_in_part_reads_and_writes_with_what_the_search_needs
 
 
 def test_a_real_design_from_the_first_command_to_the_picture(process: Any, tmp_path: Path) -> None:
-    outcome = process("design", "oblongPart", "--pitch", 10, "--columns", 1, "--peg-radius", 3, "--out", "r.json")
+    outcome = process(
+        "design", "oblongPart", "--pitch", 10, "--columns", 1, "--peg-radius", 3, "--out", "r.json"
+    )
     assert outcome.returncode == 0, outcome.stderr
     data = json.loads((tmp_path / "r.json").read_text())
     assert len(data["fixtures"]) == sum(data["counts"].values()) > 0

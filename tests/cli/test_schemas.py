@@ -14,7 +14,7 @@ import pytest
 
 import workhold
 from fakes import fake_proof, fake_result
-from workhold.cli.schemas import SCHEMAS, schema_of
+from workhold.cli.schema_command import SCHEMAS, schema_of
 from workhold.errors import InputError
 from workhold.files.loads_file import read_loads
 from workhold.files.result.writer import result_text
@@ -28,7 +28,9 @@ FITS = {name: jsonschema.validator_for(schema_of(name)).is_valid for name in SCH
 def parts() -> Iterator[Any]:
     """Every part in JSON."""
     yield from (json.loads(path.read_text()) for path in sorted((DATA / "parts").iterdir(), key=str))  # type: ignore[arg-type]
-    yield from (json.loads((ROOT / "examples" / name).read_text()) for name in ("plate.json", "square-inch.json"))
+    yield from (
+        json.loads((ROOT / "examples" / name).read_text()) for name in ("plate.json", "square-inch.json")
+    )
 
 
 def toolkits() -> Iterator[Any]:
@@ -40,7 +42,11 @@ def results() -> Iterator[Any]:
     """Results of every kind of toolkit, with and without loads."""
     bar = workhold.Workpiece.from_loops("bar", [[[0, 0, 0], [70, 0, 0], [64, 40, 0], [0, 40, 0]]])
     plate = {"pitch": 20, "peg_radius": 3, "columns": 6, "rows": 5}
-    clamped = [workhold.Plate(**plate), workhold.Plate(**plate, travel=(10, 60)), workhold.Plate(**plate, clamps=2)]
+    clamped = [
+        workhold.Plate(**plate),
+        workhold.Plate(**plate, travel=(10, 60)),
+        workhold.Plate(**plate, clamps=2),
+    ]
     fences = [workhold.Fence(**plate, wall_offset=10), workhold.Fence(**plate, wall_offset=10, clamps=2)]
     flat = {"half_width": 2.0, "distance": 2.0}
     flats = [workhold.Plate(**plate, flat=flat), workhold.Fence(**plate, wall_offset=10, clamps=2, flat=flat)]
@@ -55,7 +61,9 @@ def results() -> Iterator[Any]:
 RESULTS = list(results())
 
 
-@pytest.mark.parametrize(("name", "contents"), [("part", parts()), ("toolkit", toolkits()), ("result", RESULTS)])
+@pytest.mark.parametrize(
+    ("name", "contents"), [("part", parts()), ("toolkit", toolkits()), ("result", RESULTS)]
+)
 def test_files_fit(name: str, contents: Iterator[Any]) -> None:
     """All of those that come with the program, and results as they are written."""
     checked = [FITS[name](content) for content in contents]
@@ -69,7 +77,10 @@ def test_files_fit(name: str, contents: Iterator[Any]) -> None:
         ("part", {"units": "mm", "loops": [[[0, 0], [1, 0], [0, 1]]]}),
         ("part", {"units": "mm", "loops": []}),
         ("toolkit", {"unit": "mm", "pitch": 20, "peg_radius": 3}),
-        ("toolkit", {"unit": "mm", "pitch": 20, "peg_radius": 3, "columns": 2, "kind": "plate"} | {"min_gap": 3}),
+        (
+            "toolkit",
+            {"unit": "mm", "pitch": 20, "peg_radius": 3, "columns": 2, "kind": "plate"} | {"min_gap": 3},
+        ),
         ("toolkit", {"unit": "mm", "pitch": "20", "peg_radius": 3, "columns": 2}),
         ("toolkit", {"unit": "mm", "pitch": 20, "peg_radius": 3, "columns": 2, "kind": "fence"}),
         ("query", {"workpiece": {"loops": [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]}}),
@@ -85,7 +96,9 @@ def test_a_result_needs_its_keys(key: str) -> None:
     assert not FITS["result"]({name: value for name, value in RESULTS[0].items() if name != key})
 
 
-@pytest.mark.parametrize("content", RESULTS[:6], ids=lambda content: content.get("toolkit", {"kind": "vise"})["kind"])
+@pytest.mark.parametrize(
+    "content", RESULTS[:6], ids=lambda content: content.get("toolkit", {"kind": "vise"})["kind"]
+)
 def test_a_fixture_needs_its_numbers(content: dict[str, Any]) -> None:
     """Each key of a peg but what tells which way a clamp pushes, and the pose."""
     for number, peg in enumerate(content["fixtures"][0]["pegs"]):
@@ -142,7 +155,11 @@ def test_the_command_prints_them(run: Any) -> None:
     """By name, each a schema of its own dialect that says what it is of."""
     for name, (words, _) in SCHEMAS.items():
         content = json.loads(run("schema", name.upper()).stdout)
-        assert content == schema_of(name) and content["title"] == f"workhold {name}" and words in content["description"]
+        assert (
+            content == schema_of(name)
+            and content["title"] == f"workhold {name}"
+            and words in content["description"]
+        )
         assert jsonschema.meta.is_valid(content)
         assert name in run("schema").stdout
     outcome = run("schema", "nothing")

@@ -12,10 +12,10 @@ from attrs import evolve
 
 import workhold
 from workhold import OpeningVise, Plate, Vise, Workpiece
-from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingWords
-from workhold.seating.by_hand import WHY
-from workhold.seating.missed import WAS_NOT_FOUND
+from workhold.seating.clamping import WHY
+from workhold.seating.contact_forces import WAS_NOT_FOUND
 from workhold.seating.solver import Solver
 from workhold.units import INCH, MILLIMETRE
 
@@ -35,7 +35,13 @@ def test_it_says_where_nothing_is_known_of_how_a_part_is_caught(run: Any, tmp_pa
     result = workhold.design(WEDGE, Vise(pitch=20, columns=2, peg_radius=3), best=1, seating=1)
     [told] = result.seating
     untold = evolve(
-        told, capture_opening=0.0, lowest_pass=None, way_out=0.0, cage=None, placing=None, unsettled=(WAS_NOT_FOUND,)
+        told,
+        capture_opening=0.0,
+        lowest_pass=None,
+        way_out=0.0,
+        cage=None,
+        placing=None,
+        unsettled=(WAS_NOT_FOUND,),
     )
     path = tmp_path / "r.json"
     workhold.save(evolve(result, seating=(untold,)), path)
@@ -44,12 +50,16 @@ def test_it_says_where_nothing_is_known_of_how_a_part_is_caught(run: Any, tmp_pa
     assert outcome.exit_code == 0 and "a fault of the program" in " ".join(outcome.stderr.split())
     assert "From where on it is caught is not known: put the part in its place, hold it there" in text
     assert "of room" not in text and "Open the jaws to" not in text and "When it has come home" in text
-    assert "Beware: from where on the part is caught is not known." in " ".join(run("show", path, 1).stdout.split())
+    assert "Beware: from where on the part is caught is not known." in " ".join(
+        run("show", path, 1).stdout.split()
+    )
     words = SeatingWords(untold, result[0], result.toolkit, LengthUnit.suiting(MILLIMETRE, 20.0))
     assert "is not known" in words.steps(WEDGE)[0] and "is not known" in words.cautions()[0][1]
 
 
-def test_it_tells_what_to_do_and_what_to_read(run: Any, result_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_tells_what_to_do_and_what_to_read(
+    run: Any, result_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Within 80 columns; the fixture's own seat first, then every other with its reading."""
     monkeypatch.setenv("COLUMNS", "80")
     outcome = run("seat", result_file, 1)
@@ -107,7 +117,9 @@ def test_one_side_and_one_opening_leave_seats_out(run: Any, result_file: Path) -
     over = run("seat", result_file, 1, "--side", "turned-over").stdout
     assert drawn.count(" over ") == 0 < over.count(" over ")
     every = workhold.seatings(workhold.open(result_file), 12, with_cage=False)
-    rank, told = next((k, one) for k, one in enumerate(every, 1) if any(seat.difference > 0.1 for seat in one.seats))
+    rank, told = next(
+        (k, one) for k, one in enumerate(every, 1) if any(seat.difference > 0.1 for seat in one.seats)
+    )
     level = min(seat.difference for seat in told.seats if seat.difference > 0.1) - 0.05
     opened = told.wrong_within(level)
     assert len(opened) < len(told.wrong_within())
@@ -129,7 +141,9 @@ def test_json_has_the_fields(run: Any, result_file: Path, tmp_path: Path) -> Non
     manual = (Path(__file__).parents[2] / "docs" / "seating.md").read_text()
     assert all(f"`{name}`" in manual for name in fields)
     assert fields["wrong_seats"] == len(told.wrong_within()) and fields["reading"] > 0
-    assert {"kind", "pose", "difference", "mirrored", "same_place", "contacts", "forces"} <= set(fields["seats"][0])
+    assert {"kind", "pose", "difference", "mirrored", "same_place", "contacts", "forces"} <= set(
+        fields["seats"][0]
+    )
     drawn = picture.read_text()
     assert drawn.count('class="seat"') == min(len(told.seats), 12) and "1  right" in drawn
 
@@ -143,13 +157,17 @@ def test_json_has_the_fields(run: Any, result_file: Path, tmp_path: Path) -> Non
         (("1", "--draw", "a.pdf"), "let the name end in .svg or .png"),
     ],
 )
-def test_refusals_are_one_sentence(run: Any, result_file: Path, arguments: tuple[str, ...], message: str) -> None:
+def test_refusals_are_one_sentence(
+    run: Any, result_file: Path, arguments: tuple[str, ...], message: str
+) -> None:
     outcome = run("seat", result_file, *arguments)
     assert outcome.exit_code == 2
     assert message in outcome.stderr and outcome.stderr.count("\n") == 1
 
 
-def test_with_two_clamps_it_says_what_to_do_by_hand(run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_with_two_clamps_it_says_what_to_do_by_hand(
+    run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """As an answer within 80 columns, its steps numbered, with lengths in the unit asked for, the same as JSON and with a
     picture: of fixtures of which either clamp may be first, one of them, or none."""
     monkeypatch.setenv("COLUMNS", "80")
@@ -172,8 +190,15 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(run: Any, tmp_path: Path, mo
         steps = told.steps(INCH.text)
         assert f"Seating of fixture {rank} of {len(made)}: square {WHY}" in text
         assert " ".join(f"{number}. {step}" for number, step in enumerate(steps, 1)) in text
-        shown = json.loads(run("seat", tmp_path / "p.json", rank, "--json", "--draw", picture, "--unit", "inch").stdout)
-        assert shown == {"rank": rank, "seating": None, "by_hand": told.as_fields(INCH.text), "written": [str(picture)]}
+        shown = json.loads(
+            run("seat", tmp_path / "p.json", rank, "--json", "--draw", picture, "--unit", "inch").stdout
+        )
+        assert shown == {
+            "rank": rank,
+            "seating": None,
+            "by_hand": told.as_fields(INCH.text),
+            "written": [str(picture)],
+        }
         assert shown["by_hand"]["steps"] == steps and " in at clamp" in steps[-1]
         assert f"Fixture {rank}" in picture.read_text()
         outcome = run("seat", tmp_path / "p.json", rank, "--draw", picture, "--force")
@@ -186,9 +211,20 @@ def test_a_search_for_seating_with_two_clamps_is_told_by_show(run: Any, tmp_path
     (tmp_path / "square.json").write_text(
         '{"name": "square", "units": "mm", "loops": [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [0, 45, 0]]]}'
     )
-    asked = ["design", tmp_path / "square.json", "--toolkit", "two-clamp-plate-20mm", "--best", 3, "--seating", 2]
+    asked = [
+        "design",
+        tmp_path / "square.json",
+        "--toolkit",
+        "two-clamp-plate-20mm",
+        "--best",
+        3,
+        "--seating",
+        2,
+    ]
     outcome = run(*asked, "--out", tmp_path / "r.json")
-    assert outcome.exit_code == 0 and "pushed against its locators by hand" in " ".join(outcome.stderr.split())
+    assert outcome.exit_code == 0 and "pushed against its locators by hand" in " ".join(
+        outcome.stderr.split()
+    )
     result = workhold.open(tmp_path / "r.json")
     for rank, [told] in ((rank, workhold.seatings(result, [result[rank - 1]])) for rank in (2, 3)):
         text = " ".join(run("show", tmp_path / "r.json", rank).stdout.split())
@@ -202,7 +238,10 @@ def test_a_search_for_seating_with_two_clamps_is_told_by_show(run: Any, tmp_path
 @pytest.mark.parametrize(
     ("travel", "words"),
     [
-        (None, "Draw the clamp back to a tip y of more than {wide} mm, which is {by} mm from where it holds the part."),
+        (
+            None,
+            "Draw the clamp back to a tip y of more than {wide} mm, which is {by} mm from where it holds the part.",
+        ),
         (
             (5, 40),
             "Draw the clamp back to a stroke of more than {wide} mm, which is {by} mm from where it holds the part.",
@@ -210,7 +249,9 @@ def test_a_search_for_seating_with_two_clamps_is_told_by_show(run: Any, tmp_path
     ],
     ids=["tip", "stroke"],
 )
-def test_a_clamp_is_drawn_back(run: Any, tmp_path: Path, travel: tuple[float, float] | None, words: str) -> None:
+def test_a_clamp_is_drawn_back(
+    run: Any, tmp_path: Path, travel: tuple[float, float] | None, words: str
+) -> None:
     """What is read is the tip's place or the stroke; a tip that pushes up is drawn down, and both get less."""
     plate = Plate(pitch=20, peg_radius=3, directions=["+y"], travel=travel)
     workhold.save(workhold.design(WEDGE, plate, best=1), tmp_path / "p.json")
@@ -221,9 +262,17 @@ def test_a_clamp_is_drawn_back(run: Any, tmp_path: Path, travel: tuple[float, fl
     right = result[0].pegs[-1].y if travel is None else -result[0].jaw_separation
     assert words.format(wide=f"{right - told.capture_opening:.3f}", by=f"{told.capture_opening:.3f}") in text
     assert f"is {right:.3f} mm. While that is less, the part is stuck" in text
-    reads = [line.split()[1] for line in outcome.stdout.splitlines() if line.split()[:1] and line.split()[0].isdigit()]
-    rest = [right - (seat.jaw_separation - result[0].jaw_separation) for seat in told.seats if not seat.is_own]
-    shown = [one for one in told.seats if not one.is_own and (travel is None or one.jaw_separation <= -travel[0])]
+    reads = [
+        line.split()[1]
+        for line in outcome.stdout.splitlines()
+        if line.split()[:1] and line.split()[0].isdigit()
+    ]
+    rest = [
+        right - (seat.jaw_separation - result[0].jaw_separation) for seat in told.seats if not seat.is_own
+    ]
+    shown = [
+        one for one in told.seats if not one.is_own and (travel is None or one.jaw_separation <= -travel[0])
+    ]
     assert len(reads) == 1 + len(shown) and set(reads[1:]) <= {f"{one:.3f}" for one in rest}
     assert f"reads {right:.3f} mm" in (tmp_path / "seats.svg").read_text()
 
@@ -231,7 +280,10 @@ def test_a_clamp_is_drawn_back(run: Any, tmp_path: Path, travel: tuple[float, fl
 def test_an_opening_vise_is_closed_to_put_the_part_in(run: Any, tmp_path: Path) -> None:
     holed = Workpiece.from_loops(
         "holed",
-        [[[0, 0, 0], [80, 0, 0], [80, 70, 0], [0, 70, 0]], [[20, 20, 0], [60, 14, 0], [62, 50, 0], [26, 52, 0]]],
+        [
+            [[0, 0, 0], [80, 0, 0], [80, 70, 0], [0, 70, 0]],
+            [[20, 20, 0], [60, 14, 0], [62, 50, 0], [26, 52, 0]],
+        ],
     )
     vise = OpeningVise(pitch=15, columns=1, peg_radius=3, min_gap=6)
     workhold.save(workhold.design(holed, vise, best=1), tmp_path / "o.json")

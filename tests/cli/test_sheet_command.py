@@ -130,7 +130,16 @@ def test_what_the_program_is_not_told_is_to_be_written(run: Any, folder: Path) -
     """Without thickness, length, height and dowel there are lines to write on; with them, what was given."""
     run("sheet", "r.json", 1, "-o", "a.svg")
     empty = (folder / "a.svg").read_text()
-    options = ("--thickness", "12", "--peg-length", "20", "--peg-height", "0.25in", "--dowel", "6 mm m6 in H7")
+    options = (
+        "--thickness",
+        "12",
+        "--peg-length",
+        "20",
+        "--peg-height",
+        "0.25in",
+        "--dowel",
+        "6 mm m6 in H7",
+    )
     assert run("sheet", "r.json", 1, "-o", "b.svg", *options).exit_code == 0
     full = (folder / "b.svg").read_text()
     names = ("thickness", "peg length", "height above the jaws", "dowel and fit")
@@ -150,10 +159,17 @@ def test_pins_are_listed(run: Any, folder: Path) -> None:
         rows = list(csv.DictReader(stream))
     fixture = diamond()[0]
     assert [row["hole"] for row in rows] == [peg.hole for peg in fixture.pegs]
-    assert [float(row["x"]) for row in rows] == pytest.approx([peg.x / 25.4 for peg in fixture.pegs], abs=1e-4)
+    assert [float(row["x"]) for row in rows] == pytest.approx(
+        [peg.x / 25.4 for peg in fixture.pegs], abs=1e-4
+    )
     for row in rows:
         told = {key: row[key] for key in ("diameter", "length", "unit", "dowel")}
-        assert told == {"diameter": "0.2362", "length": "0.7874", "unit": "in", "dowel": "6 mm m6 in H7, hardened"}
+        assert told == {
+            "diameter": "0.2362",
+            "length": "0.7874",
+            "unit": "in",
+            "dowel": "6 mm m6 in H7, hardened",
+        }
 
 
 def test_a_force_may_carry_its_unit(run: Any, folder: Path) -> None:
@@ -211,7 +227,10 @@ def test_dxf_is_the_set_up_in_mm(run: Any, folder: Path) -> None:
         (("r.json", "1", "-o", "missing/a.pdf"), "there is no folder missing"),
         (("r.json", "1", "-o", "a.pdf", "--paper", "a3"), "--paper 'a3' is not known: give a4 or letter"),
         (("r.json", "1", "-o", "a.pdf", "--unit", "foot"), "Unit 'foot' is not known"),
-        (("r.json", "1", "-o", "a.pdf", "--zero", "0,1e308"), "part zero 1e+308 is beyond 1e+06 mm: check the number"),
+        (
+            ("r.json", "1", "-o", "a.pdf", "--zero", "0,1e308"),
+            "part zero 1e+308 is beyond 1e+06 mm: check the number",
+        ),
         (("r.json", "1", "-o", "a.dxf", "--zero", "-2e6,0"), "part zero -2e+06 is beyond 1e+06 mm"),
         (
             ("r.json", "1", "-o", "a.pdf", "--machine-position", "0,-2e6"),
@@ -231,7 +250,9 @@ def test_dxf_is_the_set_up_in_mm(run: Any, folder: Path) -> None:
         (("none.json", "1", "-o", "a.pdf"), "none.json cannot be read"),
     ],
 )
-def test_bad_requests_are_one_sentence(run: Any, folder: Path, arguments: tuple[str, ...], message: str) -> None:
+def test_bad_requests_are_one_sentence(
+    run: Any, folder: Path, arguments: tuple[str, ...], message: str
+) -> None:
     """Exit code 2, one line on stderr, and no file."""
     outcome = run("sheet", *arguments)
     assert outcome.exit_code == 2

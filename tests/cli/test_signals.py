@@ -37,7 +37,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a gear, whose chords take a while to set up, and a result of many fixtures."""
     made = tmp_path_factory.mktemp("signals")
     corners = [
-        (50 + 4 * (k % 4 in (1, 2)), 2 * pi * (k + (0.4 if k % 2 else 0)) / (4 * TEETH)) for k in range(4 * TEETH)
+        (50 + 4 * (k % 4 in (1, 2)), 2 * pi * (k + (0.4 if k % 2 else 0)) / (4 * TEETH))
+        for k in range(4 * TEETH)
     ]
     loop = [[radius * cos(angle), radius * sin(angle), 0.0] for radius, angle in corners]
     (made / "gear.json").write_text(json.dumps({"units": "mm", "loops": [loop]}))

@@ -26,7 +26,9 @@ def test_both_sizes_are_shown(run: Callable[..., Any], drawing: Path) -> None:
     """What it would be in mm and in inches, and the option that says which."""
     outcome = run("features", drawing)
     assert outcome.exit_code == 2 and outcome.stdout == ""
-    assert "it is 60 mm wide, or 60 in = 1,524 mm; say which with --unit mm (or inch, cm, m)" in outcome.stderr
+    assert (
+        "it is 60 mm wide, or 60 in = 1,524 mm; say which with --unit mm (or inch, cm, m)" in outcome.stderr
+    )
 
 
 def test_somebody_at_a_terminal_is_asked(

@@ -16,8 +16,8 @@ from workhold.cli.tables import fixture_tables, result_table
 from workhold.cli.values import length, pitches
 from workhold.errors import InputError
 from workhold.files.result.writer import write_result
-from workhold.files.toolkit.presets import load_toolkit, preset_names
-from workhold.listing.near_duplicates import entries
+from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.listing.identity import entries
 from workhold.units import INCH, MILLIMETRE
 
 ROOT = Path(__file__).parent.parent.parent
@@ -44,7 +44,9 @@ def test_lengths_carry_their_unit_or_take_the_one_asked(text: str, millimetres: 
     assert isclose(length("--x", text, INCH), inches)
 
 
-@pytest.mark.parametrize("text", ["", "mm", "in", "1/0", "1/2/3", "/2", "1_0", "inf", "nanmm", "5 ft", "1,5", "--1"])
+@pytest.mark.parametrize(
+    "text", ["", "mm", "in", "1/0", "1/2/3", "/2", "1_0", "inf", "nanmm", "5 ft", "1,5", "--1"]
+)
 def test_what_is_no_length_is_refused_in_the_unit_asked(text: str) -> None:
     with pytest.raises(InputError, match="give a plain number in mm"):
         length("--x", text)
@@ -82,19 +84,28 @@ def test_show_in_inches(run: Any, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("unit", [None, "inch"])
-def test_pictures_are_in_the_unit_asked(run: Any, searched: dict[str, Any], tmp_path: Path, unit: str | None) -> None:
+def test_pictures_are_in_the_unit_asked(
+    run: Any, searched: dict[str, Any], tmp_path: Path, unit: str | None
+) -> None:
     """Of one fixture, of the faces, of the best and their thumbnails; millimetres where no unit is asked."""
     result = searched["result"] = fake_result(1)
     write_result(result, tmp_path / "r.json")
     asked = () if unit is None else ("--unit", unit)
     assert run("show", tmp_path / "r.json", 1, "--draw", tmp_path / "shown.svg", *asked).exit_code == 0
-    assert run("features", "widget", "--peg-radius", "3mm", "--draw", tmp_path / "faces.svg", *asked).exit_code == 0
+    assert (
+        run("features", "widget", "--peg-radius", "3mm", "--draw", tmp_path / "faces.svg", *asked).exit_code
+        == 0
+    )
     vise = ("--pitch", "10mm", "--columns", "3", "--peg-radius", "3mm")
     assert run("design", "widget", *vise, "--draw", tmp_path, *asked).exit_code == 0
     opening = result[0].jaw_separation
-    wanted, size = (f"{opening:.3f} mm", "6 mm") if unit is None else (f"{opening / 25.4:.4f} in", "0.23622 in")
+    wanted, size = (
+        (f"{opening:.3f} mm", "6 mm") if unit is None else (f"{opening / 25.4:.4f} in", "0.23622 in")
+    )
     words = {path.stem: " ".join(texts(path.read_text())) for path in tmp_path.glob("*.svg")}
-    assert [name for name in ("shown", "fixture-01", "thumbnails") if f"S = {wanted}" not in words[name]] == []
+    assert [
+        name for name in ("shown", "fixture-01", "thumbnails") if f"S = {wanted}" not in words[name]
+    ] == []
     assert f"a peg of Ø {size} lies" in words["faces"]
 
 
@@ -151,7 +162,14 @@ def test_the_figures_of_a_vise(run: Any, tmp_path: Path) -> None:
         "row_offset = 5\nmax_opening = 90\n"
     )
     own = run("toolkits", path).stdout
-    for words in ("20 x 25 mm", "rows on each jaw", "L-B", "90 mm", "5 mm", "(assumed: no pin and hole are given)"):
+    for words in (
+        "20 x 25 mm",
+        "rows on each jaw",
+        "L-B",
+        "90 mm",
+        "5 mm",
+        "(assumed: no pin and hole are given)",
+    ):
         assert words in own
     refused = run("toolkits", "plate-one")
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)

@@ -17,10 +17,10 @@ import pytest
 from fakes import fake_result
 from workhold import Result, Vise, Workpiece, design
 from workhold.files.result.writer import write_result
-from workhold.model.proof import Proof
 from workhold.model.query import Query
+from workhold.model.requirements import Tolerance
 from workhold.model.result import FixtureTable, unknown_quality
-from workhold.model.tolerance import Tolerance
+from workhold.model.search_report import Proof
 from workhold.statics.quality import quality_of
 from workhold.verification.account import SEARCH
 from workhold.verification.verify import not_shown
@@ -209,7 +209,9 @@ def test_nothing_of_the_search_is_loaded(result_file: Path, tmp_path: Path, proc
         "import sys; from workhold.verification import verify_file; v = verify_file('r.json'); assert v.proven; "
         "print([m for m in sys.modules if m.startswith('workhold.')])"
     )
-    outcome = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
+    outcome = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True
+    )
     room = r"'workhold\.((?:algebra|contact|kernels|listing|proof|search|statics)(?:\.[a-z_.]+)?)'"
     loaded = set(re.findall(room, outcome.stdout))
     rooms = {

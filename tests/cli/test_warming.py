@@ -160,7 +160,12 @@ def test_where_kernels_were_built_in_no_cache_is_looked_for(monkeypatch: pytest.
 
 def first_process(folder: Path, program: str, **further: str) -> str:
     """What a first run writes, kernels kept in a folder of its own."""
-    environment = {**os.environ, "PYTHONPATH": SOURCES, "WORKHOLD_KERNELS": "numba", "WORKHOLD_CACHE_DIR": str(folder)}
+    environment = {
+        **os.environ,
+        "PYTHONPATH": SOURCES,
+        "WORKHOLD_KERNELS": "numba",
+        "WORKHOLD_CACHE_DIR": str(folder),
+    }
     command = [sys.executable, "-c", program]
     done = subprocess.run(command, env={**environment, **further}, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -194,7 +199,11 @@ def test_two_processes_store_all_kernels_and_the_result_is_the_same(tmp_path):
     """Byte for byte, whether they share the work, one is killed, or there is only one."""
     words = "design widget --pitch 10 --columns 1 --peg-radius 3 --threads 1 --out r.json"
     results = []
-    for name, before in (("both", ""), ("killed", KILLING), ("alone", "import os; os.cpu_count = lambda: 1\n")):
+    for name, before in (
+        ("both", ""),
+        ("killed", KILLING),
+        ("alone", "import os; os.cpu_count = lambda: 1\n"),
+    ):
         folder = tmp_path / name
         folder.mkdir()
         first_process(folder, before + DESIGN.format(words=words))

@@ -18,13 +18,12 @@ from workhold.contact.problem import Problem
 from workhold.fixels.vise import Vise
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distance, outline_distances, segment_distance
-from workhold.model.diameter import outline_diameter, segments_diameter
 from workhold.model.query import Query
-from workhold.model.restrictions import Restrictions, polygon_zone
-from workhold.model.workpiece import Workpiece
+from workhold.model.requirements import Restrictions, polygon_zone
+from workhold.model.workpiece import Workpiece, outline_diameter, segments_diameter
 from workhold.proof.interval_newton import contact_value
-from workhold.statics.wrenches import outward_normals
-from workhold.verification.outline import BallOutline
+from workhold.statics.contact_matrix import outward_normals
+from workhold.verification.ball_geometry import BallOutline
 
 
 @given(outlines(), vises())
@@ -64,7 +63,9 @@ def test_features_are_ordered_by_face_and_carry_outward_normals(part, vise):
 @given(outlines())
 def test_the_diameter_is_the_largest_distance_of_a_sampling(part):
     """outline_diameter is at least every sampled distance and no more than the finest one plus the sampling's error."""
-    points = np.array([s.at(t * s.half_extent) for s in part.loop_segments[0] for t in np.linspace(-1, 1, 81)])
+    points = np.array(
+        [s.at(t * s.half_extent) for s in part.loop_segments[0] for t in np.linspace(-1, 1, 81)]
+    )
     farthest = np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1)).max()
     diameter = outline_diameter(part)
     longest = max(s.length for s in part.loop_segments[0])
@@ -105,7 +106,10 @@ def test_tangent_joints_forgive_rounding_and_corners_do_not():
     features = contact_features(half, 2.0)
     slack = end_slacks(features)
     for feature, (low, high) in zip(features, slack, strict=True):
-        ends = [feature.segment.at(-feature.segment.half_extent), feature.segment.at(feature.segment.half_extent)]
+        ends = [
+            feature.segment.at(-feature.segment.half_extent),
+            feature.segment.at(feature.segment.half_extent),
+        ]
         for (x, y), value in zip(ends, (low, high), strict=True):
             assert (value > 0) == (min(hypot(x - 32, y - 10), hypot(x + 2, y - 10)) < 1e-9)
 
@@ -149,11 +153,15 @@ def test_a_hollow_that_the_peg_fills_has_no_feature(excess: float, count: int) -
     assert [arc.radius for arc in arcs] == pytest.approx([excess] * len(arcs), abs=1e-9)
 
 
-@pytest.mark.parametrize(("turn", "tangent"), [(0.0, True), (3e-6, True), (3e-5, False), (1e-3, False), (0.05, False)])
+@pytest.mark.parametrize(
+    ("turn", "tangent"), [(0.0, True), (3e-6, True), (3e-5, False), (1e-3, False), (0.05, False)]
+)
 def test_a_joint_is_tangent_to_within_a_few_digits_of_a_bulge(turn, tangent):
     """A half disc whose flat side's neighbours meet the arc under ``turn`` radians. Up to 1e-5 is the rounding of a bulge,
     and a contact at the joint counts; from there on the joint is a corner, also one that the eye does not see."""
-    half = Workpiece.from_loops("half", [[[0, 0, 0], [30, 0, 0], [30, 10, tan(pi / 4 + turn / 2)], [0, 10, 0]]])
+    half = Workpiece.from_loops(
+        "half", [[[0, 0, 0], [30, 0, 0], [30, 10, tan(pi / 4 + turn / 2)], [0, 10, 0]]]
+    )
     # Point pegs: their features end at the corners themselves.
     assert (end_slacks(contact_features(half, 0.0)) > 0).any() == tangent
     with exactly():

@@ -13,14 +13,18 @@ from workhold.contact.features import end_distances
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
-from workhold.fixels.holes import Holes
+from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Travel
 from workhold.model.quality import END_DISTANCE
 from workhold.model.query import Query
 from workhold.statics.quality import quality_of
 
 PART = Workpiece.from_loops(
-    "part", [[[0, 0, 0], [40, 3, 0], [44, 20, 0.3], [30, 38, 0], [4, 33, 0]], [[12, 12, 0], [14, 22, 0], [25, 18, 0]]]
+    "part",
+    [
+        [[0, 0, 0], [40, 3, 0], [44, 20, 0.3], [30, 38, 0], [4, 33, 0]],
+        [[12, 12, 0], [14, 22, 0], [25, 18, 0]],
+    ],
 )
 
 
@@ -56,7 +60,9 @@ def turned_carrier(carrier: Carrier, quarters: int) -> Carrier:
     for _ in range(quarters):
         assert carrier.rows is not None
         x, y = evolve(carrier, travel=None).place(0, carrier.rows - 1)
-        travel = carrier.travel and Travel(carrier.travel.direction + pi / 2, carrier.travel.least, carrier.travel.most)
+        travel = carrier.travel and Travel(
+            carrier.travel.direction + pi / 2, carrier.travel.least, carrier.travel.most
+        )
         carrier = evolve(
             carrier,
             pitch=carrier.pitch[::-1],
@@ -157,7 +163,9 @@ def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
             first, end = problem.moving if moves[k, peg] else problem.standing
             rows = problem.rows[first:end][problem.faces[first:end] == thin.table.face[k, peg]]
             off = (place[k, peg] - rows[:, 1] - 1j * rows[:, 2]) * (rows[:, 3] - 1j * rows[:, 4])
-            assert np.where(rows[:, 0] == 0.0, np.abs(off.imag), np.abs(np.abs(off) - rows[:, 6])).min() < 1e-6
+            assert (
+                np.where(rows[:, 0] == 0.0, np.abs(off.imag), np.abs(np.abs(off) - rows[:, 6])).min() < 1e-6
+            )
             point = np.array([place[k, peg].real, place[k, peg].imag])
             own.append(end_distances(rows[:, :10], np.broadcast_to(point, (len(rows), 2))).min(axis=1).max())
         assert ends[k] == pytest.approx(min(own), abs=1e-9)

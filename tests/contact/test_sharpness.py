@@ -16,8 +16,7 @@ from workhold.contact.problem import Problem
 from workhold.fixels.vise import Vise
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
-from workhold.verification.balls import Point, norm
-from workhold.verification.sides import LineSide, vertex_side
+from workhold.verification.ball_geometry import LineSide, Point, norm, vertex_side
 
 
 def features_off(random: Random, kernel: Callable[..., Any]) -> float:
@@ -25,7 +24,9 @@ def features_off(random: Random, kernel: Callable[..., Any]) -> float:
     shift, radius = np.array([random.uniform(-60, 60), random.uniform(-60, 60), 0.0]), random.uniform(0.5, 3)
     part = Workpiece.from_loops("part", [(loop + shift).tolist() for loop in random_outline(random, 5).loops])
     problem = Problem.of(Query(part, Vise(pitch=10.0, columns=2, peg_radius=radius)))
-    vertices = [(vertex, loop[(k + 1) % len(loop)]) for loop in part.loops for k, vertex in enumerate(loop.tolist())]
+    vertices = [
+        (vertex, loop[(k + 1) % len(loop)]) for loop in part.loops for k, vertex in enumerate(loop.tolist())
+    ]
     faces, worst = {face.number: face for face in part.faces}, 0.0
     with exactly():
         for row, face in zip(problem.rows.tolist(), problem.faces.tolist(), strict=True):
@@ -45,7 +46,11 @@ def features_off(random: Random, kernel: Callable[..., Any]) -> float:
 
 
 CONSTANT = Constant(
-    "features, 16 half units", vars(Problem)["backward_error"].fget, features_off, symbol="ROUNDINGS", draws=60
+    "features, 16 half units",
+    vars(Problem)["backward_error"].fget,
+    features_off,
+    symbol="ROUNDINGS",
+    draws=60,
 )
 CONSTANTS = [CONSTANT]
 

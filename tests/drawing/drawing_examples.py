@@ -57,9 +57,13 @@ def any_set_up(seed: int) -> tuple[Fixture, Workpiece, Vise]:
         peg_radius=chance.choice((0.2, 0.35, 0.49)) * pitch,
         row_offset=chance.choice((0.0, 0.0, pitch / 3)),
     )
-    separation = chance.choice((0.2 * pitch, 0.5 * pitch, pitch, 1.4 * pitch, 5 * pitch, chance.uniform(1, 90)))
+    separation = chance.choice(
+        (0.2 * pitch, 0.5 * pitch, pitch, 1.4 * pitch, 5 * pitch, chance.uniform(1, 90))
+    )
     pose = Pose(
-        chance.choice((0.0, 45.0, 90.0, chance.uniform(0, 360))), chance.uniform(-20, 60), chance.uniform(-10, 60)
+        chance.choice((0.0, 45.0, 90.0, chance.uniform(0, 360))),
+        chance.uniform(-20, 60),
+        chance.uniform(-10, 60),
     )
     left, holes = chance.choice((2, 3)), set[tuple[int, int, int]]()
     while len(holes) < 4:
@@ -78,7 +82,9 @@ def any_set_up(seed: int) -> tuple[Fixture, Workpiece, Vise]:
     )
 
 
-def diamond(size: float = 1.0, rounded: bool = False, name: str = "diamond") -> tuple[Fixture, Workpiece, Vise]:
+def diamond(
+    size: float = 1.0, rounded: bool = False, name: str = "diamond"
+) -> tuple[Fixture, Workpiece, Vise]:
     """A true fixture: a square of side 40 times ``size``, turned by 45 degrees and held by two pegs on either side.
 
     Every peg touches a side of its own, 20 - (cx - 10) / sqrt(2) from the nearer corner with cx = 23 sqrt(2) - 10 the height

@@ -14,8 +14,8 @@ from workhold.fixels.plate import Plate
 from workhold.fixels.toolkit import Arrangement, Toolkit
 from workhold.fixels.vise import OpeningVise, Vise
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
-from workhold.model.load import Load
 from workhold.model.quality import FIGURES
+from workhold.model.requirements import Load
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import LoadCase, Worst
 
@@ -28,7 +28,16 @@ WORDS = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "upw
 # The pairs that a plate with all directions leaves out, as half a turn makes them of others.
 TURNED = (("+x", "+x"), ("+x", "-y"), ("+x", "+y"), ("+y", "+y"))
 PART = [
-    [[0, 0, 0], [70, 0, 0.3], [95, 24, 0], [80, 60, 0], [52, 41, -0.4], [30, 66, 0], [12, 50, 0], [-9, 23, 0]],
+    [
+        [0, 0, 0],
+        [70, 0, 0.3],
+        [95, 24, 0],
+        [80, 60, 0],
+        [52, 41, -0.4],
+        [30, 66, 0],
+        [12, 50, 0],
+        [-9, 23, 0],
+    ],
     [[30, 20, -1], [44, 20, -1]],
 ]
 
@@ -79,13 +88,17 @@ def held_in(made: str, toolkit: Toolkit, arrangement: Arrangement) -> Held:
     part = Workpiece.from_loops("any part", PART)
     numbers = [face.number for face in part.faces]
     # What lies on a wall is a face of the outline, never one of a hole.
-    faces = chance.sample(numbers if toolkit.wall is None else numbers[: len(part.loops[0])], len(arrangement.carriers))
+    faces = chance.sample(
+        numbers if toolkit.wall is None else numbers[: len(part.loops[0])], len(arrangement.carriers)
+    )
     forces = [round(0.31 + 0.173 * k + chance.uniform(0, 0.09), 6) for k in range(len(faces))]
     chance.shuffle(forces)
     columns, rows = (chance.sample(range(6), len(faces)) for _ in range(2))
     pegs, travels, opening = [], [], round(chance.uniform(41, 63), 3)
     ends = iter(zip(sorted(chance.sample(range(20, 90), 2)), ("fence left", "fence right"), strict=True))
-    for number, face, force, column, row in zip(arrangement.carriers, faces, forces, columns, rows, strict=True):
+    for number, face, force, column, row in zip(
+        arrangement.carriers, faces, forces, columns, rows, strict=True
+    ):
         carrier = toolkit.carriers[number]
         if carrier.is_wall:
             beside = None if face % 2 else (face + 1) % len(part.loops[0])
@@ -109,7 +122,9 @@ def held_in(made: str, toolkit: Toolkit, arrangement: Arrangement) -> Held:
         low, high = chance.choice(((0.0, 2.3), (0.41, float("inf")), (0.37, 3.1), (0.0, float("inf"))))
         pair = Pair((travels[0], travels[1]), (low, high), ((0.0, 0.0),) * len(pegs), chance.randrange(2, 90))
     quality = {figure.key: round(0.061 + 0.1307 * k, 6) for k, figure in enumerate(FIGURES)}
-    pose = Pose(round(chance.uniform(5, 340), 4), round(chance.uniform(20, 60), 3), round(chance.uniform(10, 50), 3))
+    pose = Pose(
+        round(chance.uniform(5, 340), 4), round(chance.uniform(20, 60), 3), round(chance.uniform(10, 50), 3)
+    )
     travelled = travels[0] if travels else opening
     fixture = Fixture(arrangement.name, tuple(pegs), pose, travelled, quality, arrangement.direction, pair)
     return Held(made, fixture, part, toolkit)
@@ -129,7 +144,10 @@ def load_cases_of(held: Held) -> tuple[LoadCase, ...]:
         worst = Worst(needed, number % count, (3.5 * number, 2.25 * number), 11.5 * number)
         largest = tuple(1000.0 * number + 71.0 * k + 0.25 for k in range(count))
         load = Load(
-            ((4.5 * number, 1.5 * number),), 40.0 + number, (10.0 * number, 10.0 * number), name=f"cut {number}"
+            ((4.5 * number, 1.5 * number),),
+            40.0 + number,
+            (10.0 * number, 10.0 * number),
+            name=f"cut {number}",
         )
         smallest = tuple(0.5 * value for value in largest)
         reaction = evolve(worst, value=5000.0 + number)

@@ -67,7 +67,9 @@ def on_plate(
     )
     pegs = []
     for (column, row), (_, _, face), force in zip(holes, LOCATORS, FORCES, strict=False):
-        pegs.append(Peg("plate", column - low[0], row - low[1], *placed((PITCH * column, PITCH * row)), face, force))
+        pegs.append(
+            Peg("plate", column - low[0], row - low[1], *placed((PITCH * column, PITCH * row)), face, force)
+        )
     column, row = holes[3][0] - low[0], holes[3][1] - low[1]
     if not bolted:
         column, row = (0, row) if way[1] == "x" else (column, 0)

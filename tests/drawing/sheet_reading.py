@@ -8,8 +8,7 @@ from math import hypot
 
 from svg_reading import NAMESPACE
 
-from workhold.drawing.fonts import text_width
-from workhold.drawing.scene import CAP_HEIGHT, Box
+from workhold.drawing.scene import CAP_HEIGHT, Box, text_width
 
 # Two boxes of words that share no more than this, in page units, both ways, touch at most.
 TOUCHING = 0.5

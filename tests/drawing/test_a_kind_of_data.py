@@ -16,9 +16,8 @@ from svg_reading import texts
 from workhold.cli.tables import fixture_tables
 from workhold.drawing import SheetDetails, draw_fixture, draw_sheet
 from workhold.drawing.panel import arrangement_words
-from workhold.files.dxf.setup import setup_dxf
-from workhold.files.pin_list import pin_list
-from workhold.files.result.fixture_lines import fixture_template
+from workhold.files.dxf.writer import setup_dxf
+from workhold.files.result.fixture_text import fixture_template, pin_list
 from workhold.fixels.setup_words import Datum, SetupWords
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 from workhold.model.fixture import Fixture, Peg, Pose
@@ -103,7 +102,9 @@ def test_its_drawing_for_cam_has_layers_of_its_own() -> None:
     document = ezdxf.read(StringIO(setup_dxf(HELD, HOUSE, TOOLKIT).decode()))
     layers = {entity.dxf.layer for entity in document.modelspace()}
     assert {"PART", "PEGS", "OPENING", "FIXED JAW", "JAW"} <= layers
-    assert [row.split(",")[0] for row in pin_list(HELD, TOOLKIT, MILLIMETRE, None, None).splitlines()[1:]] == [
+    assert [
+        row.split(",")[0] for row in pin_list(HELD, TOOLKIT, MILLIMETRE, None, None).splitlines()[1:]
+    ] == [
         "A1",
         "C1",
     ]

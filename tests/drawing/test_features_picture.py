@@ -16,7 +16,9 @@ def gear(teeth: int) -> Workpiece:
     """A part with four straight faces for every tooth."""
     step = 2 * np.pi / teeth
     shape = [(40, 0.0), (40, 0.3), (33, 0.45), (33, 0.85)]
-    points = [(r * np.cos(step * (k + f)), r * np.sin(step * (k + f)), 0.0) for k in range(teeth) for r, f in shape]
+    points = [
+        (r * np.cos(step * (k + f)), r * np.sin(step * (k + f)), 0.0) for k in range(teeth) for r, f in shape
+    ]
     return Workpiece.from_loops("gear", [points])
 
 
@@ -58,7 +60,10 @@ def test_numbers_do_not_cover_each_other(teeth: int) -> None:
 
 def test_sheet_grows_with_the_number_of_faces() -> None:
     """More than eighty faces are drawn on A3, more than twice that on A2, with letters of the same size."""
-    assert ['width="297mm"' in draw_features(gear(20)), 'width="420mm"' in draw_features(gear(21))] == [True, True]
+    assert ['width="297mm"' in draw_features(gear(20)), 'width="420mm"' in draw_features(gear(21))] == [
+        True,
+        True,
+    ]
     assert 'width="594mm"' in draw_features(gear(41))
 
 

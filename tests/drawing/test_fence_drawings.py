@@ -13,19 +13,18 @@ from sheet_reading import collisions
 from svg_reading import texts
 
 from workhold import Fence, Result, Workpiece, design
-from workhold.cli.seat_command import seat_table
-from workhold.drawing.fixture_picture import draw_fixture
-from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.part import contact_of
+from workhold.cli.fixture_commands import seat_table
+from workhold.drawing.bench import contact_of
+from workhold.drawing.fixture_pictures import draw_fixture
 from workhold.drawing.result_sheet import result_sheet
+from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingWords
-from workhold.drawing.seats_picture import draw_seats
-from workhold.files.dxf.setup import setup_dxf
-from workhold.files.pin_list import pin_list
-from workhold.files.result.csv import result_csv_text
-from workhold.fixels.contact_kind import ROUND_PIN, WALL_END
+from workhold.drawing.seats import draw_seats
+from workhold.files.dxf.writer import setup_dxf
+from workhold.files.result.fixture_text import pin_list, result_csv_text
+from workhold.fixels.contacts import ROUND_PIN, WALL_END
 from workhold.geometry.segment import Line
-from workhold.model.restrictions import Restrictions
+from workhold.model.requirements import Restrictions
 from workhold.model.seating import Seat
 from workhold.model.shown import shown
 from workhold.statics.contact_matrix import Touched
@@ -114,8 +113,12 @@ def test_angles_choose_what_lies_on_the_fence() -> None:
 def test_the_sheet_says_what_is_measured_and_how_far_the_set_up_may_be_moved() -> None:
     """Rows are fixed by the fence, so it may be moved along it only; two clamps have a tip each."""
     words = " ".join(word for page in result_sheet(held(KITE), 1) for word in texts(page))
-    assert "centre of the locator or of the clamp's tip, from column A at the fence" in words.replace("\n", " ")
-    assert "any columns further right; places are then told from the column that takes the place of A" in words
+    assert "centre of the locator or of the clamp's tip, from column A at the fence" in words.replace(
+        "\n", " "
+    )
+    assert (
+        "any columns further right; places are then told from the column that takes the place of A" in words
+    )
     assert "further up" not in words
     part = Workpiece.from_loops("block", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
     two = design(part, Fence(20, 3, wall_offset=10, clamps=2, columns=4, rows=3))

@@ -11,7 +11,7 @@ from drawing_examples import PART_AREA, example, hole_area
 from svg_reading import area, by_class, matrix, texts, to_model
 
 from workhold.drawing import draw_fixture
-from workhold.drawing.fonts import text_width
+from workhold.drawing.scene import text_width
 from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.workpiece import Workpiece
@@ -54,7 +54,17 @@ def test_everything_a_machinist_needs_is_written(held: Held) -> None:
     """Holes, faces, jaw separation, angle, part and margin."""
     fixture, workpiece, vise = held
     words = texts(draw_fixture(fixture, workpiece, vise, title="Fixture 3 of 8"))
-    for wanted in ["L-B1", "L-B5", "R-A2", "R-A4", "90.000°", "θ = 90.000°", "0.1250", "Fixture 3 of 8", "closing"]:
+    for wanted in [
+        "L-B1",
+        "L-B5",
+        "R-A2",
+        "R-A4",
+        "90.000°",
+        "θ = 90.000°",
+        "0.1250",
+        "Fixture 3 of 8",
+        "closing",
+    ]:
         assert wanted in words
     assert workpiece.name in words
     (separation,) = (word for word in words if word.startswith("S = "))
@@ -89,7 +99,9 @@ def test_sheet_stands_upright_for_tall_parts() -> None:
     """A slender upright part is drawn in portrait, the same part lying down in landscape."""
     bar = Workpiece.from_loops("bar", [[[0, 0, 0], [20, 0, 0], [20, 300, 0], [0, 300, 0]]])
     fixture, _, vise = example()
-    first, second, third, fourth = (evolve(peg, face=3 if peg.carrier == "left" else 1) for peg in fixture.pegs)
+    first, second, third, fourth = (
+        evolve(peg, face=3 if peg.carrier == "left" else 1) for peg in fixture.pegs
+    )
     fixture = evolve(fixture, pegs=(first, second, third, fourth))
     upright = evolve(fixture, pose=Pose(0.0, 13.0, 0.0))
     lying = evolve(fixture, pose=Pose(90.0, 150.0, 10.0))

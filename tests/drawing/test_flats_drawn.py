@@ -16,10 +16,10 @@ from workhold import Plate, Result, Vise, Workpiece, design
 from workhold.cli.tables import fixture_tables
 from workhold.drawing import draw_fixture
 from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.files.dxf.setup import setup_dxf
-from workhold.files.pin_list import pin_list
-from workhold.fixels.flat import Flat, peg_outline
+from workhold.drawing.sheet_facts import SheetDetails
+from workhold.files.dxf.writer import setup_dxf
+from workhold.files.result.fixture_text import pin_list
+from workhold.fixels.carrier import Flat, peg_outline
 from workhold.geometry.segment import Line
 from workhold.units import MILLIMETRE
 
@@ -46,9 +46,15 @@ def test_an_outline_is_a_circle_cut_off() -> None:
     arc, chord = peg_outline((10.0, 5.0), 3.0, Flat(1.5), 90.0)
     assert isinstance(chord, Line) and chord.start[1] == pytest.approx(6.5) == chord.end[1]
     assert chord.end[0] == pytest.approx(10 - np.sqrt(9 - 2.25)) and chord.start[0] > 12
-    assert np.allclose(arc.at(arc.half_extent), chord.start) and np.allclose(arc.at(-arc.half_extent), chord.end)
+    assert np.allclose(arc.at(arc.half_extent), chord.start) and np.allclose(
+        arc.at(-arc.half_extent), chord.end
+    )
     assert np.allclose(arc.at(0.0), (10, 2))
-    assert len(peg_outline((0.0, 0.0), 3.0, Flat(1.5), None)) == len(peg_outline((0.0, 0.0), 3.0, Flat(3.0), 0.0)) == 1
+    assert (
+        len(peg_outline((0.0, 0.0), 3.0, Flat(1.5), None))
+        == len(peg_outline((0.0, 0.0), 3.0, Flat(3.0), 0.0))
+        == 1
+    )
 
 
 def test_pictures_and_sheet_show_them() -> None:

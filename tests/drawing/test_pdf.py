@@ -10,9 +10,8 @@ import pytest
 from drawing_examples import diamond, example
 
 from workhold.drawing import SheetDetails, draw_features, draw_fixture, draw_sheet, draw_thumbnails
-from workhold.drawing.fonts import text_width
 from workhold.drawing.pdf import svg_to_pdf, trace_arc
-from workhold.drawing.scene import BLACK, Box, Scene, View
+from workhold.drawing.scene import BLACK, Box, Scene, View, text_width
 
 DAY = date(2026, 3, 31)
 DETAILS = SheetDetails(number=1, count=2, day=DAY, result_hash="ab" * 32, version="1.2.3")

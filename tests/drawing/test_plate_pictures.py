@@ -55,7 +55,9 @@ def test_a_body_is_a_capsule_from_its_hole_to_its_tip(way: str) -> None:
         assert hypot(x - ax - share * dx, y - ay - share * dy) == pytest.approx(clamp.carrier.peg_radius)
     ends = [(piece.end, after.start) for piece, after in zip(body, body[1:] + body[:1], strict=True)]
     assert all(one == pytest.approx(other) for one, other in ends)
-    assert sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in zip(points, points[1:] + points[:1], strict=True)) > 0
+    assert (
+        sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in zip(points, points[1:] + points[:1], strict=True)) > 0
+    )
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -71,13 +73,17 @@ def test_a_picture_shows_tip_body_and_bolt_to_scale(way: str, bolted: bool, size
         x, y = to_model(group, float(circle.attrib["cx"]), float(circle.attrib["cy"]))
         assert hypot(x - peg.x, y - peg.y) < 1e-3 * size * PITCH
         assert float(circle.attrib["r"]) / matrix(group)[0] == pytest.approx(held[2].peg_radius, rel=1e-3)
-    assert (len(by_class(svg, "bolt")) - 1, len(by_class(svg, "clamp-line"))) == ((1, 0) if bolted else (-1, 1))
+    assert (len(by_class(svg, "bolt")) - 1, len(by_class(svg, "clamp-line"))) == (
+        (1, 0) if bolted else (-1, 1)
+    )
     words = texts(svg)
     if bolted:
         bolt = by_class(svg, "bolt")[0]
         x, y = to_model(group, float(bolt.attrib["cx"]), float(bolt.attrib["cy"]))
         tip = fixture.pegs[3]
-        assert (x, y) == pytest.approx((size * PITCH * tip.column, size * PITCH * tip.row), abs=1e-3 * size * PITCH)
+        assert (x, y) == pytest.approx(
+            (size * PITCH * tip.column, size * PITCH * tip.row), abs=1e-3 * size * PITCH
+        )
         assert "Clamp bolted in" in words and fixture.pegs[3].hole.removeprefix("clamp ") in words
     assert fixture.pegs[3].hole in words
 
@@ -86,7 +92,9 @@ def test_a_picture_shows_tip_body_and_bolt_to_scale(way: str, bolted: bool, size
 @BOLTED
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH], ids=["mm", "inch"])
 @pytest.mark.parametrize("endless", [False, True], ids=["plate", "endless"])
-def test_no_words_cover_others_and_none_speak_of_jaws(way: str, bolted: bool, unit: Unit, endless: bool) -> None:
+def test_no_words_cover_others_and_none_speak_of_jaws(
+    way: str, bolted: bool, unit: Unit, endless: bool
+) -> None:
     """Words do not collide, the vise's are not used, and no opening S is dimensioned."""
     held = on_plate(way, bolted, endless=endless)
     pages = [
@@ -96,7 +104,9 @@ def test_no_words_cover_others_and_none_speak_of_jaws(way: str, bolted: bool, un
     for svg in pages:
         assert collisions(svg) == []
         words = " ".join(texts(svg)).lower()
-        assert not any(word in words for word in ("jaw", "vise", "s =", "l-a1", "sliding", "closing", "type "))
+        assert not any(
+            word in words for word in ("jaw", "vise", "s =", "l-a1", "sliding", "closing", "type ")
+        )
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -12,18 +12,20 @@ from svg_reading import texts
 
 from workhold.drawing.scene import UNITS_PER_MM
 from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.files.pin_list import pin_list
+from workhold.drawing.sheet_facts import SheetDetails
+from workhold.files.result.fixture_text import pin_list
 from workhold.fixels.plate import Plate
 from workhold.model.fixture import Fixture
-from workhold.model.load import Load
+from workhold.model.requirements import Load
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 
 Held = tuple[Fixture, Workpiece, Plate]
 
-DETAILS = SheetDetails(number=3, count=70, day=date(2026, 3, 31), result_hash="0123456789abcdef" * 4, version="1.2.3")
+DETAILS = SheetDetails(
+    number=3, count=70, day=date(2026, 3, 31), result_hash="0123456789abcdef" * 4, version="1.2.3"
+)
 LONG_NAME = "bracket, left, revision C, machined side up, first operation of four " * 4
 # Printers leave at least this blank, mm.
 PRINTABLE = 5.0
@@ -60,7 +62,9 @@ def test_nothing_is_covered_or_cut_off(
         inside = page_of(page).grown(-PRINTABLE * UNITS_PER_MM)
         assert [word for word, place in words_of(page) if not inside.contains(place)] == []
     words = facts(pages).lower()
-    assert [word for word in ("jaw", "vise", "calipers", "s =", "l-a1", "sliding", "type i") if word in words] == []
+    assert [
+        word for word in ("jaw", "vise", "calipers", "s =", "l-a1", "sliding", "type i") if word in words
+    ] == []
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -11,7 +11,7 @@ from held_any_way import HELD, PITCH, Held
 from svg_reading import NAMESPACE, by_class, to_model
 
 from workhold.drawing import draw_fixture
-from workhold.files.dxf.setup import setup_dxf
+from workhold.files.dxf.writer import setup_dxf
 from workhold.model.fixture import Pose
 from workhold.model.shown import Shown, shown
 from workhold.web.answers import carriers_answer
@@ -23,7 +23,9 @@ KINDS = (
     "two on a plate, line, clamp2 -x -y",
     "fence, bolted, edge +y",
 )
-EACH = pytest.mark.parametrize("held", [held for held in HELD if held.made in KINDS], ids=lambda held: held.made)
+EACH = pytest.mark.parametrize(
+    "held", [held for held in HELD if held.made in KINDS], ids=lambda held: held.made
+)
 # Far to the left of all pegs and below them; a fence lets nothing lie below it.
 FAR = Pose(200.0, -70.0, -60.0)
 
@@ -41,7 +43,10 @@ def test_a_plate_without_limits_lies_under_the_whole_part(held: Held) -> None:
     held, seen = far_out(held)
     fence = held.made.startswith("fence")
     for each in seen.carriers:
-        assert each.plate.y0 <= max(seen.part.y0, 0.0 if fence else seen.part.y0) and each.plate.y1 >= seen.part.y1
+        assert (
+            each.plate.y0 <= max(seen.part.y0, 0.0 if fence else seen.part.y0)
+            and each.plate.y1 >= seen.part.y1
+        )
         assert (each.rows[0] < 0) != fence
         assert {"bottom", "top"} - each.broken == ({"bottom"} if fence else set())
         if each.carrier.columns is None:
@@ -92,7 +97,9 @@ def test_holes_keep_their_names(held: Held) -> None:
         assert any(abs(origin[1] + (row - 1) * PITCH[1] - y) < 2.5 for origin in origins)
     space = ezdxf.read(StringIO(setup_dxf(held.fixture, held.workpiece, held.toolkit).decode())).modelspace()  # type: ignore[attr-defined]
     texts = [(text.dxf.text, text.dxf.align_point) for text in space if text.dxftype() == "TEXT"]
-    centers = [circle.dxf.center for circle in space if circle.dxftype() == "CIRCLE" and "HOLES" in circle.dxf.layer]
+    centers = [
+        circle.dxf.center for circle in space if circle.dxftype() == "CIRCLE" and "HOLES" in circle.dxf.layer
+    ]
     for each, (x, y) in zip(seen.carriers, origins, strict=True):
         assert any(words == "1" and abs(at.y - y) < 1e-6 for words, at in texts)
         assert each.columns[0] > 0 or any(words == "A" and abs(at.x - x) < 1e-6 for words, at in texts)

@@ -9,7 +9,7 @@ import pytest
 from drawing_examples import example
 
 from workhold.drawing import draw_features, draw_fixture, render, svg_to_png
-from workhold.drawing.fonts import FOLDER, advance_widths, text_width
+from workhold.drawing.scene import FOLDER, advance_widths, text_width
 from workhold.errors import InputError
 
 
@@ -36,10 +36,14 @@ def test_png_has_the_width_asked_for_and_is_not_blank(width: int) -> None:
 
 def test_text_is_drawn_with_the_bundled_font() -> None:
     """Letters leave ink although no system font is loaded; bold ones leave other ink."""
-    head = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 50" width="200" height="50" font-size="20">'
+    head = (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 50" width="200" height="50" font-size="20">'
+    )
     blank = svg_to_png(f"{head}</svg>", 200)
     plain = svg_to_png(f'{head}<text x="5" y="30" font-family="DejaVu Sans">Øθ°×±µ</text></svg>', 200)
-    bold = svg_to_png(f'{head}<text x="5" y="30" font-family="DejaVu Sans" font-weight="bold">Øθ°×±µ</text></svg>', 200)
+    bold = svg_to_png(
+        f'{head}<text x="5" y="30" font-family="DejaVu Sans" font-weight="bold">Øθ°×±µ</text></svg>', 200
+    )
     assert len({blank, plain, bold}) == 3
 
 

@@ -14,27 +14,28 @@ from svg_reading import by_class, scale_bar_of, texts, to_model
 
 from fakes import fake_result
 from workhold.conventions import NEAR_EDGE, STRONG_PEG, WEAK_CLOSURE
-from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.scene import UNITS_PER_MM, Box
-from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_details import PAPERS, SheetDetails
+from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit
+from workhold.drawing.sheet import draw_sheet, standard_scale
 from workhold.drawing.sheet_facts import (
+    PAPERS,
+    SheetDetails,
     caliper_check,
     cautions_of,
     edge_distances,
 )
-from workhold.drawing.sheet_scale import standard_scale
-from workhold.fixels.holes import Holes
+from workhold.fixels.carrier import Holes
 from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.load import Load
+from workhold.model.requirements import Load
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 
 Held = tuple[Fixture, Workpiece, Vise]
 
-DETAILS = SheetDetails(number=3, count=70, day=date(2026, 3, 31), result_hash="0123456789abcdef" * 4, version="1.2.3")
+DETAILS = SheetDetails(
+    number=3, count=70, day=date(2026, 3, 31), result_hash="0123456789abcdef" * 4, version="1.2.3"
+)
 LONG_NAME = "bracket, left, revision C, machined side up, first operation of four " * 4
 # Printers leave at least this blank, mm.
 PRINTABLE = 5.0
@@ -90,7 +91,9 @@ def test_no_two_labels_overlap_on_any_sheet(seed: int) -> None:
 def test_a_hole_that_places_are_told_from_is_shown_with_room_for_its_name() -> None:
     """L-A1 lies two columns left of the last one that shows; its name and those at the rim stay on the paper."""
     fixture, workpiece, vise = diamond()
-    pegs = [evolve(peg, x=peg.x + 30, column=peg.column + 3 * (peg.carrier == "left")) for peg in fixture.pegs]
+    pegs = [
+        evolve(peg, x=peg.x + 30, column=peg.column + 3 * (peg.carrier == "left")) for peg in fixture.pegs
+    ]
     moved = evolve(fixture, pegs=tuple(pegs), pose=evolve(fixture.pose, x=fixture.pose.x + 30))
     for paper in PAPERS:
         page = draw_sheet(moved, workpiece, evolve(vise, columns=4), evolve(DETAILS, paper=paper))[0]
@@ -109,7 +112,9 @@ def test_distances_on_paper_times_the_scale_are_those_of_the_model(held: Held) -
     for one, at in zip(held[0].pegs, pegs, strict=True):
         for other, other_at in zip(held[0].pegs, pegs, strict=True):
             on_paper = distance(at, other_at) / UNITS_PER_MM
-            assert on_paper * model / paper == pytest.approx(distance((one.x, one.y), (other.x, other.y)), rel=2e-4)
+            assert on_paper * model / paper == pytest.approx(
+                distance((one.x, one.y), (other.x, other.y)), rel=2e-4
+            )
     assert min(paper, model) == 1 and f"{max(paper, model):e}"[:3] in {
         "1.0",
         "1.5",
@@ -230,7 +235,9 @@ def test_calipers_measure_the_jaw_separation() -> None:
     """Level holes at the opening are S apart, and those with pegs are preferred."""
     fixture, _, vise = example()
     check = caliper_check(fixture, vise)
-    assert (check.left, check.right) == ((1, 0), (0, 0)) and check.distance == pytest.approx(fixture.jaw_separation)
+    assert (check.left, check.right) == ((1, 0), (0, 0)) and check.distance == pytest.approx(
+        fixture.jaw_separation
+    )
     assert check.placed == 1
     both = evolve(fixture.pegs[2], row=4, y=40.0)
     pegs = (fixture.pegs[0], fixture.pegs[1], both, fixture.pegs[3])
@@ -274,7 +281,10 @@ def test_cautions_name_what_is_close_weak_or_strong() -> None:
     lengths, far = LengthUnit.mm(), [10.0] * 4
 
     def kinds(fixture: Fixture, distances: list[float], **changes: object) -> list[str]:
-        return [caution.kind for caution in cautions_of(fixture, vise, distances, evolve(DETAILS, **changes), lengths)]
+        return [
+            caution.kind
+            for caution in cautions_of(fixture, vise, distances, evolve(DETAILS, **changes), lengths)
+        ]
 
     def with_quality(**figures: float) -> Fixture:
         return evolve(fixture, quality=figures)
@@ -298,7 +308,9 @@ def test_a_jaw_force_too_small_for_a_load_is_warned_of() -> None:
     for share, expected in ((0.9, ["load"]), (1.1, [])):
         force = share * needed.needed.value
         cases = load_cases(fixture, workpiece, vise, load, force)
-        found = cautions_of(fixture, vise, [10.0] * 4, evolve(DETAILS, jaw_force=force, loads=cases), LengthUnit.mm())
+        found = cautions_of(
+            fixture, vise, [10.0] * 4, evolve(DETAILS, jaw_force=force, loads=cases), LengthUnit.mm()
+        )
         assert [caution.kind for caution in found] == expected
 
 

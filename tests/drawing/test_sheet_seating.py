@@ -12,16 +12,15 @@ from svg_reading import by_class, texts
 
 import workhold
 from workhold import Fence, Plate, Vise, Workpiece
-from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.result_sheet import result_cautions, result_sheet
-from workhold.drawing.scene import UNITS_PER_MM
+from workhold.drawing.scene import UNITS_PER_MM, LengthUnit
 from workhold.drawing.seating_words import SeatingWords
 from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_details import SheetDetails
+from workhold.drawing.sheet_facts import SheetDetails
+from workhold.model.clamps import order_words
 from workhold.model.result import Result
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
-from workhold.model.tightening import order_words
-from workhold.seating.by_hand import WHY
+from workhold.seating.clamping import WHY
 from workhold.units import INCH, MILLIMETRE, Unit
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -55,7 +54,9 @@ def with_seats(told: Seating, wrong: int) -> Seating:
 
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)])
 @pytest.mark.parametrize("wrong", [0, 1, 2, 23])
-def test_nothing_is_covered_or_cut_off(result: Result, told: list[Seating], paper: str, unit: Unit, wrong: int) -> None:
+def test_nothing_is_covered_or_cut_off(
+    result: Result, told: list[Seating], paper: str, unit: Unit, wrong: int
+) -> None:
     """Whatever the number of pictures: no word lies on another and all lie within what a printer prints, on as many pages as
     it takes, and there is a picture for the right seat and up to five wrong ones."""
     details = evolve(DETAILS, paper=paper, unit=unit, seating=with_seats(told[0], wrong), jaw_force=2000.0)
@@ -65,7 +66,10 @@ def test_nothing_is_covered_or_cut_off(result: Result, told: list[Seating], pape
         inside = page_of(page).grown(-PRINTABLE * UNITS_PER_MM)
         assert [word for word, place in words_of(page) if not inside.contains(place)] == []
     drawn = sum(
-        element.tag.endswith("rect") for page in pages for group in by_class(page, "seats") for element in group
+        element.tag.endswith("rect")
+        for page in pages
+        for group in by_class(page, "seats")
+        for element in group
     )
     assert drawn == min(wrong + 1, 6)
     words = " ".join(word for page in pages for word in texts(page))
@@ -77,7 +81,8 @@ def test_nothing_is_covered_or_cut_off(result: Result, told: list[Seating], pape
 def test_blocks_that_need_a_third_page_get_one(result: Result, told: list[Seating]) -> None:
     """A name and sentences that fill pages: everything still stands on one, and on paper."""
     long = evolve(
-        told[0], unsettled=tuple(f"place {k} where the part may rest could not be settled." for k in range(30))
+        told[0],
+        unsettled=tuple(f"place {k} where the part may rest could not be settled." for k in range(30)),
     )
     details = evolve(DETAILS, seating=long, part_name="bracket, first operation " * 8)
     pages = draw_sheet(result[0], result.workpiece, result.toolkit, details)
@@ -99,9 +104,14 @@ def test_bounds_are_never_told_too_wide(result: Result, told: list[Seating], uni
     wide, more, room = number_of
     assert one.capture_opening is not None and one.placing is not None and one.drop_room is not None
     right = result[number].jaw_separation
-    assert right < wide <= right + one.capture_opening and 0.9 * one.capture_opening < more <= one.capture_opening
+    assert (
+        right < wide <= right + one.capture_opening
+        and 0.9 * one.capture_opening < more <= one.capture_opening
+    )
     assert room <= one.drop_room
-    shift, turn = (float(word.rstrip("°")) for word in second.split() if word.rstrip("°").replace(".", "").isdigit())
+    shift, turn = (
+        float(word.rstrip("°")) for word in second.split() if word.rstrip("°").replace(".", "").isdigit()
+    )
     (x0, y0), corners = WEDGE.center, WEDGE.loops[0][:, :2]
     arm = max(hypot(x - x0, y - y0) for x, y in corners)
     reached = shift * unit.millimetres + 2.0 * arm * sin(radians(turn) / 2.0)
@@ -152,7 +162,10 @@ def test_a_part_that_is_hardly_caught_is_warned_of(result: Result, told: list[Se
         wrong = next(seat for seat in told[0].seats if seat.is_wrong)
         own = next(seat for seat in told[0].seats if seat.is_own)
         seats = (own, evolve(wrong, difference=off))
-        return [kind for kind, _ in words_for(result, evolve(told[0], capture_opening=capture, seats=seats)).cautions()]
+        return [
+            kind
+            for kind, _ in words_for(result, evolve(told[0], capture_opening=capture, seats=seats)).cautions()
+        ]
 
     assert kinds(1.01 * SMALL_CAPTURE, -1.01 * CLOSE_READING) == []
     assert kinds(0.99 * SMALL_CAPTURE, 1.01 * CLOSE_READING) == ["capture"]
@@ -166,7 +179,9 @@ def test_it_is_told_where_it_is_known_or_asked_for(result: Result, told: list[Se
     sheets = {seating: result_sheet(result, 1, seating=seating) for seating in (True, None)}
     asked, plain = (" ".join(word for page in pages for word in texts(page)) for pages in sheets.values())
     kept = evolve(result, seating=tuple(told))
-    same = {seating: result_sheet(kept, 1, seating=seating) == sheets[True] for seating in (None, True, False)}
+    same = {
+        seating: result_sheet(kept, 1, seating=seating) == sheets[True] for seating in (None, True, False)
+    }
     assert same == {None: True, True: True, False: False}
     assert "Will it end up there?" in asked and "no different" in asked
     assert "Will it end up there?" not in plain
@@ -184,7 +199,8 @@ def test_what_cannot_be_told_is_left_out_with_its_sentence() -> None:
 
 
 @pytest.mark.parametrize(
-    "toolkit", [Plate(pitch=20, peg_radius=3, clamps=2), Fence(pitch=20, peg_radius=3, wall_offset=10, clamps=2)]
+    "toolkit",
+    [Plate(pitch=20, peg_radius=3, clamps=2), Fence(pitch=20, peg_radius=3, wall_offset=10, clamps=2)],
 )
 def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> None:
     """Each step but the order of tightening, which has a block of its own; where it is asked for, or the result was asked
@@ -214,7 +230,9 @@ def test_a_clamp_is_drawn_back_and_tightened() -> None:
     least = float(steps[0].split("stroke = ")[1].split()[0])
     assert steps[0].startswith("Draw the clamp back to stroke = ") and "at least" in steps[0]
     assert right - capture <= least < right - capture + 0.01
-    assert any(step.startswith("Tighten it. Right is stroke = ") and "While less is read" in step for step in steps)
+    assert any(
+        step.startswith("Tighten it. Right is stroke = ") and "While less is read" in step for step in steps
+    )
     # Readings as long as that stand on the sheet uncut.
     pages = draw_sheet(plate[0], WEDGE, plate.toolkit, evolve(DETAILS, seating=told))
     written = [word for page in pages for word in texts(page)]

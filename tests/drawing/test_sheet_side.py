@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from strategies import outlines
-from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.sheet_side import Mark, marks_of, side_words, telling_marks
+from workhold.drawing.scene import LengthUnit
+from workhold.drawing.sheet_blocks import Mark, marks_of, side_words, telling_marks
 from workhold.geometry.symmetry import is_own_mirror_image
 from workhold.model.fixture import Pose
 from workhold.model.workpiece import Workpiece
@@ -25,7 +25,9 @@ def circle(x: float, y: float, radius: float) -> list[list[float]]:
 
 def mirrored(workpiece: Workpiece) -> Workpiece:
     """The part turned over."""
-    return Workpiece.from_loops("turned over", [[[-x, y, -bulge] for x, y, bulge in loop] for loop in workpiece.loops])
+    return Workpiece.from_loops(
+        "turned over", [[[-x, y, -bulge] for x, y, bulge in loop] for loop in workpiece.loops]
+    )
 
 
 def is_same_outline(loops: list[list[list[float]]]) -> bool:
@@ -85,7 +87,9 @@ def test_places_are_told_as_the_part_lies(theta: float, x: float) -> None:
         "part", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]], circle(50, 20, 4), circle(30, 32, 2)]
     )
     fixture = example()[0]
-    words = side_words(part, type(fixture)(fixture.type, fixture.pegs, Pose(theta, x, 7.0), 36.0, {}), LENGTHS)
+    words = side_words(
+        part, type(fixture)(fixture.type, fixture.pegs, Pose(theta, x, 7.0), 36.0, {}), LENGTHS
+    )
     eighths = ["right", "upper right", "top", "upper left", "left", "lower left", "bottom", "lower right"]
     near = {eighths[int(turn // 45) % 8] for turn in (theta + 22.4, theta + 22.6)}
     assert any(f"hole 1, Ø 8 mm, at the {eighth} and hole 2" in words for eighth in near)

@@ -26,7 +26,9 @@ def test_each_fixture_has_a_cell_with_its_caption(many: Many, count: int) -> Non
     words = texts(svg)
     assert [word for word in words if word in titles] == titles
     assert words.count("margin 0.1250") == count
-    assert [word for word in words if word.startswith("Type ")] == [f"Type {f.type}" for f in fixtures[:count]]
+    assert [word for word in words if word.startswith("Type ")] == [
+        f"Type {f.type}" for f in fixtures[:count]
+    ]
 
 
 def test_a_sheet_has_its_limits(many: Many) -> None:

@@ -21,15 +21,15 @@ from held_any_way import AHEAD, HELD, PITCH, WALL_OFFSET, WORDS, Held, load_case
 from sheet_reading import collisions
 from svg_reading import NAMESPACE, by_class, matrix, texts
 
-from workhold.cli.load_tables import load_tables
+from workhold.cli.fixture_commands import load_tables
 from workhold.cli.tables import fixture_tables, print_tables, quality_table
 from workhold.drawing import draw_fixture, draw_thumbnails
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import Box
 from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.files.dxf.setup import setup_dxf
-from workhold.files.pin_list import pin_list
+from workhold.drawing.sheet_facts import SheetDetails
+from workhold.files.dxf.writer import setup_dxf
+from workhold.files.result.fixture_text import pin_list
 from workhold.model.fixture import Peg
 from workhold.units import MILLIMETRE
 from workhold.web.answers import fixture_answer
@@ -98,7 +98,9 @@ def sheet(held_number: int) -> str:
     held = HELD[held_number]
     loads = load_cases_of(held)
     details = SheetDetails(3, 70, DAY, "0" * 64, "1.2.3", jaw_force=FORCE, friction=0.2, loads=loads)
-    document = pypdfium2.PdfDocument(svg_to_pdf(draw_sheet(held.fixture, held.workpiece, held.toolkit, details), DAY))
+    document = pypdfium2.PdfDocument(
+        svg_to_pdf(draw_sheet(held.fixture, held.workpiece, held.toolkit, details), DAY)
+    )
     return " ".join(" ".join(page.get_textpage().get_text_bounded() for page in document).split())
 
 
@@ -178,7 +180,11 @@ def test_arrows_and_names_stand_at_what_they_tell_of(held: Held) -> None:
         place = Box(*(float(text.attrib[key]) for key in "xyxy"))
         (frame,) = (frame for frame in frames if frame.contains(place))
         leaders = [line[0] for line in lines if frame.grown(0.5).contains(Box(*line[-1], *line[-1]))]
-        start = leaders[0] if leaders else (min(max(at[0], frame.x0), frame.x1), min(max(at[1], frame.y0), frame.y1))
+        start = (
+            leaders[0]
+            if leaders
+            else (min(max(at[0], frame.x0), frame.x1), min(max(at[1], frame.y0), frame.y1))
+        )
         assert hypot(start[0] - at[0], start[1] - at[1]) <= reach
 
 
@@ -218,15 +224,21 @@ def test_a_sheet_tells_what_stands_where(held: Held) -> None:
             assert f"Opening S of the jaws {mm(length)} mm" in words
             continue
         place, direction = place_of(tip, held), tip.carrier.removeprefix("clamp ")
-        label, step = ("along", "Set {} so that its tip is on") if "line" in held.made else ("bolted in", "Bolt {} in")
+        label, step = (
+            ("along", "Set {} so that its tip is on") if "line" in held.made else ("bolted in", "Bolt {} in")
+        )
         told = re.search(
             rf"Clamp {label} {place} {re.escape(mm(length))} mm (.*?) round tip Ø 8 mm (.*?) torque", words
         )
         assert told and told[1].endswith(f"pushes {WORDS[direction]}, {direction.replace('-', '−')}")
-        assert f"clamp force {share * FORCE:.0f} N the loads need at least {above(share * 930.5)} N" in told[2]
+        assert (
+            f"clamp force {share * FORCE:.0f} N the loads need at least {above(share * 930.5)} N" in told[2]
+        )
         one = "a clamp" if len(tips) > 1 else "the clamp"
         assert f"{step.format(one)} {place}, pushing {WORDS[direction]}, and draw it back." in words
-        up = re.search(rf"until its tip touches face {tip.face}\. (.*?) is then {re.escape(mm(length))} mm", words)
+        up = re.search(
+            rf"until its tip touches face {tip.face}\. (.*?) is then {re.escape(mm(length))} mm", words
+        )
         assert up and (up[1] == "Its stroke" or f", {sign} from " in up[1])
     touching = [
         f"face {peg.face}" if peg.beside is None else f"the corner of faces {peg.face} and {peg.beside}"
@@ -262,7 +274,10 @@ def test_a_sheet_tells_pose_calipers_and_figures(held: Held) -> None:
     x, y = pose.x + u * cos(turn) - v * sin(turn), pose.y + u * sin(turn) + v * cos(turn)
     assert re.search(rf"x from \D+A1? {re.escape(mm(x))} mm y from .{{4,12}} {re.escape(mm(y))} mm", words)
     assert f"counter-clockwise {pose.theta_deg:.4f}°" in words
-    assert f"G68 X0 Y0 R{pose.theta_deg:.3f}" in words and f"turned {pose.theta_deg:.1f}° counter-clockwise" in words
+    assert (
+        f"G68 X0 Y0 R{pose.theta_deg:.3f}" in words
+        and f"turned {pose.theta_deg:.1f}° counter-clockwise" in words
+    )
     quality = fixture.quality
     for name in ("closure margin", "clamp amplification", "wrench radius"):
         assert f"{name} {quality[name.replace(' ', '_')]:.4f}" in words
@@ -318,7 +333,9 @@ def test_the_terminal_tells_the_fixture(
     title = fixture.type if fixture.direction is None else f"{fixture.type} {fixture.direction}"
     assert [f"Fixture 3 of 70, type {title}"] in lines
     pose = fixture.pose
-    assert f"turned by {pose.theta_deg:.3f} degrees, its origin lies at ({pose.x:.3f}, {pose.y:.3f}) mm" in said
+    assert (
+        f"turned by {pose.theta_deg:.3f} degrees, its origin lies at ({pose.x:.3f}, {pose.y:.3f}) mm" in said
+    )
     for tip, (sign, length) in zip(tips_of(fixture) or [None], settings(held), strict=True):
         if tip is None:
             assert f"Opening S {length:.3f} mm" in said
@@ -330,7 +347,14 @@ def test_the_terminal_tells_the_fixture(
     stands_on = {"plate": "locator", "wall": "end"}
     for peg in fixture.pegs:
         kind = stands_on.get(peg.carrier, "clamp" if noun == "clamp" else peg.carrier)
-        row = [peg.hole.removeprefix("clamp "), kind, f"{peg.x:.3f}", f"{peg.y:.3f}", touched(peg), f"{peg.force:.3f}"]
+        row = [
+            peg.hole.removeprefix("clamp "),
+            kind,
+            f"{peg.x:.3f}",
+            f"{peg.y:.3f}",
+            touched(peg),
+            f"{peg.force:.3f}",
+        ]
         assert row in lines
     for key, value in fixture.quality.items():
         row = next(line for line in lines if line[0] == key.replace("_", " ").replace("jaw", noun))
@@ -350,7 +374,9 @@ def test_files_and_thumbnails_tell_the_fixture(held: Held) -> None:
     fixture, told = held.fixture, settings(held)
     drawing = ezdxf.read(StringIO(setup_dxf(fixture, held.workpiece, held.toolkit).decode()))  # type: ignore[attr-defined]
     written = [entity for entity in drawing.modelspace() if entity.dxftype() == "TEXT"]
-    assert [text.dxf.text for text in written if " = " in text.dxf.text] == [f"{s} = {n:.6g} mm" for s, n in told]
+    assert [text.dxf.text for text in written if " = " in text.dxf.text] == [
+        f"{s} = {n:.6g} mm" for s, n in told
+    ]
     for peg in fixture.pegs:
         if peg.carrier != "wall":
             assert any(text.dxf.text == peg.hole for text in written)
@@ -372,18 +398,28 @@ def test_the_page_is_sent_the_fixture(held: Held) -> None:
     fixture = held.fixture
     sent = fixture_answer(fixture, held.workpiece, held.toolkit)
     title = (
-        f"Clamp{'s' * (len(held.directions) == 2)} {fixture.direction}" if held.directions else f"Type {fixture.type}"
+        f"Clamp{'s' * (len(held.directions) == 2)} {fixture.direction}"
+        if held.directions
+        else f"Type {fixture.type}"
     )
     assert sent["title"] == title.replace("-", "−")
     assert [(one["sign"], pytest.approx(one["length"])) for one in sent["settings"]] == settings(held)
-    assert sent["holes"] == [peg.hole for peg in fixture.pegs] and sent["faces"] == [peg.face for peg in fixture.pegs]
+    assert sent["holes"] == [peg.hole for peg in fixture.pegs] and sent["faces"] == [
+        peg.face for peg in fixture.pegs
+    ]
     assert sent["touched"] == [touched(peg) for peg in fixture.pegs]
     assert sent["pegs"] == [[peg.x, peg.y] for peg in fixture.pegs]
     assert sent["forces"] == [peg.force for peg in fixture.pegs]
-    assert (sent["theta_deg"], sent["x"], sent["y"]) == (fixture.pose.theta_deg, fixture.pose.x, fixture.pose.y)
+    assert (sent["theta_deg"], sent["x"], sent["y"]) == (
+        fixture.pose.theta_deg,
+        fixture.pose.x,
+        fixture.pose.y,
+    )
     assert sent["mover"] == ("clamp" if held.directions else "jaw") and sent["quality"] == fixture.quality
     ways = (
-        {"right": (-1, 0)} if held.made != "opening vise" and not held.made.startswith("opening") else {"right": (1, 0)}
+        {"right": (-1, 0)}
+        if held.made != "opening vise" and not held.made.startswith("opening")
+        else {"right": (1, 0)}
     )
     ways |= {f"clamp {direction}": ahead for direction, ahead in AHEAD.items()}
     numbered = [(number, each) for each in sent["carriers"] for number in each["pegs"]]

@@ -15,15 +15,14 @@ from workhold import Plate, Result, Workpiece, design, load
 from workhold.cli.tables import counts_sentence, fixture_tables, result_table
 from workhold.drawing import draw_fixture, draw_thumbnails
 from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.files.dxf.setup import setup_dxf
-from workhold.files.pin_list import pin_list
-from workhold.listing.near_duplicates import entries
-from workhold.model.load import Load
-from workhold.model.restrictions import Restrictions
-from workhold.model.setting import settings_of
+from workhold.drawing.sheet_facts import SheetDetails
+from workhold.files.dxf.writer import setup_dxf
+from workhold.files.result.fixture_text import pin_list
+from workhold.listing.identity import entries
+from workhold.model.clamps import order_words
+from workhold.model.requirements import Load, Restrictions
+from workhold.model.setup import settings_of
 from workhold.model.shown import shown
-from workhold.model.tightening import order_words
 from workhold.statics.loads import load_cases
 from workhold.units import MILLIMETRE
 
@@ -124,14 +123,20 @@ def test_the_terminal_tells_pairs_seats_and_order() -> None:
     assert row["locators"].split() == [peg.hole for peg in fixture.pegs[:3]]
     assert [f"clamp {place}" for place in row["clamps"].split()] == [peg.hole for peg in fixture.pegs[3:]]
     assert fixture.pair is not None and row["best of"] == str(fixture.pair.count)
-    assert row["stroke mm"].split() == [f"{setting.length:.1f}" for setting in settings_of(fixture, result.toolkit)]
+    assert row["stroke mm"].split() == [
+        f"{setting.length:.1f}" for setting in settings_of(fixture, result.toolkit)
+    ]
     assert max(map(len, table.fitted(80).lines[:2])) <= 80 and "clamp freedom deg" in headings
     assert f"the best of {result.pairs} pairs of clamps at each seat" in counts_sentence(result)
     said = [part for part in fixture_tables(fixture, result.toolkit, 1, 1) if isinstance(part, str)]
     assert order_words(fixture) in said and sum("bolted in" in line for line in said) == 2
 
 
-EXAMPLES = {"rectangle": ({0, 2}, {1, 3}, ()), "nema34": (None, None, (8, 9, 10, 11, 12)), "bracket": ({0}, {7}, ())}
+EXAMPLES = {
+    "rectangle": ({0, 2}, {1, 3}, ()),
+    "nema34": (None, None, (8, 9, 10, 11, 12)),
+    "bracket": ({0}, {7}, ()),
+}
 
 
 @pytest.mark.parametrize("name", list(EXAMPLES))
@@ -146,7 +151,11 @@ def test_a_machinist_would_set_it_so(name: str) -> None:
     (two,) = {face for face in faces if faces.count(face) == 2}
     (one,) = set(faces) - {two}
     assert (long is None or two in long) and (short is None or one in short)
-    assert fixture.quality["tilt"] == 0 and fixture.quality["warnings"] == 0 and fixture.quality["clamp_freedom"] > 70
+    assert (
+        fixture.quality["tilt"] == 0
+        and fixture.quality["warnings"] == 0
+        and fixture.quality["clamp_freedom"] > 70
+    )
     # Nothing leans: where the clamps push, the locators that face them press.
     ways = [peg.carrier for peg in fixture.pegs[3:]]
     assert ways == ["clamp -x", "clamp -y"] and len(set(faces) & {peg.face for peg in fixture.pegs[3:]}) == 0

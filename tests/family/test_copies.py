@@ -13,8 +13,7 @@ from svg_reading import by_class
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer
 from workhold.errors import InputError
 from workhold.family import copies as module
-from workhold.family.copies import Packing, packing_of, places_on, too_near_shifts
-from workhold.family.copies_picture import copies_of, draw_copies
+from workhold.family.copies import Packing, copies_of, draw_copies, packing_of, places_on, too_near_shifts
 from workhold.model.fixture import Fixture
 from workhold.model.result import Result
 
@@ -22,7 +21,10 @@ pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
 LEVER = Workpiece.from_loops(
     "lever",
-    [[[0, 0, 0], [60, 0, 0.4], [60, 22, 0], [20, 40, 0], [0, 35, -0.2]], [[12, 12, 0], [24, 12, 0], [18, 24, 0]]],
+    [
+        [[0, 0, 0], [60, 0, 0.4], [60, 22, 0], [20, 40, 0], [0, 35, -0.2]],
+        [[12, 12, 0], [24, 12, 0], [18, 24, 0]],
+    ],
 )
 BAR = Workpiece.from_loops("bar", [[[0, 0, 0], [50, 0, 0], [50, 28, 0], [0, 28, 0]]])
 HELD = {
@@ -107,16 +109,24 @@ def most_by_trying(places: list[tuple[int, int]], near: set[tuple[int, int]]) ->
 
 
 @pytest.mark.parametrize(
-    ("name", "size"), [("strokes", (12, 7)), ("two clamps", (9, 8)), ("fence", (16, 6)), ("tips alone", (11, 8))]
+    ("name", "size"),
+    [("strokes", (12, 7)), ("two clamps", (9, 8)), ("fence", (16, 6)), ("tips alone", (11, 8))],
 )
-def test_no_more_fit_by_trying_everything(results: dict[str, Result], name: str, size: tuple[int, int]) -> None:
+def test_no_more_fit_by_trying_everything(
+    results: dict[str, Result], name: str, size: tuple[int, int]
+) -> None:
     result = results[name]
     for fixture in result[:2]:
         packing = packing_of(fixture, result.workpiece, result.toolkit, *size)
         places = places_on(fixture, result.toolkit, *size)
         near = too_near_shifts(fixture, result.workpiece, result.toolkit, 1.0, (size[0], size[1]))
         assert set(packing.shifts) <= set(places)
-        assert all((a - c, b - d) not in near for a, b in packing.shifts for c, d in packing.shifts if (a, b) != (c, d))
+        assert all(
+            (a - c, b - d) not in near
+            for a, b in packing.shifts
+            for c, d in packing.shifts
+            if (a, b) != (c, d)
+        )
         assert len(packing.shifts) == packing.at_most == most_by_trying(places, near)
         assert list(packing.shifts) == sorted(packing.shifts, key=lambda shift: (shift[1], shift[0]))
 
@@ -132,7 +142,9 @@ def test_copies_stand_on_the_plate(results: dict[str, Result]) -> None:
     assert {j for _, j in packing_of(fence[0], fence.workpiece, fence.toolkit, 20, 9).shifts} == {0}
 
 
-def test_where_time_is_over_what_is_known_is_told(results: dict[str, Result], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_time_is_over_what_is_known_is_told(
+    results: dict[str, Result], monkeypatch: pytest.MonkeyPatch
+) -> None:
     result = results["strokes"]
     proven = packing_of(result[0], result.workpiece, result.toolkit, 20, 14)
     hasty = packing_of(result[0], result.workpiece, result.toolkit, 20, 14, seconds=0.0)

@@ -92,7 +92,12 @@ def test_a_bound_of_the_solver_is_rounded_up(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(optimize, "milp", lambda *arguments, **options: Outcome())
     # Greed takes four sets here, of which every two share a member.
     sets = np.array(
-        [[1, 1, 1, 1, 0, 0, 0, 0], [0, 0, 0, 1, 1, 1, 0, 0], [0, 1, 0, 0, 0, 1, 1, 0], [0, 0, 1, 0, 1, 0, 0, 1]],
+        [
+            [1, 1, 1, 1, 0, 0, 0, 0],
+            [0, 0, 0, 1, 1, 1, 0, 0],
+            [0, 1, 0, 0, 0, 1, 1, 0],
+            [0, 0, 1, 0, 1, 0, 0, 1],
+        ],
         np.bool_,
     )
     assert greedy(sets) == (0, 1, 2, 3)

@@ -12,12 +12,11 @@ from svg_reading import by_class, texts
 from family_parts import shop_parts
 from workhold import Plate, Query, Vise
 from workhold.drawing.pdf import svg_to_pdf
-from workhold.family.curve_picture import draw_curve
 from workhold.family.family import Asked, Family, family_of
-from workhold.family.losses import RANKINGS, loss_text
+from workhold.family.members import RANKINGS, loss_text
+from workhold.family.pages import draw_curve, draw_setups, grid, holes_of, moves_words
 from workhold.family.plan import Plan
-from workhold.family.setup_pages import draw_setups, grid, holes_of, moves_words
-from workhold.geometry.box import Box
+from workhold.geometry.segment import Box
 from workhold.units import INCH, MILLIMETRE, Unit
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
@@ -28,7 +27,9 @@ DAY = date(2026, 3, 31)
 def family_in(toolkit: Vise | Plate, count: int) -> Family:
     """A family of so many parts."""
     ranking = RANKINGS[toolkit.travels]
-    return family_of([Asked(part.name, Query(part, toolkit, ranking=ranking)) for part in shop_parts(count)], threads=1)
+    return family_of(
+        [Asked(part.name, Query(part, toolkit, ranking=ranking)) for part in shop_parts(count)], threads=1
+    )
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +51,9 @@ def on_page(svg: str) -> bool:
     ("name", "place", "unit"),
     [("vise", 0, MILLIMETRE), ("vise", 3, INCH), ("largest opening", 0, MILLIMETRE), ("two clamps", 0, INCH)],
 )
-def test_sheets_tell_every_part_of_every_set_up(families: dict[str, Family], name: str, place: int, unit: Unit) -> None:
+def test_sheets_tell_every_part_of_every_set_up(
+    families: dict[str, Family], name: str, place: int, unit: Unit
+) -> None:
     family = families[name]
     plan = family.plans[place]
     pages = draw_setups(plan, family.figure, DAY, unit)
@@ -93,7 +96,8 @@ def test_a_name_however_long_stays_in_its_place(families: dict[str, Family]) -> 
         evolve(
             setup,
             holdings=tuple(
-                evolve(one, member=evolve(one.member, name="bracket, revision C " * 9)) for one in setup.holdings
+                evolve(one, member=evolve(one.member, name="bracket, revision C " * 9))
+                for one in setup.holdings
             ),
         )
         for setup in family.plans[0].setups
@@ -116,12 +120,18 @@ def test_what_is_moved_is_told(families: dict[str, Family]) -> None:
 def test_pegs_in_other_columns_are_named(families: dict[str, Family]) -> None:
     family = families["largest opening"]
     apart = [
-        (plan, one) for plan in family.plans for setup in plan.setups for one in setup.holdings if not one.in_place
+        (plan, one)
+        for plan in family.plans
+        for setup in plan.setups
+        for one in setup.holdings
+        if not one.in_place
     ]
     assert apart
     plan, one = apart[0]
     words = " ".join(word for page in draw_setups(plan, family.figure, DAY) for word in texts(page))
-    assert f"* {one.member.name}: the same pegs in {', '.join(peg.hole for peg in one.fixture.pegs)}." in words
+    assert (
+        f"* {one.member.name}: the same pegs in {', '.join(peg.hole for peg in one.fixture.pegs)}." in words
+    )
 
 
 @pytest.mark.parametrize("count", range(1, 25))

@@ -14,19 +14,17 @@ from attrs import evolve
 from family_parts import shop_parts
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer
 from workhold.errors import InputError
-from workhold.family.family import Asked, Family, family_of
-from workhold.family.file import family_text
-from workhold.family.holding import holes_of, shifted, turned
-from workhold.family.losses import RANKINGS, losses, threshold
-from workhold.family.members import member_of, with_half_turns
+from workhold.family.family import Asked, Family, family_of, family_text
+from workhold.family.members import RANKINGS, losses, member_of, threshold, with_half_turns
+from workhold.family.patterns import holes_of, shifted, turned
 from workhold.family.plan import Holding
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.ranking import measured
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
-from workhold.model.restrictions import Restrictions
+from workhold.model.requirements import Restrictions
 from workhold.model.result import FixtureTable, fixture_at
 from workhold.statics.judging import unfit
-from workhold.verification.fixture_proof import Judge
+from workhold.verification.verify import Judge
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -51,7 +49,9 @@ def as_listed(one: Holding) -> FixtureTable:
     toolkit = one.member.query.toolkit
     if isinstance(toolkit, Vise):
         return one.row
-    columns, rows = (min(hole[axis] for hole in holes_of(one.row, toolkit) if hole[axis] < 1 << 40) for axis in (1, 2))
+    columns, rows = (
+        min(hole[axis] for hole in holes_of(one.row, toolkit) if hole[axis] < 1 << 40) for axis in (1, 2)
+    )
     return shifted(one.row, toolkit, {0: -columns}, 0 if toolkit.wall is not None else -rows)
 
 
@@ -75,9 +75,14 @@ def prove(family: Family) -> None:
 
 def test_the_curve_of_twenty_parts(twenty: Family) -> None:
     assert len(twenty.members) == 20 and not twenty.left_out
-    within = {bound: min(p.setups for p in twenty.points if p.loss <= bound) for bound in (inf, 2, 1.5, 1.25, 1.1, 1.0)}
+    within = {
+        bound: min(p.setups for p in twenty.points if p.loss <= bound)
+        for bound in (inf, 2, 1.5, 1.25, 1.1, 1.0)
+    }
     assert within == {inf: 1, 2: 1, 1.5: 2, 1.25: 3, 1.1: 6, 1.0: 15}
-    assert [point.loss for point in twenty.points] == sorted((point.loss for point in twenty.points), reverse=True)
+    assert [point.loss for point in twenty.points] == sorted(
+        (point.loss for point in twenty.points), reverse=True
+    )
     assert all(point.is_least and point.at_least == point.setups for point in twenty.points)
 
 
@@ -115,7 +120,8 @@ def test_the_fewest_of_six_parts_by_trying_everything(first: int) -> None:
         errors = np.round(table.quality[:, LOCATION_ERROR], 9)
         for row, error in enumerate(errors.tolist()):
             left, right = (
-                [r for c, r in zip(range(4), table.row[row], strict=True) if jaw(table, row, c) == k] for k in (0, 1)
+                [r for c, r in zip(range(4), table.row[row], strict=True) if jaw(table, row, c) == k]
+                for k in (0, 1)
             )
             base = min(*left, *right)
             key = tuple(sorted(r - base for r in left)), tuple(sorted(r - base for r in right))
@@ -173,13 +179,21 @@ def test_rules_restrict_what_is_used() -> None:
     error = free.figure.key
     limit = sorted(member.best for member in free.members)[1] + 1e-6
     strict = family_of(asked(parts, VISE), thresholds=[threshold(error, limit)], threads=1)
-    assert sorted(one.name for one in strict.left_out) == sorted(m.name for m in free.members if m.best > limit)
+    assert sorted(one.name for one in strict.left_out) == sorted(
+        m.name for m in free.members if m.best > limit
+    )
     assert all("may be used" in one.reason for one in strict.left_out)
     bounded = family_of(asked(parts, VISE), most_loss=1.001, threads=1)
     assert all(point.loss <= 1.001 for point in bounded.points)
     faces = Restrictions(avoid=(2,))
     other = family_of(asked(parts, VISE, restrictions=faces), threads=1)
-    touched = {int(face) for plan in other.plans for s in plan.setups for one in s.holdings for face in one.row.face[0]}
+    touched = {
+        int(face)
+        for plan in other.plans
+        for s in plan.setups
+        for one in s.holdings
+        for face in one.row.face[0]
+    }
     assert 2 not in touched and touched
     with pytest.raises(InputError, match="every loss is 1 or more"):
         family_of(asked(parts, VISE), most_loss=0.5)
@@ -188,7 +202,9 @@ def test_rules_restrict_what_is_used() -> None:
 def test_angles_hold_after_the_half_turn_too() -> None:
     within = Restrictions(angles=((0.0, 170.0),))
     family = family_of(asked(TWENTY[:4], VISE, restrictions=within), threads=1)
-    table, number = with_half_turns(answer(asked(TWENTY[:1], VISE)[0].query, threads=1).table, family.members[0].query)
+    table, number = with_half_turns(
+        answer(asked(TWENTY[:1], VISE)[0].query, threads=1).table, family.members[0].query
+    )
     assert (np.degrees(table.theta[len(set(number.tolist())) :]) % 360.0 <= 170.0 + 1e-9).all()
     for plan in family.plans:
         for one in (one for setup in plan.setups for one in setup.holdings):
@@ -210,7 +226,9 @@ def test_losses_are_ratios_whichever_way_is_better() -> None:
 def test_a_plan_is_made_of_all_fixtures_whatever_a_list_would_show(toolkit: Toolkit) -> None:
     """Of two clamps of every pair, too."""
     part = TWENTY[:1]
-    every = answer(asked(part, toolkit, **({"listing": "all"} if toolkit.needs_pairs else {}))[0].query, threads=1)
+    every = answer(
+        asked(part, toolkit, **({"listing": "all"} if toolkit.needs_pairs else {}))[0].query, threads=1
+    )
     member = family_of(asked(part, toolkit, best=1), threads=1).members[0]
     assert member.fixtures == len(every) > 1
 
@@ -270,12 +288,15 @@ def test_the_file_is_what_the_contract_says(twenty: Family) -> None:
                 assert {"fixture", "pose", "opening", "loss"} <= told.keys()
                 assert (told["fixture"], told["turned"]) == (one.number, one.turned)
                 assert told["zero"] == pytest.approx(one.fixture.pose.apply(*one.member.zero.point), abs=1e-8)
-    assert {one["turned"] for entry in family["curve"] for s in entry["plan"] for one in s["parts"]} == {False, True}
+    assert {one["turned"] for entry in family["curve"] for s in entry["plan"] for one in s["parts"]} == {
+        False,
+        True,
+    }
 
 
 def test_pegs_of_a_part_that_stand_elsewhere_and_its_zero_are_told(twenty: Family) -> None:
     """A largest opening, or a smallest gap, may ask for other columns than those of the set-up."""
-    from workhold.family.file import holding_entry
+    from workhold.family.family import holding_entry
 
     one = twenty.plans[0].setups[0].holdings[0]
     assert "pegs" not in holding_entry(one, WIDE, 0)
@@ -304,6 +325,8 @@ def test_numbers_of_plans(twenty: Family) -> None:
     assert twenty.plan(20).point == twenty.points[-1]
     assert twenty.plan(2).point.setups <= 2
     only = evolve(twenty.points[0], setups=3)
-    lacking = Family(twenty.toolkit, twenty.figure, twenty.members, (), (only, *twenty.points[3:]), twenty.table)
+    lacking = Family(
+        twenty.toolkit, twenty.figure, twenty.members, (), (only, *twenty.points[3:]), twenty.table
+    )
     with pytest.raises(InputError, match="2 set-ups cannot hold all parts"):
         lacking.plan(2)

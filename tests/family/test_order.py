@@ -8,9 +8,9 @@ from random import Random
 import pytest
 
 from workhold import Fence, Plate, Vise
-from workhold.family import order as module
-from workhold.family.holding import NOTHING, Hole
-from workhold.family.order import Freedom, best_order, freedom_of, nearest
+from workhold.family import plan as module
+from workhold.family.patterns import NOTHING, Hole
+from workhold.family.plan import Freedom, best_order, freedom_of, nearest
 
 
 def random_holes(random: Random) -> list[Hole]:
@@ -40,7 +40,8 @@ def test_no_other_order_moves_fewer(seed: int, freedom: Freedom) -> None:
     steps = best_order(setups, freedom)
     assert sorted(step.setup for step in steps) == list(range(5))
     least = min(
-        sum(fewest_moved(setups[a], setups[b], freedom) for a, b in pairwise(order)) for order in permutations(range(5))
+        sum(fewest_moved(setups[a], setups[b], freedom) for a, b in pairwise(order))
+        for order in permutations(range(5))
     )
     assert sum(step.moved for step in steps[1:]) == least
     assert steps[0].moved == 4
@@ -90,5 +91,7 @@ def test_beyond_what_is_tried_the_way_goes_to_the_nearest(monkeypatch: pytest.Mo
         (Fence(pitch=20, peg_radius=3, wall_offset=10), (True, False)),
     ],
 )
-def test_set_ups_move_where_the_toolkit_has_no_end(toolkit: Vise | Plate, expected: tuple[bool, bool]) -> None:
+def test_set_ups_move_where_the_toolkit_has_no_end(
+    toolkit: Vise | Plate, expected: tuple[bool, bool]
+) -> None:
     assert freedom_of(toolkit) == Freedom(*expected)

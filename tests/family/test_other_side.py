@@ -8,21 +8,22 @@ import pytest
 from family_parts import shop_parts
 from workhold import Plate, Query, Vise, Workpiece, answer
 from workhold.family.family import Asked, family_of
-from workhold.family.holding import holes_of
-from workhold.family.losses import RANKINGS
-from workhold.family.other_side import other_side, zero_of_other_side
-from workhold.model.load import Load
-from workhold.model.part_zero import PartZero, part_zero
+from workhold.family.members import RANKINGS, other_side, zero_of_other_side
+from workhold.family.patterns import holes_of
 from workhold.model.quality import LOAD_REACTION, LOCATION_ERROR
-from workhold.model.restrictions import Restrictions, circle_zone
-from workhold.verification.fixture_proof import Judge
+from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold.model.setup import PartZero, part_zero
+from workhold.verification.verify import Judge
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
 # Of lines and arcs, with a hole, unlike its mirror image.
 LEVER = Workpiece.from_loops(
     "lever",
-    [[[0, 0, 0], [60, 0, 0.4], [60, 22, 0], [20, 40, 0], [0, 35, -0.2]], [[12, 12, 0], [24, 12, 0], [18, 24, 0]]],
+    [
+        [[0, 0, 0], [60, 0, 0.4], [60, 22, 0], [20, 40, 0], [0, 35, -0.2]],
+        [[12, 12, 0], [24, 12, 0], [18, 24, 0]],
+    ],
 )
 LOAD = Load([(50, 12)], 200.0, (20.0, 70.0), moment=300.0)
 
@@ -46,7 +47,10 @@ def test_the_other_side_has_the_mirrored_fixtures(restrictions: Restrictions) ->
     # Half a turn of everything chooses among two forms of one fixture, with a location error each: type I is left out.
     mine, theirs = (
         np.sort(
-            np.round(result.table.quality[result.table.arrangement == 1], 6)[:, [LOCATION_ERROR, LOAD_REACTION]], axis=0
+            np.round(result.table.quality[result.table.arrangement == 1], 6)[
+                :, [LOCATION_ERROR, LOAD_REACTION]
+            ],
+            axis=0,
         )
         for result in (one, other)
     )
@@ -58,10 +62,14 @@ def test_the_other_side_has_the_mirrored_fixtures(restrictions: Restrictions) ->
 
 
 def test_turned_over_twice_it_is_as_before() -> None:
-    query = lever_query(Restrictions(avoid=(1, 6), zones=[circle_zone(70.0, 11.0, 5.0)], angles=[(-10.0, 30.0)]))
+    query = lever_query(
+        Restrictions(avoid=(1, 6), zones=[circle_zone(70.0, 11.0, 5.0)], angles=[(-10.0, 30.0)])
+    )
     again = other_side(other_side(query))
     assert [loop.tolist() for loop in again.workpiece.loops] == [loop.tolist() for loop in LEVER.loops]
-    assert again.restrictions.avoid == query.restrictions.avoid and again.restrictions.angles == ((-10.0, 30.0),)
+    assert again.restrictions.avoid == query.restrictions.avoid and again.restrictions.angles == (
+        (-10.0, 30.0),
+    )
     assert again.loads == query.loads
     turned = other_side(query)
     before, after = ({face.number: face.segment for face in part.faces} for part in (LEVER, turned.workpiece))
@@ -83,10 +91,16 @@ def test_the_zero_is_the_same_point_of_the_part() -> None:
 
 def test_both_sides_share_pins() -> None:
     parts = [
-        Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), ranking=RANKINGS[1])) for p in shop_parts(2)
+        Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), ranking=RANKINGS[1]))
+        for p in shop_parts(2)
     ]
     family = family_of([side for one in parts for side in (one, one.turned_over)], threads=1)
-    assert [one.name for one in family.members] == ["ell-1", "ell-1, side 2", "bracket-2", "bracket-2, side 2"]
+    assert [one.name for one in family.members] == [
+        "ell-1",
+        "ell-1, side 2",
+        "bracket-2",
+        "bracket-2, side 2",
+    ]
     judges = {id(one): Judge(one.query) for one in family.members}
     for plan in family.plans:
         held = [one for setup in plan.setups for one in setup.holdings]
@@ -95,7 +109,9 @@ def test_both_sides_share_pins() -> None:
     assert len(family.plans[0].setups) == 1
 
 
-@pytest.mark.parametrize("toolkit", [Plate(pitch=20, peg_radius=3, clamps=2), Vise(pitch=10, columns=2, peg_radius=3)])
+@pytest.mark.parametrize(
+    "toolkit", [Plate(pitch=20, peg_radius=3, clamps=2), Vise(pitch=10, columns=2, peg_radius=3)]
+)
 def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
     ranking = RANKINGS[toolkit.travels]
     # Rectangles of one height: a common corner can lie at one place.
@@ -132,7 +148,9 @@ def test_rounding_does_not_part_what_is_at_one_place() -> None:
     for hair in (1e-9, -1e-9):
         near = evolve(table, position=table.position + hair, theta=np.abs(table.theta + hair * 1e-3))
         assert (zero_words(near, result.toolkit, zero) == words).mean() > 0.999
-    assert (zero_words(evolve(table, position=table.position + 0.002), result.toolkit, zero) != words)[:, :2].all()
+    assert (zero_words(evolve(table, position=table.position + 0.002), result.toolkit, zero) != words)[
+        :, :2
+    ].all()
     whole = evolve(table, theta=np.full(len(table), 2 * np.pi - 1e-12))
     none = evolve(table, theta=np.zeros(len(table)))
     assert (zero_words(whole, result.toolkit, zero) == zero_words(none, result.toolkit, zero)).all()

@@ -10,15 +10,15 @@ from attrs import evolve
 
 from family_parts import shop_parts
 from workhold import Fence, OpeningVise, Plate, Query, Vise, Workpiece, answer
-from workhold.family.holding import holes_of, moved_onto, shifted, turned
-from workhold.family.patterns import half_turn, pattern_words
+from workhold.family.patterns import half_turn, holes_of, moved_onto, pattern_words, shifted, turned
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.result import Result, fixture_at
-from workhold.verification.fixture_proof import Judge
+from workhold.verification.verify import Judge
 
 ELL, BRACKET = shop_parts(2)
 RING = Workpiece.from_loops(
-    "ring", [[[0, 0, 0], [70, 0, 0], [60, 50, 0], [0, 40, 0]], [[15, 10, 0], [50, 12, 0], [48, 32, 0], [12, 30, 0]]]
+    "ring",
+    [[[0, 0, 0], [70, 0, 0], [60, 50, 0], [0, 40, 0]], [[15, 10, 0], [50, 12, 0], [48, 32, 0], [12, 30, 0]]],
 )
 HELD: dict[str, tuple[Workpiece, Toolkit]] = {
     "vise": (ELL, Vise(pitch=10, columns=2, peg_radius=3)),
@@ -96,11 +96,15 @@ def test_a_shifted_fixture_is_one_of_the_same_pattern(results: dict[str, Result]
     before, after = (fixture_at(table, toolkit, 0, result.workpiece) for table in (one, moved))
     pitch = toolkit.carriers[0].pitch
     for peg, other in zip(before.pegs, after.pegs, strict=True):
-        assert (other.x - peg.x, other.y - peg.y) == pytest.approx((columns.get(0, 0) * pitch[0], rows * pitch[1]))
+        assert (other.x - peg.x, other.y - peg.y) == pytest.approx(
+            (columns.get(0, 0) * pitch[0], rows * pitch[1])
+        )
 
 
 @pytest.mark.parametrize("name", ["vise", "offset rows", "opening vise", "two clamps"])
-def test_half_a_turn_gives_a_fixture_whose_half_turn_is_the_first(results: dict[str, Result], name: str) -> None:
+def test_half_a_turn_gives_a_fixture_whose_half_turn_is_the_first(
+    results: dict[str, Result], name: str
+) -> None:
     result = results[name]
     toolkit = result.toolkit
     kind = next(k for k in range(len(toolkit.arrangements)) if half_turn(toolkit, k) is not None)
@@ -109,7 +113,11 @@ def test_half_a_turn_gives_a_fixture_whose_half_turn_is_the_first(results: dict[
     table = result.table.take(rows)
     after = turned(table, toolkit)
     again = turned(after, toolkit)
-    assert (again.column == table.column).all() and (again.row == table.row).all() and (again.face == table.face).all()
+    assert (
+        (again.column == table.column).all()
+        and (again.row == table.row).all()
+        and (again.face == table.face).all()
+    )
     assert again.position == pytest.approx(table.position, abs=1e-9)
     assert again.jaw_separation == pytest.approx(table.jaw_separation, abs=1e-9)
     judge = Judge(result.query)
@@ -129,7 +137,10 @@ def test_types_that_a_half_turn_changes_have_none() -> None:
     turns = {one.direction: half_turn(plate, k) is not None for k, one in enumerate(plate.arrangements)}
     assert turns == {"-x -x": False, "-x +x": True, "-x -y": False}
     assert half_turn(Plate(pitch=20, peg_radius=3), 0) is None
-    assert half_turn(Fence(pitch=20, peg_radius=3, wall_offset=9, clamps=2, directions=[("-x", "+x")]), 0) is None
+    assert (
+        half_turn(Fence(pitch=20, peg_radius=3, wall_offset=9, clamps=2, directions=[("-x", "+x")]), 0)
+        is None
+    )
 
 
 def test_jaws_that_would_stand_too_near_are_not_moved_on(results: dict[str, Result]) -> None:

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from workhold import Fence, Plate, Vise
-from workhold.family.file import peg_entry
+from workhold.family.family import peg_entry
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Peg
 

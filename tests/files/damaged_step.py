@@ -9,7 +9,17 @@ from collections.abc import Callable
 NUMBER = re.compile(rb"(?<=[(,])-?\d+\.\d*(?:E[+-]?\d+)?(?=[,)])")
 REFERENCE = re.compile(rb"(?<=[(,])#\d+")
 ENTITY = re.compile(rb"^#\d+ ?=.*?;\n", re.MULTILINE | re.DOTALL)
-EXTREMES = (b"-1.E308", b"1.E308", b"0.", b"1.E-308", b"-1.", b"1.E9", b"1.E-12", b"123456789.123", b"9" * 400 + b".")
+EXTREMES = (
+    b"-1.E308",
+    b"1.E308",
+    b"0.",
+    b"1.E-308",
+    b"-1.",
+    b"1.E9",
+    b"1.E-12",
+    b"123456789.123",
+    b"9" * 400 + b".",
+)
 
 
 def extreme_number(content: bytes, chance: random.Random) -> bytes:

@@ -37,9 +37,9 @@ from workhold.files.apart import limit_memory, limit_processor
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
-from workhold.files.toolkit.reader import read_toolkit_file
+from workhold.files.toolkit_file import read_toolkit_file
 from workhold.kernels.base.distance import outline_distances
-from workhold.verification.columns import columns_of
+from workhold.verification.listing import columns_of
 
 __all__ = ["check_one", "run_batch"]
 
@@ -65,7 +65,9 @@ def edges_of(loop: list[list[float]]) -> list[tuple[float, ...]]:
     edges = []
     for (x, y, bulge), (to_x, to_y, _) in zip(loop, loop[1:] + loop[:1], strict=True):
         bulge *= abs(bulge) >= max(2e-6, 2e-6 / hypot(to_x - x, to_y - y))
-        edges.append((x, y, to_x, to_y, bulge + 0.0) if (x, y) < (to_x, to_y) else (to_x, to_y, x, y, 0.0 - bulge))
+        edges.append(
+            (x, y, to_x, to_y, bulge + 0.0) if (x, y) < (to_x, to_y) else (to_x, to_y, x, y, 0.0 - bulge)
+        )
     return sorted(edges)
 
 
@@ -76,7 +78,9 @@ def check_result(path: Path) -> None:
     assert len(read) == len(content["fixtures"])
     for fixture, told in zip(read, content["fixtures"], strict=True):
         pegs = sorted((peg.carrier, peg.column, peg.row, peg.face, peg.force) for peg in fixture.pegs)
-        told_pegs = [[peg[key] for key in ("jaw", "column", "row", "segment", "force")] for peg in told["pegs"]]
+        told_pegs = [
+            [peg[key] for key in ("jaw", "column", "row", "segment", "force")] for peg in told["pegs"]
+        ]
         assert pegs == sorted(map(tuple, told_pegs))
         assert fixture.jaw_separation == approx(told["jaw_separation"])
         assert fixture.pose.x == approx(told["pose"]["x"])
@@ -213,7 +217,10 @@ def check_one(path: Path, with_commands: bool) -> bool:
         told = StringIO()
         picture, other = (str(path.with_name(name)) for name in ("picture.svg", "other.json"))
         with redirect_stdout(told), redirect_stderr(told):
-            code = app([word.format(file=path, picture=picture, other=other) for word in words], standalone_mode=False)
+            code = app(
+                [word.format(file=path, picture=picture, other=other) for word in words],
+                standalone_mode=False,
+            )
         assert code in (0, 2), f"{words[0]} ends with {code}: {told.getvalue()}"
     return True
 

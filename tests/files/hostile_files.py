@@ -47,7 +47,21 @@ EXTREMES: tuple[Any, ...] = (
         -(2**63),
         10**400,
     ),
-    *(True, False, None, "", "x" * 5000, "\x1b]0;owned\x07", "a\u202eb", "mm", "inch", "I", "left", "any", "1e999"),
+    *(
+        True,
+        False,
+        None,
+        "",
+        "x" * 5000,
+        "\x1b]0;owned\x07",
+        "a\u202eb",
+        "mm",
+        "inch",
+        "I",
+        "left",
+        "any",
+        "1e999",
+    ),
     *([], {}, [[]], [0], [0, 0], [1, 2, 3], [[0, 0, 0]], {"x": 1}, float("inf"), float("nan")),
 )
 
@@ -81,7 +95,9 @@ def upset(content: Any, chance: random.Random) -> Any:
             case 4 if isinstance(container, list):
                 container.insert(chance.randrange(len(container) + 1), json.loads(json.dumps(container[key])))
             case _ if isinstance(container[key], int | float) and abs(container[key]) < 1e308:
-                container[key] = container[key] * chance.choice((-1, 0.5, 1000)) + chance.choice((0, 1e-9, 0.25))
+                container[key] = container[key] * chance.choice((-1, 0.5, 1000)) + chance.choice(
+                    (0, 1e-9, 0.25)
+                )
             case _:
                 container[key] = {"more": container[key]} if chance.random() < 0.5 else [container[key]]
     return content
@@ -105,7 +121,11 @@ def as_json(content: Any, chance: random.Random) -> bytes:
 def toml_value(value: Any) -> str:
     """A value as TOML writes it."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{json.dumps(str(key))} = {toml_value(item)}" for key, item in value.items()) + "}"
+        return (
+            "{"
+            + ", ".join(f"{json.dumps(str(key))} = {toml_value(item)}" for key, item in value.items())
+            + "}"
+        )
     if isinstance(value, list):
         return "[" + ", ".join(map(toml_value, value)) + "]"
     if isinstance(value, float):
@@ -131,7 +151,9 @@ def part(chance: random.Random) -> bytes:
     loops = [[[0, 0, 0], [size, 0, chance.choice((0, 0.2, 1e-12))], [size, size, 0], [0, size, 0]]]
     if chance.random() < 0.5:
         loops.append([[size / 4, size / 2, 1], [size / 2, size / 2, 1]])
-    return as_json(upset({"name": "p", "units": chance.choice(("mm", "inch")), "loops": loops}, chance), chance)
+    return as_json(
+        upset({"name": "p", "units": chance.choice(("mm", "inch")), "loops": loops}, chance), chance
+    )
 
 
 def result(chance: random.Random) -> bytes:
@@ -165,7 +187,12 @@ def vise(chance: random.Random) -> bytes:
 def loads(chance: random.Random) -> bytes:
     """Some forces and moments."""
     tables: list[dict[str, Any]] = [
-        {"name": "mill", "force": chance.choice((200, "0.2 kN")), "path": [[0, 0], [40, 0]], "direction": [30, 60]},
+        {
+            "name": "mill",
+            "force": chance.choice((200, "0.2 kN")),
+            "path": [[0, 0], [40, 0]],
+            "direction": [30, 60],
+        },
         {"force": 5, "at": [1.5, 2], "direction": "any", "moment": "5 N.m"},
         {"moment": -3},
     ]
@@ -199,7 +226,9 @@ def dxf(chance: random.Random) -> bytes:
         target.add_circle(center, radius)
     else:
         low, high = 20.0, 200.0
-        ends = [(center[0] + radius * cos(radians(a)), center[1] + radius * sin(radians(a))) for a in (low, high)]
+        ends = [
+            (center[0] + radius * cos(radians(a)), center[1] + radius * sin(radians(a))) for a in (low, high)
+        ]
         target.add_arc(center, radius, low, high)
         target.add_line(ends[1], ends[0])
     stream = StringIO()
@@ -305,7 +334,9 @@ def odd_array(array: Any, chance: random.Random) -> bytes:
         case _:
             known = np.iinfo(array.dtype) if array.dtype.kind == "i" else None
             extremes = (
-                (known.min, known.max, -1, 0, 1, 7) if known else (np.nan, np.inf, -np.inf, 1e308, -1.0, 0.0, 1e-308)
+                (known.min, known.max, -1, 0, 1, 7)
+                if known
+                else (np.nan, np.inf, -np.inf, 1e308, -1.0, 0.0, 1e-308)
             )
             array.reshape(-1)[chance.randrange(array.size)] = chance.choice(extremes)
             return npy(array)

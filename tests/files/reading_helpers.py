@@ -42,7 +42,9 @@ def read_dxf(tmp_path: Path, draw: Callable[[Any], None], insunits: int | None =
     return read_workpiece(path, **options)
 
 
-def rectangle(space: Any, x: float = 0, y: float = 0, w: float = 60, h: float = 40, **attributes: Any) -> None:
+def rectangle(
+    space: Any, x: float = 0, y: float = 0, w: float = 60, h: float = 40, **attributes: Any
+) -> None:
     """Draw a rectangle as four loose lines."""
     corners = [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
     for start, end in zip(corners, corners[1:] + corners[:1], strict=True):

@@ -26,7 +26,9 @@ def box(x: float, y: float, z: float, at: Sequence[float] = (0, 0, 0)) -> Any:
     return BRepPrimAPI_MakeBox(gp_Pnt(*at), x, y, z).Solid()
 
 
-def cylinder(radius: float, height: float, at: Sequence[float], direction: Sequence[float] = (0, 0, 1)) -> Any:
+def cylinder(
+    radius: float, height: float, at: Sequence[float], direction: Sequence[float] = (0, 0, 1)
+) -> Any:
     """A cylinder that stands on a point."""
     return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(*at), gp_Dir(*direction)), radius, height).Solid()
 

@@ -35,7 +35,13 @@ CLEAR = {
         "fill:url(#gone) none",
         "fill:url(#gone)",
     ),
-    "stroke": ("stroke:none", "stroke-width:0", "stroke-opacity:0", "stroke:transparent", "stroke-dasharray:0 9"),
+    "stroke": (
+        "stroke:none",
+        "stroke-width:0",
+        "stroke-opacity:0",
+        "stroke:transparent",
+        "stroke-dasharray:0 9",
+    ),
 }
 VISIBLE = ("visibility:visible", "opacity:.5", "display:inline", "display:nonsense")
 
@@ -74,9 +80,13 @@ class Node:
         """The element as XML; both writings' styles are joined, those of one writing last."""
         attributes = dict(self.both)
         for name, value in (self.plain if plain else self.author).items():
-            attributes[name] = f"{attributes[name]};{value}" if name == "style" and name in attributes else value
+            attributes[name] = (
+                f"{attributes[name]};{value}" if name == "style" and name in attributes else value
+            )
         words = "".join(f" {name}={quoteattr(value)}" for name, value in attributes.items())
-        return f"<{self.tag}{words}>{self.text}{''.join(c.written(plain) for c in self.children)}</{self.tag}>\n"
+        return (
+            f"<{self.tag}{words}>{self.text}{''.join(c.written(plain) for c in self.children)}</{self.tag}>\n"
+        )
 
 
 def number(value: float) -> str:
@@ -134,7 +144,9 @@ class Drafter:
         if self.chance(0.03):
             root.both["style"] = self.random.choice(INVISIBLE)
         sheets = [Node("style", text="\n".join(self.rules))]
-        author = Node("svg", root.both, root.author, children=[*sheets, Node("style", text="".join(self.own_rules))])
+        author = Node(
+            "svg", root.both, root.author, children=[*sheets, Node("style", text="".join(self.own_rules))]
+        )
         author.children += root.children
         plain = Node("svg", root.both, plain=root.plain, children=[*sheets, *root.children])
         written = author.written(plain=False)
@@ -201,7 +213,9 @@ class Drafter:
         if self.chance(0.5):
             box = f"{number(self.between(-20, 0))} {number(self.between(-20, 0))} 130 {self.random.choice(('130', '110'))}"
             node.both["viewBox"] = box
-            align = self.random.choice(("", "xMinYMax meet", "xMaxYMid slice", "none", "xMidYMin", "xMidYMid slice"))
+            align = self.random.choice(
+                ("", "xMinYMax meet", "xMaxYMid slice", "none", "xMidYMin", "xMidYMid slice")
+            )
             if align:
                 node.both["preserveAspectRatio"] = align
             if align == "none":
@@ -303,7 +317,9 @@ class Drafter:
                 words.append(self.command())
             words.append(self.random.choice(("z", "Z", "")))
             words.append(
-                self.random.choice(("", f"m{number(self.between(-9, 9))},{number(self.between(2, 9))}", "l 9 20"))
+                self.random.choice(
+                    ("", f"m{number(self.between(-9, 9))},{number(self.between(2, 9))}", "l 9 20")
+                )
             )
         if words[-1].startswith("m") and self.chance(0.5):
             words.append("h12 v-9z")

@@ -58,13 +58,21 @@ def test_content_and_options_go_there_and_plain_data_come_back(work: str) -> Non
     ("content", "said"),
     [
         (b"crash", "the file is damaged so that the library that reads it breaks down: save it anew."),
-        (b"loop", "the file was given up after 1 s of reading: it is damaged, or holds too much; save less in it."),
-        (b"killed", "the file ran out of memory while it was read: close other programs, or save less in it."),
+        (
+            b"loop",
+            "the file was given up after 1 s of reading: it is damaged, or holds too much; save less in it.",
+        ),
+        (
+            b"killed",
+            "the file ran out of memory while it was read: close other programs, or save less in it.",
+        ),
         (b"hog", "the file needs more than 2.7 GB of memory to read: save less in it."),
         (b"refuse", "this is refused."),
     ],
 )
-def test_every_bad_end_is_one_sentence(work: str, monkeypatch: pytest.MonkeyPatch, content: bytes, said: str) -> None:
+def test_every_bad_end_is_one_sentence(
+    work: str, monkeypatch: pytest.MonkeyPatch, content: bytes, said: str
+) -> None:
     """A crash, an endless loop deaf to SIGTERM, a lack of memory, and a refusal of the work itself."""
     if content == b"loop":
         monkeypatch.setattr(apart, "SECONDS", 0.9)
@@ -75,7 +83,9 @@ def test_every_bad_end_is_one_sentence(work: str, monkeypatch: pytest.MonkeyPatc
 
 def test_to_prepare_takes_its_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock of the reading starts behind it; what is refused while it prepares is told."""
-    (tmp_path / "slow_work.py").write_text("import time\nprepare = lambda: time.sleep(2)\nplain = lambda content: 1\n")
+    (tmp_path / "slow_work.py").write_text(
+        "import time\nprepare = lambda: time.sleep(2)\nplain = lambda content: 1\n"
+    )
     wanting = "from workhold.errors import InputError\ndef prepare(): raise InputError('it is missing.')\n"
     (tmp_path / "wanting_work.py").write_text(wanting)
     monkeypatch.syspath_prepend(tmp_path)

@@ -42,7 +42,10 @@ def test_a_mistake_of_the_program_is_not_blamed_on_the_user(tmp_path: Path) -> N
 
 
 def test_a_full_disk_is_told_in_a_sentence(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"a\.txt cannot be written: No space left"), text_file(tmp_path / "a.txt"):
+    with (
+        pytest.raises(InputError, match=r"a\.txt cannot be written: No space left"),
+        text_file(tmp_path / "a.txt"),
+    ):
         raise OSError(28, "No space left on device")
     assert list(tmp_path.iterdir()) == []
 

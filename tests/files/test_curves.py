@@ -11,16 +11,21 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
-from ezdxf.math import ConstructionEllipse, closed_uniform_bspline, fit_points_to_cad_cv, rational_bspline_from_ellipse
+from ezdxf.math import (
+    ConstructionEllipse,
+    closed_uniform_bspline,
+    fit_points_to_cad_cv,
+    rational_bspline_from_ellipse,
+)
 from reading_helpers import area, read_dxf, read_svg, rectangle
 
 import workhold
-from workhold.drawing.features_picture import first_parameter
+from workhold.drawing.part_pictures import first_parameter
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.geometry.segment import Arc
-from workhold.model.notes import fitted_note
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Tolerance
+from workhold.model.search_report import fitted_note
 from workhold.model.workpiece import Workpiece
 
 MM = 'width="200mm" height="200mm" viewBox="0 0 200 200"'
@@ -40,7 +45,9 @@ def circle_path(x: float, y: float, r: float, digits: int = 4) -> str:
 
 def circles(part: Workpiece) -> list[float]:
     """Radii of the faces that are whole circles."""
-    return [face.segment.radius for face in part.faces if isinstance(face.segment, Arc) and face.segment.is_full]
+    return [
+        face.segment.radius for face in part.faces if isinstance(face.segment, Arc) and face.segment.is_full
+    ]
 
 
 def test_circles_as_beziers_are_circles(tmp_path: Path) -> None:
@@ -49,7 +56,8 @@ def test_circles_as_beziers_are_circles(tmp_path: Path) -> None:
     assert circles(loaded.workpiece) == [pytest.approx(50, abs=1e-4), pytest.approx(10, abs=1e-4)]
     assert loaded.workpiece.departure == pytest.approx(2.725e-4 * 50, rel=0.02)
     assert (
-        "Read 2 curves as the lines and arcs that they stand for, nowhere farther than 0.014 mm off." in loaded.remarks
+        "Read 2 curves as the lines and arcs that they stand for, nowhere farther than 0.014 mm off."
+        in loaded.remarks
     )
 
 
@@ -116,7 +124,9 @@ def test_an_elliptical_slot_is_refused_and_fitted(tmp_path: Path) -> None:
     part = loaded.workpiece
     assert 0.002 < part.departure <= 0.005
     assert area(part) == pytest.approx(140 * 80 - 60 * 20 - pi * 60, abs=0.005 * 60)
-    assert any("in place of 2 curves, nowhere farther than 0.005 mm off" in remark for remark in loaded.remarks)
+    assert any(
+        "in place of 2 curves, nowhere farther than 0.005 mm off" in remark for remark in loaded.remarks
+    )
 
 
 def test_a_closed_spline_is_fitted(tmp_path: Path) -> None:
@@ -175,7 +185,9 @@ def test_a_closed_spline_of_fit_points_has_no_corner(tmp_path: Path) -> None:
             space.add_spline(points).closed = True
 
         part = read_dxf(tmp_path, draw, fit=0.005).workpiece
-        assert all(abs(turn) < 0.02 for turn in joint_turns(part)) and part.bounds[2] == pytest.approx(30, abs=0.01)
+        assert all(abs(turn) < 0.02 for turn in joint_turns(part)) and part.bounds[2] == pytest.approx(
+            30, abs=0.01
+        )
         areas.append(area(part))
     assert areas[0] == pytest.approx(areas[1], abs=0.005 * 200) == pytest.approx(pi * 900, rel=1e-3)
 
@@ -267,7 +279,10 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
     part = read_dxf(tmp_path, draw, fit=0.05).workpiece
     bare = Workpiece.from_loops(part.name, part.loops)
     assert part.departure > 0.02 and part != bare
-    assert pickle.loads(pickle.dumps(part)) == part and attrs.evolve(part, name="another").departure == part.departure
+    assert (
+        pickle.loads(pickle.dumps(part)) == part
+        and attrs.evolve(part, name="another").departure == part.departure
+    )
     vise = workhold.Vise(pitch=10, columns=1, peg_radius=3)
     result = workhold.design(part, vise, best=5)
     added = workhold.design(bare, vise, best=5, tolerance=Tolerance(0.01, 0.01 + part.departure))
@@ -300,7 +315,10 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
 def test_why_there_is_no_fixture_is_said_of_a_fitted_outline_too() -> None:
     """Before the note on what the claim is for."""
     corners = [[0, 0, 0], [41, 0, 0], [13, 37, 0]]
-    for vise in (workhold.Vise(pitch=99, columns=1, peg_radius=2), workhold.Plate(pitch=99, peg_radius=2, clamps=2)):
+    for vise in (
+        workhold.Vise(pitch=99, columns=1, peg_radius=2),
+        workhold.Plate(pitch=99, peg_radius=2, clamps=2),
+    ):
         plain, fitted = (
             workhold.design(Workpiece.from_loops("wedge", [corners], departure=departure), vise)
             for departure in (0.0, 0.01)

@@ -9,7 +9,7 @@ import pytest
 
 from workhold.errors import InputError
 from workhold.files.loads_file import POUND_FORCE, read_loads
-from workhold.model.load import Load
+from workhold.model.requirements import Load
 
 TOML = """
 [[load]]
@@ -56,10 +56,16 @@ def test_units(tmp_path: Path) -> None:
     """Lengths are in the file's unit, or else in the caller's; bare forces and moments stay N and N mm."""
     in_inches = read_loads(written(tmp_path, 'unit = "inch"\n' + TOML), unit_scale=1.0)
     assert in_inches == read_loads(written(tmp_path, TOML), unit_scale=25.4)
-    assert in_inches[1].points == ((254.0, 127.0),) and in_inches[1].force == 200.0 and in_inches[1].moment == 5000.0
+    assert (
+        in_inches[1].points == ((254.0, 127.0),)
+        and in_inches[1].force == 200.0
+        and in_inches[1].moment == 5000.0
+    )
     assert read_loads(written(tmp_path, 'unit = "mm"\n' + TOML), unit_scale=25.4) == LOADS
     (pounds,) = read_loads(written(tmp_path, '[[load]]\nforce = "45 lbf"\nat = [0, 0]\nmoment = "40 lbf.in"'))
-    assert pounds.force == pytest.approx(45 * POUND_FORCE) and pounds.moment == pytest.approx(40 * 25.4 * POUND_FORCE)
+    assert pounds.force == pytest.approx(45 * POUND_FORCE) and pounds.moment == pytest.approx(
+        40 * 25.4 * POUND_FORCE
+    )
     # 1 lbf in = 0.1129848 N m (NIST SP 811, appendix B.8).
     assert pounds.moment / 40e3 == pytest.approx(0.1129848, rel=1e-6)
 

@@ -12,7 +12,9 @@ from workhold.errors import InputError
 from workhold.files import part_list as module
 from workhold.files.part_list import ListedPart, part_list, read_listed
 
-SQUARE = json.dumps({"name": "square", "units": "mm", "loops": [[[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]]]})
+SQUARE = json.dumps(
+    {"name": "square", "units": "mm", "loops": [[[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]]]}
+)
 
 
 def folder_of(root: Path, *names: str) -> Path:
@@ -80,7 +82,11 @@ def test_a_disk_is_no_list(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_a_part_that_cannot_be_read_is_a_sentence(tmp_path: Path) -> None:
-    for name, content in (("empty.dxf", b""), ("broken.dxf", b"0\nSECTION\n2\nENTITIES\n0\nLINE\n"), ("odd.svg", b"<")):
+    for name, content in (
+        ("empty.dxf", b""),
+        ("broken.dxf", b"0\nSECTION\n2\nENTITIES\n0\nLINE\n"),
+        ("odd.svg", b"<"),
+    ):
         (tmp_path / name).write_bytes(content)
         read = read_listed(part_list([tmp_path / name])[0])
         assert read.loaded is None

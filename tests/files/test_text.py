@@ -11,11 +11,9 @@ from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
 from workhold.files.text import json_value, read_text, toml_table
-from workhold.files.toolkit.reader import read_toolkit_file
+from workhold.files.toolkit_file import read_toolkit_file
 from workhold.fixels.vise import Vise
-from workhold.model.load import Load
-from workhold.model.restrictions import circle_zone
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Load, Tolerance, circle_zone
 from workhold.model.workpiece import Workpiece
 from workhold.plain import plain, shortened
 
@@ -44,7 +42,9 @@ def test_a_byte_order_mark_is_no_content(tmp_path: Path, name: str) -> None:
 def test_a_number_of_400_digits_is_refused(tmp_path: Path, name: str) -> None:
     """In one sentence that begins with the file's name, instead of an OverflowError."""
     read, text, number = READERS[name]
-    (tmp_path / name).write_text(text.replace(number, HUGE + number[2:] if number[0] != "2" else HUGE + "]", 1))
+    (tmp_path / name).write_text(
+        text.replace(number, HUGE + number[2:] if number[0] != "2" else HUGE + "]", 1)
+    )
     with pytest.raises(InputError, match=f"{name}.* digits"):
         read(tmp_path / name)  # type: ignore[operator]
 
@@ -78,7 +78,9 @@ def test_a_key_given_twice_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match='the key "units" is given twice'):
         json_value('{"units": "mm", "units": "inch"}')
     result = tmp_path / "r.json"
-    result.write_text('{"format": "workhold-result/1",\n"complete": true,\n"complete": false,\n"fixtures": [\n]}')
+    result.write_text(
+        '{"format": "workhold-result/1",\n"complete": true,\n"complete": false,\n"fixtures": [\n]}'
+    )
     with pytest.raises(InputError, match=r'r\.json is not a result file: the key "complete" is given twice'):
         read_result(result)
 
@@ -88,13 +90,17 @@ def test_size_is_looked_at_before_a_file_is_read(tmp_path: Path) -> None:
     path = tmp_path / "l.toml"
     with path.open("wb") as stream:
         stream.truncate(2_000_000)
-    with pytest.raises(InputError, match=r"l\.toml is not a loads file: the file has 2 MB, more than the 1 MB"):
+    with pytest.raises(
+        InputError, match=r"l\.toml is not a loads file: the file has 2 MB, more than the 1 MB"
+    ):
         read_loads(path)
     with pytest.raises(InputError, match="this is not a file"):
         read_text(Path("/dev/zero"), 10, "a vise")
 
 
-@pytest.mark.parametrize("text", ["a = 1" + "0" * 5000, "a = [" * 5000, "a = \x00", "a = 1\na = 2", f"a = {HUGE}"])
+@pytest.mark.parametrize(
+    "text", ["a = 1" + "0" * 5000, "a = [" * 5000, "a = \x00", "a = 1\na = 2", f"a = {HUGE}"]
+)
 def test_broken_toml_is_one_sentence(text: str) -> None:
     """Also where Python's reader raises something of its own."""
     with pytest.raises(InputError, match=r"^the file .*\.$"):

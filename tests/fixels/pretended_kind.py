@@ -99,7 +99,16 @@ def commands(drawing: str) -> dict[str, list[str]]:
     press = ["--toolkit", "press", "--pitch", "15", "--peg-radius", "2"]
     return {
         "design": ["design", drawing, *press, "--out", "r.json", "--draw", "pictures"],
-        "design from a file": ["design", drawing, "--toolkit", "press.toml", "--best", "3", "--out", "few.json"],
+        "design from a file": [
+            "design",
+            drawing,
+            "--toolkit",
+            "press.toml",
+            "--best",
+            "3",
+            "--out",
+            "few.json",
+        ],
         "none": ["design", drawing, *press, "--angle", "1..1.001"],
         "verify": ["verify", "r.json", "--complete"],
         "show": ["show", "r.json", "1"],

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from workhold import Fence, OpeningVise, Plate, Vise
-from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
+from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
-from workhold.model.setting import contact_names, settings_of
+from workhold.model.setup import contact_names, settings_of
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PLATE = Plate(pitch=20, peg_radius=3, directions=("-x", "-y"))
@@ -30,11 +30,15 @@ ONE = Pose(0.0, 0.0, 0.0)
         ),
     ],
 )
-def test_what_stands_on_a_carrier(toolkit: Toolkit, contacts: list[object], counted: list[tuple[bool, bool]]) -> None:
+def test_what_stands_on_a_carrier(
+    toolkit: Toolkit, contacts: list[object], counted: list[tuple[bool, bool]]
+) -> None:
     """A clamp of which only the line is known has a column or a row, and the end of a wall neither."""
     assert [carrier.contact for carrier in toolkit.carriers] == contacts
     assert [carrier.counted for carrier in toolkit.carriers] == counted
-    assert [one.has_lattice for one in toolkit.carriers] == [kind in (ROUND_PIN, FLAT_PIN) for kind in contacts]
+    assert [one.has_lattice for one in toolkit.carriers] == [
+        kind in (ROUND_PIN, FLAT_PIN) for kind in contacts
+    ]
 
 
 def test_how_files_name_what_stands_on_a_carrier() -> None:
@@ -64,7 +68,11 @@ def test_what_half_a_turn_makes_of_a_toolkit() -> None:
 def test_where_places_are_measured_from() -> None:
     """From a hole, or from a column and the fence, which then stands for a row and fixes the others."""
     vise, fence = VISE.datum, FENCE.datum
-    assert (vise.start, vise.lines, vise.full) == ("hole L-A1", ("column A", "row 1"), "the left jaw's hole L-A1")
+    assert (vise.start, vise.lines, vise.full) == (
+        "hole L-A1",
+        ("column A", "row 1"),
+        "the left jaw's hole L-A1",
+    )
     assert (fence.start, fence.lines) == ("column A and the fence", ("column A", "the fence"))
     assert (vise.fixes_rows, fence.fixes_rows, fence.edge) == (False, True, 8.0)
     assert vise.centres("peg") == "x, y: peg centre, from the centre of hole L-A1."

@@ -9,13 +9,11 @@ import pytest
 from attrs import NOTHING, fields, fields_dict
 
 from toolkit_values import VALUES, given
-from workhold.cli.many_toolkits import toolkits_to_try
-from workhold.cli.toolkit_options import ToolkitWords
-from workhold.cli.toolkits_command import own_figures
+from workhold.cli.catalogue_commands import own_figures
+from workhold.cli.toolkit_options import ToolkitWords, toolkits_to_try
 from workhold.errors import InputError
-from workhold.files.toolkit.form import checked
-from workhold.files.toolkit.presets import load_toolkit, preset_names
-from workhold.files.toolkit.reader import described_toolkit
+from workhold.files.input_forms import checked_toolkit
+from workhold.files.toolkit_file import described_toolkit, load_toolkit, preset_names
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.kinds import KINDS, TABLES, USUAL, owner_of, table_of, toolkit_of
 from workhold.units import MILLIMETRE, unit_named
@@ -64,7 +62,7 @@ def test_all_forms_of_a_toolkit_say_the_same(kind: str) -> None:
     """Of a TOML file, in two units; of a result file; of a request; and of the command's options."""
     toolkit = toolkit_of(kind, given(kind))
     entries = json.loads(json.dumps(given(kind)))
-    assert described_toolkit("x", checked({"unit": "mm", "kind": kind, **entries})).toolkit == toolkit
+    assert described_toolkit("x", checked_toolkit({"unit": "mm", "kind": kind, **entries})).toolkit == toolkit
     inch = unit_named("inch").length(1.0)
     halved = {
         row.name: [one / inch for one in value] if isinstance(value, list) else value / inch
@@ -72,7 +70,9 @@ def test_all_forms_of_a_toolkit_say_the_same(kind: str) -> None:
         if row.form in ("length", "pitch", "span", "flat")
         for value in [entries[row.name]]
     }
-    again = described_toolkit("x", checked({"unit": "inch", "kind": kind, **entries, **halved})).toolkit
+    again = described_toolkit(
+        "x", checked_toolkit({"unit": "inch", "kind": kind, **entries, **halved})
+    ).toolkit
     for row in table_of(kind).fields:
         one, other = getattr(again, row.name), getattr(toolkit, row.name)
         if row.form in ("length", "pitch", "span"):
@@ -87,7 +87,9 @@ def test_an_option_of_another_kind_is_refused_by_its_name(kind: str) -> None:
     for row in OPTIONS:
         if row.name in given(kind):
             continue
-        with pytest.raises(InputError, match=f"{row.option} is of {owner_of(row).noun}s: a .* has no {row.belongs_to}"):
+        with pytest.raises(
+            InputError, match=f"{row.option} is of {owner_of(row).noun}s: a .* has no {row.belongs_to}"
+        ):
             typed(**typed_of(kind) | {row.name: VALUES[row.name][1]}).asked(MILLIMETRE)
 
 
@@ -100,7 +102,7 @@ def test_what_must_be_given_is_asked_for_in_each_form(kind: str) -> None:
         entries = json.loads(json.dumps(given(kind)))
         del entries[row.name]
         with pytest.raises(InputError, match=f"{row.name} is missing: write"):
-            checked({"unit": "mm", "kind": kind, **entries})
+            checked_toolkit({"unit": "mm", "kind": kind, **entries})
         with pytest.raises(InputError, match=f"{row.missing} is not given: add {row.option},"):
             typed(**typed_of(kind) | {row.name: None}).asked(MILLIMETRE)
 

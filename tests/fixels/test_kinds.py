@@ -27,6 +27,8 @@ def test_aliases_are_kinds_with_fields_of_their_own() -> None:
         ),
     ],
 )
-def test_what_a_kind_does_not_have_is_refused_in_one_sentence(kind: str, fields: dict[str, object], words: str) -> None:
+def test_what_a_kind_does_not_have_is_refused_in_one_sentence(
+    kind: str, fields: dict[str, object], words: str
+) -> None:
     with pytest.raises(InputError, match=words):
         toolkit_of(kind, fields)

@@ -15,7 +15,9 @@ from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import MOST_LENGTH
 
-ROWS = [pytest.param(kind, row, id=f"{kind}-{row.name}") for kind, table in TABLES.items() for row in table.fields]
+ROWS = [
+    pytest.param(kind, row, id=f"{kind}-{row.name}") for kind, table in TABLES.items() for row in table.fields
+]
 LENGTHS = [one for one in ROWS if one.values[1].form == "length"]
 
 
@@ -38,7 +40,9 @@ def test_a_length_out_of_its_bounds_is_refused_by_its_name(kind: str, row: Toolk
 
 
 @pytest.mark.parametrize(("kind", "row"), [one for one in ROWS if one.values[1].at_least])
-def test_what_is_below_another_field_is_refused_and_what_meets_it_is_not(kind: str, row: ToolkitField) -> None:
+def test_what_is_below_another_field_is_refused_and_what_meets_it_is_not(
+    kind: str, row: ToolkitField
+) -> None:
     """The sentence names both values."""
     least = getattr(made(kind), row.at_least)
     assert getattr(made(kind, **{row.name: least}), row.name) == least

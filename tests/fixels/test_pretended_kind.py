@@ -50,7 +50,10 @@ def test_its_files_are_written_and_say_the_same(outcomes: tuple[Path, dict[str, 
     folder = outcomes[0]
     result = json.loads((folder / "r.json").read_text())
     assert result["toolkit"] == {"kind": "press", "pitch": [15.0, 15.0], "peg_radius": 2.0, "min_gap": 15.0}
-    assert len(result["fixtures"]) > 0 and {peg["jaw"] for peg in result["fixtures"][0]["pegs"]} == {"bed", "ram"}
+    assert len(result["fixtures"]) > 0 and {peg["jaw"] for peg in result["fixtures"][0]["pegs"]} == {
+        "bed",
+        "ram",
+    }
     assert (folder / "again.json").read_bytes() == (folder / "r.json").read_bytes()
     assert (folder / "sheet.pdf").read_bytes().startswith(b"%PDF")
     assert b"BED" in (folder / "set-up.dxf").read_bytes() and "B-" in (folder / "pins.csv").read_text()
@@ -78,4 +81,6 @@ def test_its_own_words_are_told(outcomes: tuple[Path, dict[str, Any]]) -> None:
     assert page["title"] == "Press" and page["closes"] == "Close press"
     assert {field["name"] for field in page["fields"]} == {"pitch", "peg_radius", "min_gap"}
     assert "A press with pegs on its bed and its ram" in told["schema"]
-    assert told["request"].startswith("Press(") and "No fixture exists for wedge in this press" in told["none"]
+    assert (
+        told["request"].startswith("Press(") and "No fixture exists for wedge in this press" in told["none"]
+    )

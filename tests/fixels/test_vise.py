@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from strategies import vises
 from workhold.errors import InputError
-from workhold.fixels.holes import Holes, column_letters, holes_named
+from workhold.fixels.carrier import Holes, column_letters, holes_named
 from workhold.fixels.vise import Vise
 from workhold.model.fixture import Peg
 from workhold.units import MILLIMETRE
@@ -22,7 +22,13 @@ VALID = {"pitch": 10, "columns": 2, "peg_radius": 3}
 def test_defaults():
     """One pitch serves both directions; min_gap is the x pitch; rows and opening have no limit; no row offset."""
     vise = Vise(pitch=(10, 12), columns=2, peg_radius=3)
-    assert (vise.pitch, vise.min_gap, vise.rows, vise.max_opening, vise.row_offset) == ((10, 12), 10, None, None, 0)
+    assert (vise.pitch, vise.min_gap, vise.rows, vise.max_opening, vise.row_offset) == (
+        (10, 12),
+        10,
+        None,
+        None,
+        0,
+    )
     assert Vise(pitch=8, columns=1, peg_radius=0).pitch == (8, 8)
     assert Vise(**VALID, min_gap=0).min_gap == 0
 
@@ -79,7 +85,9 @@ def test_holes_follow_the_lattice(vise, column, row, separation):
     assert first[0] - last[0] == pytest.approx(separation)
     assert first[1] - last[1] == pytest.approx(vise.row_offset)
     right = vise.carriers[1].place(column, row, separation)
-    assert right[0] - first[0] == pytest.approx(left[0]) and right[1] == pytest.approx(left[1] + vise.row_offset)
+    assert right[0] - first[0] == pytest.approx(left[0]) and right[1] == pytest.approx(
+        left[1] + vise.row_offset
+    )
 
 
 def test_hole_names():

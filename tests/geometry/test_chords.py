@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workhold.geometry.chords import MergedLoop, merged_chords
+from workhold.geometry.merged_runs import MergedLoop, merged_chords
 
 
 def merged(rows: Sequence[Sequence[float]], fit: float | None = None) -> MergedLoop:

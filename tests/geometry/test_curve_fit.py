@@ -11,13 +11,12 @@ from ezdxf.math import BSpline, open_uniform_knot_vector
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.geometry.biarc import biarcs
-from workhold.geometry.curve_bounds import departure
-from workhold.geometry.curve_fit import FittedCurve, fitted_curve
+from workhold.geometry.curve_fit import FittedCurve, biarcs, fitted_curve
 from workhold.geometry.rational import (
     Pieces,
     arc_pieces,
     cut,
+    departure,
     direction_at,
     ellipse_pieces,
     end_curvatures,
@@ -38,7 +37,12 @@ def bezier_circle(radius: float, handle: float = HANDLE, digits: int = 12) -> Pi
     corners = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
     curves = []
     for (px, py), (qx, qy) in zip(corners, corners[1:] + corners[:1], strict=True):
-        rows = [(px, py), (px + handle * qx, py + handle * qy), (qx + handle * px, qy + handle * py), (qx, qy)]
+        rows = [
+            (px, py),
+            (px + handle * qx, py + handle * qy),
+            (qx + handle * px, qy + handle * py),
+            (qx, qy),
+        ]
         curves.append(polynomial_pieces(np.round(radius * np.array(rows), digits)))
     return joined_pieces(curves)
 
@@ -92,7 +96,9 @@ def test_an_unclamped_closed_spline_closes() -> None:
     pieces = spline_pieces(corners + corners[:3], None, range(12), 3)
     assert len(pieces) == 5
     assert point_at(pieces, 0) == pytest.approx(point_at(pieces, 5), abs=1e-12)
-    assert direction_at(pieces, 0, after=True) == pytest.approx(direction_at(pieces, 5, after=False), abs=1e-12)
+    assert direction_at(pieces, 0, after=True) == pytest.approx(
+        direction_at(pieces, 5, after=False), abs=1e-12
+    )
     begin, end = end_curvatures(pieces)
     assert begin == pytest.approx(np.roll(end, 1), rel=1e-9)
 
@@ -113,7 +119,9 @@ def test_numbers_that_are_no_spline_are_refused(
     points: list[Point], weights: list[float] | None, knots: list[float], degree: int, said: str
 ) -> None:
     """What is wrong is said in words that follow the entity's name."""
-    with pytest.raises(InputError, match=f"^is a spline .*{said}|^is a spline of {said}|^is a spline in {said}"):
+    with pytest.raises(
+        InputError, match=f"^is a spline .*{said}|^is a spline of {said}|^is a spline in {said}"
+    ):
         spline_pieces(points, weights, knots, degree)
 
 
@@ -144,7 +152,9 @@ def test_an_ellipse_of_equal_axes_and_an_exact_spline_are_circles() -> None:
     assert half is not None and half.bulges == (pytest.approx(1.0),) and half.departure < 1e-12
 
 
-@pytest.mark.parametrize(("handle", "digits"), [(HANDLE, 12), (HANDLE, 3), (0.5523, 12), (0.552, 12), (0.551915, 12)])
+@pytest.mark.parametrize(
+    ("handle", "digits"), [(HANDLE, 12), (HANDLE, 3), (0.5523, 12), (0.552, 12), (0.551915, 12)]
+)
 def test_cubics_by_which_programs_write_circles_are_circles(handle: float, digits: int) -> None:
     """With any of the handles in use and rounded numbers; the departure is what is known of them, 2.7e-4 radii."""
     fitted = fitted_curve(bezier_circle(50, handle, digits), 0.01)
@@ -175,7 +185,9 @@ def test_a_slot_in_one_curve_is_two_lines_and_two_arcs() -> None:
     )
     fitted = fitted_curve(slot, 0.01)
     assert fitted is not None and fitted.is_disguise
-    assert np.array(fitted.points) == pytest.approx(np.array([(0, 0), (40, 0), (40, 20), (0, 20), (0, 0)]), abs=1e-12)
+    assert np.array(fitted.points) == pytest.approx(
+        np.array([(0, 0), (40, 0), (40, 20), (0, 20), (0, 0)]), abs=1e-12
+    )
     assert fitted.bulges == pytest.approx([0, 1, 0, 1], abs=1e-12)
 
 
@@ -196,7 +208,9 @@ def test_biarcs_are_smooth_and_as_near_as_said(fit: float, shape: str) -> None:
         "ellipse": ellipse_pieces((0, 0), (24, 18), (-9, 12), 0.0, 2 * pi),
         "wave 1": wave(1),
         "wave 2": mapped(wave(2), [(0, -1, 3), (1, 0.2, 5)]),
-        "rational": spline_pieces([(0, 0), (10, 40), (30, -30), (60, 10)], [1, 4, 0.3, 1], [0] * 4 + [1] * 4, 3),
+        "rational": spline_pieces(
+            [(0, 0), (10, 40), (30, -30), (60, 10)], [1, 4, 0.3, 1], [0] * 4 + [1] * 4, 3
+        ),
         "closed": spline_pieces(closed + closed[:3], None, range(12), 3),
     }[shape]
     fitted = fitted_curve(pieces, fit)
@@ -259,7 +273,12 @@ def test_a_bound_is_never_below_the_distance() -> None:
         handle = 4 / 3 * tan(sweep / 4) * radius
         ends = [(radius, 0.0), (radius * cos(sweep), radius * sin(sweep))]
         rows = np.array(
-            [ends[0], (radius, handle), (ends[1][0] + handle * sin(sweep), ends[1][1] - handle * cos(sweep)), ends[1]]
+            [
+                ends[0],
+                (radius, handle),
+                (ends[1][0] + handle * sin(sweep), ends[1][1] - handle * cos(sweep)),
+                ends[1],
+            ]
         )
         rows[1:3] += rng.normal(size=(2, 2)) * 0.01 * radius
         pieces = polynomial_pieces(rows)
@@ -282,7 +301,9 @@ def test_a_curve_that_goes_round_once_more_is_not_the_arc() -> None:
 def test_a_curve_that_turns_back_on_its_circle_is_not_the_arc() -> None:
     """Forward by 60 degrees, back by 20, and on to 90: on the circle everywhere, and past some places three times."""
     steps = [(0, 60), (60, -20), (40, 50)]
-    pieces = joined_pieces([ellipse_pieces((0, 0), (10, 0), (0, 10), radians(a), radians(b)) for a, b in steps])
+    pieces = joined_pieces(
+        [ellipse_pieces((0, 0), (10, 0), (0, 10), radians(a), radians(b)) for a, b in steps]
+    )
     arc = Arc((0.0, 0.0), 10.0, pi / 4, pi / 4, 1.0)
     assert departure(pieces, arc, 1.0) == np.inf
     assert departure(ellipse_pieces((0, 0), (10, 0), (0, 10), 0, pi / 2), arc, 1.0) < 1e-12
@@ -294,7 +315,8 @@ def test_a_cusp_does_not_end_the_fit() -> None:
         fitted = fitted_curve(polynomial_pieces(rows), 0.01)
         assert fitted is not None and fitted.departure < 0.02
         assert (
-            away_from(points_along(polynomial_pieces(rows), 300), segments_of(fitted)).max() <= fitted.departure + 1e-9
+            away_from(points_along(polynomial_pieces(rows), 300), segments_of(fitted)).max()
+            <= fitted.departure + 1e-9
         )
     runs = biarcs(polynomial_pieces([(0, 0), (1, 0), (2, 0), (3, 0.0)]), 0.01)
     assert [atan2(run.points[-1][1], run.points[-1][0]) for run in runs] == [pytest.approx(0.0, abs=1e-12)]

@@ -61,7 +61,9 @@ def test_collinear_segments_are_one_face_across_the_first_vertex():
 def test_a_circle_drawn_in_pieces_is_one_face(pieces, sign):
     """k arcs of one circle, either way round, are one whole circle: convex outside, concave as a hole."""
     bulge = sign * tan(tau / pieces / 4)
-    circle = [[8 * cos(sign * tau * k / pieces), 8 * sin(sign * tau * k / pieces), bulge] for k in range(pieces)]
+    circle = [
+        [8 * cos(sign * tau * k / pieces), 8 * sin(sign * tau * k / pieces), bulge] for k in range(pieces)
+    ]
     (face,) = faces(circle)
     assert face.segment.is_full and face.segment.sign == 1.0 and face.number == 0
     assert face.segment.radius == pytest.approx(8) and face.segment.half_sweep == pi

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from slow_fence import orientations
 from workhold import InputError
-from workhold.geometry.hull_edges import HullEdge
+from workhold.geometry.hull import HullEdge
 from workhold.model.workpiece import Workpiece
 
 Loop = list[tuple[float, ...]]
@@ -25,7 +25,16 @@ def edges_of(loop: Loop) -> tuple[HullEdge, ...]:
 def test_pads_on_one_line_are_one_edge_over_the_gap_and_its_ends_are_of_the_pads() -> None:
     """Two feet, the arch between them off the line; up to the rounding of a drawing."""
     for off in (0.0, 4e-8, -4e-8):
-        feet = [(0, 0, 0), (10, 0, 0), (15, 6, 0), (25, 6, 0), (30, off, 0), (40, off, 0), (40, 20, 0), (0, 20, 0)]
+        feet = [
+            (0, 0, 0),
+            (10, 0, 0),
+            (15, 6, 0),
+            (25, 6, 0),
+            (30, off, 0),
+            (40, off, 0),
+            (40, 20, 0),
+            (0, 20, 0),
+        ]
         (bottom,) = (edge for edge in edges_of(feet) if abs(edge.tangent[1]) < 0.1 and edge.tangent[0] > 0)
         assert (bottom.start.point, bottom.end.point) == ((0, 0), (40, off))
         assert (bottom.start.faces, bottom.end.faces) == ((0,), (4,))
@@ -35,7 +44,16 @@ def test_pads_on_one_line_are_one_edge_over_the_gap_and_its_ends_are_of_the_pads
 
 def test_what_stands_out_by_more_than_rounding_makes_edges_of_its_own() -> None:
     """A foot a micrometre lower than the other."""
-    feet = [(0, 0, 0), (10, 0, 0), (15, 6, 0), (25, 6, 0), (30, -1e-3, 0), (40, -1e-3, 0), (40, 20, 0), (0, 20, 0)]
+    feet = [
+        (0, 0, 0),
+        (10, 0, 0),
+        (15, 6, 0),
+        (25, 6, 0),
+        (30, -1e-3, 0),
+        (40, -1e-3, 0),
+        (40, 20, 0),
+        (0, 20, 0),
+    ]
     below = [edge for edge in edges_of(feet) if edge.tangent[0] > 0.9]
     assert [(edge.start.point[0], edge.end.point[0]) for edge in below] == [(0, 30), (30, 40)]
     assert below[0].start.faces == (0, 7) or set(below[0].start.faces) == {0, 7}
@@ -59,7 +77,9 @@ def test_two_discs_joined_by_a_waist_have_two_edges_from_arc_to_arc() -> None:
         assert sorted((edge.start.radius, edge.end.radius)) == [pytest.approx(4.0), pytest.approx(10.0)]
         assert edge.length == pytest.approx(sqrt(40.0**2 - 6.0**2))
         assert abs(edge.tangent[1]) == pytest.approx(6.0 / 40.0)
-        assert edge.height((0.0, 0.0)) == pytest.approx(10.0) and edge.height((40.0, 0.0)) == pytest.approx(4.0)
+        assert edge.height((0.0, 0.0)) == pytest.approx(10.0) and edge.height((40.0, 0.0)) == pytest.approx(
+            4.0
+        )
 
 
 def test_where_a_face_runs_smoothly_into_an_arc_the_face_is_named() -> None:

@@ -10,8 +10,14 @@ import pytest
 from hypothesis import given
 
 from strategies import seeds
-from workhold.geometry.intersect import bounding_box, circle_circle, common_points, contains_parameter
-from workhold.geometry.segment import Arc, Line
+from workhold.geometry.segment import (
+    Arc,
+    Line,
+    bounding_box,
+    circle_circle,
+    common_points,
+    contains_parameter,
+)
 
 
 @given(seeds)

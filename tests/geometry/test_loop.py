@@ -10,9 +10,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from strategies import outlines
-from workhold.geometry.intersect import carrier_intersections, common_points, contains_parameter
 from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
-from workhold.geometry.segment import Arc, Line, segment_from_bulge
+from workhold.geometry.segment import (
+    Arc,
+    Line,
+    carrier_intersections,
+    common_points,
+    contains_parameter,
+    segment_from_bulge,
+)
 
 places = st.tuples(st.floats(-50, 50), st.floats(-50, 50)).map(lambda p: (round(p[0], 2), round(p[1], 2)))
 
@@ -63,7 +69,9 @@ def test_known_areas():
 
 
 @settings(max_examples=200)
-@given(places, places, st.sampled_from([0.0, 0.4, -1.5, 1.0]), places, places, st.sampled_from([0.0, -0.3, 2.0]))
+@given(
+    places, places, st.sampled_from([0.0, 0.4, -1.5, 1.0]), places, places, st.sampled_from([0.0, -0.3, 2.0])
+)
 def test_intersections_of_carriers_lie_on_both(p, q, bulge, r, s, other_bulge):
     """Every common point of two carriers has distance 0 from both; lines meet once, circles and lines at most twice."""
     if max(abs(p[0] - q[0]), abs(p[1] - q[1])) < 0.1 or max(abs(r[0] - s[0]), abs(r[1] - s[1])) < 0.1:
@@ -93,10 +101,18 @@ def test_arcs_meet_where_a_sampling_says_so():
     met = 0
     for _ in range(300):
         a = Arc(
-            tuple(random.uniform(-5, 5, 2)), random.uniform(2, 8), random.uniform(-3, 3), random.uniform(0.3, 3), 1.0
+            tuple(random.uniform(-5, 5, 2)),
+            random.uniform(2, 8),
+            random.uniform(-3, 3),
+            random.uniform(0.3, 3),
+            1.0,
         )
         b = Arc(
-            tuple(random.uniform(-5, 5, 2)), random.uniform(2, 8), random.uniform(-3, 3), random.uniform(0.3, 3), 1.0
+            tuple(random.uniform(-5, 5, 2)),
+            random.uniform(2, 8),
+            random.uniform(-3, 3),
+            random.uniform(0.3, 3),
+            1.0,
         )
         t = np.linspace(-a.half_sweep, a.half_sweep, 4001)
         points = np.array([a.at(x) for x in t])
@@ -104,7 +120,9 @@ def test_arcs_meet_where_a_sampling_says_so():
         changes = np.flatnonzero(off[1:] * off[:-1] < 0)
         inside = [contains_parameter(b, b.parameter(tuple(points[k])), 0.0) for k in changes]
         margin = [abs(abs(b.parameter(tuple(points[k]))) - b.half_sweep) for k in changes]
-        if min([*margin, 1.0]) < 0.01 or (np.abs(off).min() > 0 and np.abs(off).min() < 1e-2 and not len(changes)):
+        if min([*margin, 1.0]) < 0.01 or (
+            np.abs(off).min() > 0 and np.abs(off).min() < 1e-2 and not len(changes)
+        ):
             continue
         met += sum(inside)
         assert len(common_points(a, b, 1e-9)) == sum(inside)

@@ -97,14 +97,25 @@ def test_a_boss_near_a_long_edge_splits_its_offset():
 
 def test_inner_corners_cut_and_outer_corners_do_not():
     """In an L the two faces of the inner corner lose r each; all others keep their length."""
-    part = Workpiece.from_loops("L", [[[0, 0, 0], [40, 0, 0], [40, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]])
+    part = Workpiece.from_loops(
+        "L", [[[0, 0, 0], [40, 0, 0], [40, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]]
+    )
     lengths = {k: piece.length for k, piece in trimmed_offsets(part.segments, 3.0)}
     assert lengths == pytest.approx({0: 40, 1: 20, 2: 17, 3: 27, 4: 20, 5: 50})
 
 
 def test_a_slot_as_narrow_as_the_peg_hides_its_walls():
     """Walls 6 apart leave features for r < 3 and none for r > 3."""
-    slot = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [33, 40, 0], [33, 10, 0], [27, 10, 0], [27, 40, 0], [0, 40, 0]]
+    slot = [
+        [0, 0, 0],
+        [60, 0, 0],
+        [60, 40, 0],
+        [33, 40, 0],
+        [33, 10, 0],
+        [27, 10, 0],
+        [27, 40, 0],
+        [0, 40, 0],
+    ]
     part = Workpiece.from_loops("slot", [slot])
     assert {k for k, _ in trimmed_offsets(part.segments, 2.9)} == set(range(8))
     assert {k for k, _ in trimmed_offsets(part.segments, 3.1)} == {0, 1, 2, 6, 7}

@@ -10,9 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from workhold.conventions import READING
-from workhold.geometry.face import faces_of_loop
-from workhold.geometry.loop import loop_segments
-from workhold.geometry.one_circle import on_one_circle
+from workhold.geometry.loop import faces_of_loop, loop_segments
+from workhold.geometry.merged_runs import on_one_circle
 
 RADIUS = 20.0
 
@@ -28,7 +27,9 @@ def arcs(count: int, off: float, turn: float, seed: int = 0) -> NDArray[np.float
 def away(vertices: NDArray[np.float64], others: NDArray[np.float64]) -> float:
     """How far in mm vertices and the arcs' middles of two loops are apart, at most."""
     pairs = zip(loop_segments(vertices), loop_segments(others), strict=True)
-    points = [(p, q) for one, other in pairs for p, q in ((one.start, other.start), (one.at(0.0), other.at(0.0)))]
+    points = [
+        (p, q) for one, other in pairs for p, q in ((one.start, other.start), (one.at(0.0), other.at(0.0)))
+    ]
     return max(hypot(p[0] - q[0], p[1] - q[1]) for p, q in points)
 
 

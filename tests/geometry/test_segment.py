@@ -9,8 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from workhold.geometry.intersect import bounding_box
-from workhold.geometry.segment import Arc, Line, segment_from_bulge, segment_rows
+from workhold.geometry.segment import Arc, Line, bounding_box, segment_from_bulge, segment_rows
 
 places = st.tuples(st.floats(-100, 100), st.floats(-100, 100)).map(lambda p: (round(p[0], 3), round(p[1], 3)))
 bulges = st.one_of(st.floats(0.01, 20), st.floats(-20, -0.01))
@@ -68,7 +67,9 @@ def test_a_part_is_the_segment_between_two_parameters(start, end, bulge, one, tw
     part = segment.part(low, high)
     near = 1e-9 * (200 + getattr(segment, "radius", 0.0))
     ends = (segment.at(low), segment.at(high))
-    found = (part.start, part.end) if not (isinstance(part, Arc) and part.sign < 0) else (part.end, part.start)
+    found = (
+        (part.start, part.end) if not (isinstance(part, Arc) and part.sign < 0) else (part.end, part.start)
+    )
     assert found[0] == pytest.approx(ends[0], abs=near) and found[1] == pytest.approx(ends[1], abs=near)
     assert part.length == pytest.approx((high - low) / (2 * segment.half_extent) * segment.length)
 
@@ -111,7 +112,10 @@ def test_rows_hold_the_segments():
 
 def off_circle(arc: Arc, point: tuple[float, float]) -> float:
     """How far in mm a point is from an arc's circle, from its very numbers: (d^2 - R^2) / 2R."""
-    x, y = (Fraction(p) - Fraction(c) - Fraction(rest) for p, c, rest in zip(point, arc.center, arc.rest, strict=True))
+    x, y = (
+        Fraction(p) - Fraction(c) - Fraction(rest)
+        for p, c, rest in zip(point, arc.center, arc.rest, strict=True)
+    )
     radius = Fraction(arc.radius)
     return float((x * x + y * y - radius * radius) / (2 * radius))
 

@@ -49,7 +49,12 @@ def test_known_parts():
     assert len(group(square, circle(9, 10, 3))) == 1
     assert len(group(circle(0, 0, 20), circle(0, 0, 8))) == 1
     assert len(group(circle(0, 0, 20), circle(0, 10, 4), circle(0, -10, 4))) == 2
-    assert len(group(circle(0, 0, 20), *(circle(12 * cos(a), 12 * sin(a), 3) for a in (0, tau / 3, 2 * tau / 3)))) == 3
+    assert (
+        len(
+            group(circle(0, 0, 20), *(circle(12 * cos(a), 12 * sin(a), 3) for a in (0, tau / 3, 2 * tau / 3)))
+        )
+        == 3
+    )
 
 
 def test_parallelograms_turn_but_kites_do_not():
@@ -59,7 +64,8 @@ def test_parallelograms_turn_but_kites_do_not():
 
 
 @pytest.mark.parametrize(
-    "name, order", [("widget", 1), ("8Handle", 8), ("large4Handle", 4), ("small4Handle", 4), ("thin4Handle", 4)]
+    "name, order",
+    [("widget", 1), ("8Handle", 8), ("large4Handle", 4), ("small4Handle", 4), ("thin4Handle", 4)],
 )
 def test_built_in_parts(name, order):
     """The handles turn onto themselves as their names say, the widget does not."""
@@ -99,6 +105,8 @@ def test_holes_of_different_sizes_are_not_carried_onto_each_other():
 
     def order(*radii):
         places = ((15, 15), (-15, 15), (-15, -15), (15, -15))
-        return len(group(square, *(circle(x, y, radius) for (x, y), radius in zip(places, radii, strict=True))))
+        return len(
+            group(square, *(circle(x, y, radius) for (x, y), radius in zip(places, radii, strict=True)))
+        )
 
     assert (order(3, 3, 3, 3), order(3, 5, 3, 5), order(3, 3, 5, 5), order(5, 3, 3, 3)) == (4, 2, 1, 1)

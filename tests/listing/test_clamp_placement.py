@@ -14,7 +14,12 @@ from workhold.fixels.plate import Plate as AnyPlate
 def holes(result: Result) -> set[tuple[Any, ...]]:
     """Fixtures by their holes, with orientations."""
     return {
-        (f.direction, round(f.pose.theta_deg, 4), *((peg.column, peg.row) for peg in f.pegs), round(f.pegs[-1].x, 4))
+        (
+            f.direction,
+            round(f.pose.theta_deg, 4),
+            *((peg.column, peg.row) for peg in f.pegs),
+            round(f.pegs[-1].x, 4),
+        )
         for f in result
     }
 

@@ -16,7 +16,9 @@ def test_same_holes_and_pose_on_two_faces_is_listed_once() -> None:
     twice = candidates(2)
     feature = twice.feature.copy()
     feature[1, 2] = 7
-    twice = evolve(twice, feature=feature, theta=twice.theta + np.array([0.0, 3e-9]), point=twice.point + 1e-9)
+    twice = evolve(
+        twice, feature=feature, theta=twice.theta + np.array([0.0, 3e-9]), point=twice.point + 1e-9
+    )
     assert len(listed_once(twice).standing) == 1
 
 

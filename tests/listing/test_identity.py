@@ -11,7 +11,7 @@ from attrs import evolve
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer
 from workhold.conventions import SAME_POSE
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.rotation import rotated
+from workhold.geometry.symmetry import rotated
 from workhold.listing.identity import Identity, SetCount, identity_order
 from workhold.model.result import FixtureTable
 
@@ -56,7 +56,9 @@ def test_what_is_turned_has_the_same_smallest_image(name: str, corners: int) -> 
         np.testing.assert_array_equal(again[0], words)
         np.testing.assert_allclose(again[1], pose, atol=SAME_POSE)
     np.testing.assert_array_equal(everything.distinct, sets)
-    np.testing.assert_array_equal(everything.found, np.bincount(table.arrangement, minlength=len(sets)) * corners)
+    np.testing.assert_array_equal(
+        everything.found, np.bincount(table.arrangement, minlength=len(sets)) * corners
+    )
     assert everything.by_type(sets) == result.distinct
     # Each is one of as many as there are rotations, unless half a turn makes it the same again.
     own_half_turn = corners % 2 == 0 and name in ("vise", "opposed")
@@ -68,7 +70,10 @@ def test_half_a_turn_of_everything_makes_a_fixture_of_opposed_clamps_the_same() 
     query = Query(polygon(5), TOOLKITS["opposed"], listing="all")
     table, identity = answer(query).table, Identity(query.toolkit, query.workpiece)
     table = table.take(np.flatnonzero(table.arrangement == 0))
-    turned, order = rotated(table.position[:, 0], table.position[:, 1], np.full(len(table), pi)), [2, 1, 0, 4, 3]
+    turned, order = (
+        rotated(table.position[:, 0], table.position[:, 1], np.full(len(table), pi)),
+        [2, 1, 0, 4, 3],
+    )
     halfway = evolve(
         table,
         column=-table.column[:, order],
@@ -91,7 +96,9 @@ def test_the_best_of_a_seat_are_named_without_their_clamps() -> None:
     seats, every = (Identity(query.toolkit, query.workpiece, every) for every in (False, True))
     for identity, differs in ((seats, False), (every, True)):
         (words, pose), (others, other) = identity.smallest(table), identity.smallest(moved)
-        same = all(np.array_equal(*pair) for pair in zip(words, others, strict=True)) and np.array_equal(pose, other)
+        same = all(np.array_equal(*pair) for pair in zip(words, others, strict=True)) and np.array_equal(
+            pose, other
+        )
         assert same != differs and len(table) > 3
 
 

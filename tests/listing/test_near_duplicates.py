@@ -10,7 +10,7 @@ from attrs import evolve, fields
 
 from workhold import Plate, Vise, Workpiece, design, load
 from workhold.geometry.symmetry import symmetries
-from workhold.listing.near_duplicates import entries, near_duplicates, smallest_images
+from workhold.listing.identity import entries, near_duplicates, smallest_images
 from workhold.model.quality import TILT
 from workhold.model.result import FixtureTable
 from workhold.statics.judging import unfit
@@ -110,7 +110,10 @@ def test_what_the_half_turn_swaps_is_alike() -> None:
     result = design(load("widget"), Vise(pitch=8, columns=1, peg_radius=3))
     swapped = evolve(result.table, face=np.ascontiguousarray(result.table.face[:, [2, 3, 0, 1]]))
     both = FixtureTable(
-        **{a.name: np.concatenate([getattr(t, a.name) for t in (result.table, swapped)]) for a in fields(FixtureTable)}
+        **{
+            a.name: np.concatenate([getattr(t, a.name) for t in (result.table, swapped)])
+            for a in fields(FixtureTable)
+        }
     )
     one, other = np.split(near_duplicates(both, result.workpiece, result.toolkit), 2)
     two_and_two = result.table.arrangement == 0

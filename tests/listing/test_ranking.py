@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 
 from workhold import InputError
 from workhold.listing.ranking import best_marked, rank
-from workhold.model.load import Load
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR, WRENCH_RADIUS
 from workhold.model.query import DEFAULT_RANKING, PREFERENCES, asked_ranking, chosen_ranking
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Load, Tolerance
 
 # So loose that no fixture is unfit by its location error.
 LOOSE = Tolerance(1.0, 1.0)
@@ -47,7 +46,9 @@ def test_equal_fixtures_stay_in_the_order_of_their_identities() -> None:
 
 
 @given(
-    st.lists(st.sampled_from([0.01, 0.011, 0.0111, 0.5, 0.0]), min_size=1, max_size=12), st.integers(1, 12), st.data()
+    st.lists(st.sampled_from([0.01, 0.011, 0.0111, 0.5, 0.0]), min_size=1, max_size=12),
+    st.integers(1, 12),
+    st.data(),
 )
 def test_the_best_marked_are_the_first_ranked(errors: list[float], most: int, data: st.DataObject) -> None:
     """Without ties exactly the first so many; with ties also those equal to the last of them, and none else."""
@@ -55,13 +56,18 @@ def test_the_best_marked_are_the_first_ranked(errors: list[float], most: int, da
     quality = figures(len(errors), location_error=errors, closure_margin=margins)
     ranking = ("location_error", "closure_margin")
     order = rank(quality, ranking, LOOSE)
-    assert np.flatnonzero(best_marked(quality, ranking, LOOSE, most, ties=False)).tolist() == sorted(order[:most])
+    assert np.flatnonzero(best_marked(quality, ranking, LOOSE, most, ties=False)).tolist() == sorted(
+        order[:most]
+    )
     marked = best_marked(quality, ranking, LOOSE, most, ties=True)
     assert marked[order[:most]].all()
     last = quality[order[min(most, len(order)) - 1]]
     for index in np.flatnonzero(marked):
         if index not in order[:most]:
-            assert abs(quality[index, LOCATION_ERROR] - last[LOCATION_ERROR]) < 0.01 * last[LOCATION_ERROR] + 1e-12
+            assert (
+                abs(quality[index, LOCATION_ERROR] - last[LOCATION_ERROR])
+                < 0.01 * last[LOCATION_ERROR] + 1e-12
+            )
             assert quality[index, CLOSURE_MARGIN] == last[CLOSURE_MARGIN]
 
 
@@ -89,7 +95,9 @@ def test_names_that_cannot_be_ranked_by(names: list[str], words: str) -> None:
 
 
 @given(st.lists(st.tuples(st.floats(0.001, 3.0), st.floats(0.0, 0.25)), min_size=1, max_size=12), st.data())
-def test_what_is_none_for_a_workshop_comes_last(figures_of: list[tuple[float, float]], data: st.DataObject) -> None:
+def test_what_is_none_for_a_workshop_comes_last(
+    figures_of: list[tuple[float, float]], data: st.DataObject
+) -> None:
     """In every order: beyond 50 times the tolerances, or with less than a hundredth of the even share."""
     errors, margins = zip(*figures_of, strict=True)
     quality = figures(len(errors), location_error=list(errors), closure_margin=list(margins))
@@ -100,7 +108,9 @@ def test_what_is_none_for_a_workshop_comes_last(figures_of: list[tuple[float, fl
 
 
 @given(st.lists(st.integers(0, 3), min_size=2, max_size=12), st.data())
-def test_fixtures_with_a_warning_never_stand_before_those_without(warnings: list[int], data: st.DataObject) -> None:
+def test_fixtures_with_a_warning_never_stand_before_those_without(
+    warnings: list[int], data: st.DataObject
+) -> None:
     """Whatever is preferred."""
     errors = data.draw(st.lists(st.floats(0.01, 0.9), min_size=len(warnings), max_size=len(warnings)))
     quality = figures(len(warnings), warnings=list(map(float, warnings)), location_error=errors)

@@ -17,7 +17,7 @@ ROOMS = [Path(delegates.__file__).parent / room for room in ("model", "fixels")]
 MAKING = """
 import workhold
 from workhold.files.result.reader import read_result
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Tolerance
 from workhold.fixels.vise import Vise
 
 result = read_result("wedge.json")
@@ -40,7 +40,7 @@ ORDERS = (
     "workhold",
     "workhold.model.fixture",
     "workhold.model.result, workhold.model.workpiece",
-    "workhold.presenting.pictures",
+    "workhold.presenting.papers",
     "workhold.seating.solver",
     "workhold.files.result.save",
     "workhold.kernels",
@@ -52,7 +52,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a result."""
     made = tmp_path_factory.mktemp("delegates")
     wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
-    workhold.save(workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2), best=2), made / "wedge.json")
+    workhold.save(
+        workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2), best=2), made / "wedge.json"
+    )
     return made
 
 
@@ -60,7 +62,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_method_works_whatever_was_imported_first(first: str, folder: Path) -> None:
     """Of a process that imports some modules first, each method answers."""
     code = "\n".join([f"import {first}", MAKING, *METHODS.values()])
-    outcome = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=folder, check=False)
+    outcome = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=folder, check=False
+    )
     assert outcome.stderr == ""
     assert dict(zip(METHODS, outcome.stdout.split(), strict=True)) == dict.fromkeys(METHODS, "True")
 
@@ -68,7 +72,9 @@ def test_every_method_works_whatever_was_imported_first(first: str, folder: Path
 def test_the_package_alone_imports_next_to_nothing() -> None:
     """Of its own modules only the version and the register of delegates, and no library."""
     code = "import sys; before = set(sys.modules); import workhold; print(*sorted(set(sys.modules) - before))"
-    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
     own = [name for name in loaded if name.partition(".")[0] == "workhold"]
     assert own == ["workhold", "workhold.delegates", "workhold.version"]
     assert {name.partition(".")[0] for name in loaded} <= {"workhold", *sys.stdlib_module_names}

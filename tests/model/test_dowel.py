@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.model.dowel import peg_error, refuse_limits
+from workhold.model.dowels import peg_error, refuse_limits
 
 DEVIATION = st.floats(-0.05, 0.05)
 

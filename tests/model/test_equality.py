@@ -19,7 +19,11 @@ PLATE = [[0.0, 0.0, 0.0], [60.0, 0.0, 0.2], [60.0, 40.0, 0.0], [0.0, 40.0, 0.0]]
 def test_copies_of_a_workpiece_are_equal_and_hash_alike() -> None:
     """A copy, a pickled one, one made again; -0.0 is 0.0. Other loops and another name make another part."""
     plate = Workpiece.from_loops("plate", [PLATE])
-    for same in (copy.deepcopy(plate), pickle.loads(pickle.dumps(plate)), Workpiece.from_loops("plate", [PLATE])):
+    for same in (
+        copy.deepcopy(plate),
+        pickle.loads(pickle.dumps(plate)),
+        Workpiece.from_loops("plate", [PLATE]),
+    ):
         assert same == plate and hash(same) == hash(plate)
     signed = np.array(PLATE)
     signed[0, 1] = -0.0

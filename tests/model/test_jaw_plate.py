@@ -6,10 +6,10 @@ import pytest
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.fixels.holes import Holes
+from workhold.fixels.carrier import Holes
 from workhold.fixels.plate import Plate
 from workhold.fixels.vise import Vise
-from workhold.model.jaw_plate import Bolts, jaw_plates
+from workhold.model.dowels import Bolts, jaw_plates
 from workhold.units import INCH
 
 VISE = Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4, row_offset=5.0)
@@ -25,7 +25,12 @@ def test_holes_are_those_of_the_jaws() -> None:
         for name, (x, y) in plate.holes:
             column, row = "ABC".index(name[2]), int(name[3:]) - 1
             assert carrier.place(column, row) == pytest.approx((x + zero[0], y + zero[1]))
-    assert {name for name, _ in vise[0].holes} - {name for name, _ in left.holes} == {"L-B1", "L-B2", "L-B3", "L-B4"}
+    assert {name for name, _ in vise[0].holes} - {name for name, _ in left.holes} == {
+        "L-B1",
+        "L-B2",
+        "L-B3",
+        "L-B4",
+    }
 
 
 def test_the_edge_is_as_far_as_asked_for() -> None:

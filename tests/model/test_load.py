@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.model.load import ANY_DIRECTION, Load
+from workhold.model.requirements import ANY_DIRECTION, Load
 
 ANGLES = st.floats(-1000, 1000)
 

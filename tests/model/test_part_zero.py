@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from workhold.errors import InputError
-from workhold.model.part_zero import part_zero
+from workhold.model.setup import part_zero
 from workhold.model.workpiece import Workpiece
 from workhold.units import INCH
 
@@ -17,15 +17,25 @@ def plate(x: float, y: float) -> Workpiece:
         [[28, 12, 1], [32, 12, 1]],
         [[7, 5, 0], [13, 5, 1], [13, 9, 0], [7, 9, 1]],
     ]
-    return Workpiece.from_loops("plate", [[[x + px, y + py, bulge] for px, py, bulge in loop] for loop in loops])
+    return Workpiece.from_loops(
+        "plate", [[[x + px, y + py, bulge] for px, py, bulge in loop] for loop in loops]
+    )
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0), (2067.5, -300.25), (-20.0, -10.0), (-41.0, 3.0)])
 @pytest.mark.parametrize(
     ("asked", "wanted"),
-    [("corner", (0, 0)), ("Centre", (20, 10)), ("center", (20, 10)), ("hole 1", (30, 12)), ("hole2", (10, 7))],
+    [
+        ("corner", (0, 0)),
+        ("Centre", (20, 10)),
+        ("center", (20, 10)),
+        ("hole 1", (30, 12)),
+        ("hole2", (10, 7)),
+    ],
 )
-def test_named_points_go_with_the_part(place: tuple[float, float], asked: str, wanted: tuple[float, float]) -> None:
+def test_named_points_go_with_the_part(
+    place: tuple[float, float], asked: str, wanted: tuple[float, float]
+) -> None:
     """Wherever the part is drawn, each point is at the same place of it."""
     x, y = part_zero(plate(*place), asked).point
     assert (x - place[0], y - place[1]) == pytest.approx(wanted, abs=1e-9)
@@ -52,7 +62,11 @@ def test_without_a_wish_it_is_the_origin_on_the_part_and_else_the_corner(
 
 def test_points_of_the_drawing_are_in_the_unit_told() -> None:
     """1,-2 inch are 25.4, -50.8 mm, in words or as numbers."""
-    assert part_zero(plate(0, 0), "1,-2", INCH).point == part_zero(plate(0, 0), (1, -2), INCH).point == (25.4, -50.8)
+    assert (
+        part_zero(plate(0, 0), "1,-2", INCH).point
+        == part_zero(plate(0, 0), (1, -2), INCH).point
+        == (25.4, -50.8)
+    )
 
 
 @pytest.mark.parametrize(

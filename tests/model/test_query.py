@@ -12,9 +12,7 @@ from attrs import evolve
 
 from workhold import InputError, Query, Vise, Workpiece, answer, design
 from workhold.fixels.vise import OpeningVise
-from workhold.model.load import Load
-from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
 
 
 def part(corner: float = 9.0) -> Workpiece:
@@ -98,7 +96,9 @@ def test_one_word_is_not_taken_for_its_letters() -> None:
     """Of types and of figures, by Query and by design."""
     query = full(arrangements="II", ranking="wrench-radius")
     assert query.arrangements == ("II",) and query.ranking == ("wrench_radius",)
-    assert set(design(part(), Vise(pitch=10, columns=1, peg_radius=2), types="II").query.arrangements) == {"II"}
+    assert set(design(part(), Vise(pitch=10, columns=1, peg_radius=2), types="II").query.arrangements) == {
+        "II"
+    }
 
 
 @pytest.mark.parametrize(

@@ -13,10 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.fixels.holes import Holes
+from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 from workhold.fixels.vise import OpeningVise, Vise
-from workhold.geometry.box import Box
+from workhold.geometry.segment import Box
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.shown import Shown, placed_boxes, shown, shown_beside
 from workhold.model.workpiece import Workpiece
@@ -55,7 +55,9 @@ def two_plates(way: str) -> Plates:
     """A plate that stands still, and one that slides away from it."""
     still = Carrier("base", (10.0, 12.0), 4, 5, 3.0, 3.0)
     x, y = {"+x": (30.0, 0.0), "+y": (0.0, 48.0), "-x": (-30.0, 0.0), "-y": (0.0, -48.0)}[way]
-    return Plates(None, (still, evolve(still, name="slide", offset=(x, y), travel=Travel(WAYS[way], 0.0, None))))
+    return Plates(
+        None, (still, evolve(still, name="slide", offset=(x, y), travel=Travel(WAYS[way], 0.0, None)))
+    )
 
 
 def apart(one: Box, other: Box) -> bool:
@@ -105,14 +107,18 @@ def test_a_plate_alone_faces_nothing() -> None:
     fixture = pegs_in(toolkit, 0.0, ("base", 0, 0), ("base", 3, 0), ("base", 0, 4), ("base", 3, 4))
     seen = shown_beside(Box(5.0, 5.0, 25.0, 40.0), fixture, toolkit)
     check(seen)
-    assert seen.measured == () and seen.carriers[0].facing == frozenset() and seen.carriers[0].names_at == "left"
+    assert (
+        seen.measured == () and seen.carriers[0].facing == frozenset() and seen.carriers[0].names_at == "left"
+    )
     assert seen.carriers[0].plate == Box(-5.0, -6.0, 35.0, 54.0) and seen.carriers[0].broken == frozenset()
 
 
 @pytest.mark.parametrize(("kind", "clamping"), [(Vise, (-1.0, 0.0)), (OpeningVise, (1.0, 0.0))])
 def test_the_clamping_direction_is_the_toolkits(kind: type[Vise], clamping: tuple[float, float]) -> None:
     """A vise clamps towards less separation, an opening vise towards more; holes are those of its jaws."""
-    vise = kind(pitch=10, columns=3, peg_radius=3, row_offset=2.0, blocked=(Holes("left", 2, 1), Holes("right", 0)))
+    vise = kind(
+        pitch=10, columns=3, peg_radius=3, row_offset=2.0, blocked=(Holes("left", 2, 1), Holes("right", 0))
+    )
     fixture = pegs_in(vise, 36.0, ("left", 2, 0), ("left", 1, 4), ("right", 1, 1), ("right", 1, 3))
     seen = shown_beside(Box(21.0, 0.0, 55.0, 40.0), fixture, vise)
     check(seen)
@@ -140,10 +146,16 @@ def test_of_many_holes_those_near_the_pegs_are_left() -> None:
 @given(theta=st.floats(0.0, 2 * pi), x=st.floats(-50.0, 50.0), y=st.floats(-50.0, 50.0))
 def test_extents_are_those_of_the_placed_part(theta: float, x: float, y: float) -> None:
     """A half disc with a bitten edge: the box found is that of a thousand points of every placed segment."""
-    part = Workpiece.from_loops("half disc", [[[0, 0, 0.4], [20, 0, 1.0], [0, 0.5, 0]], [[8, 1, 1], [9, 1, 1]]])
+    part = Workpiece.from_loops(
+        "half disc", [[[0, 0, 0.4], [20, 0, 1.0], [0, 0.5, 0]], [[8, 1, 1], [9, 1, 1]]]
+    )
     ((x0, y0, x1, y1),) = placed_boxes(part, *np.array([[theta], [x], [y]]))
     points = np.array(
-        [segment.at(segment.half_extent * share) for segment in part.segments for share in np.linspace(-1, 1, 1001)]
+        [
+            segment.at(segment.half_extent * share)
+            for segment in part.segments
+            for share in np.linspace(-1, 1, 1001)
+        ]
     )
     placed = points @ np.array([[cos(theta), sin(theta)], [-sin(theta), cos(theta)]]) + [x, y]
     assert (*placed.min(axis=0), *placed.max(axis=0)) == pytest.approx((x0, y0, x1, y1), abs=2e-4)
@@ -158,7 +170,10 @@ def test_a_pose_and_its_way_back(theta: float, x: float, y: float) -> None:
     pose = Pose(theta, x, y)
     there = pose.apply(3.0, -4.0)
     assert there == pytest.approx(
-        (3 * cos(radians(theta)) + 4 * sin(radians(theta)) + x, 3 * sin(radians(theta)) - 4 * cos(radians(theta)) + y)
+        (
+            3 * cos(radians(theta)) + 4 * sin(radians(theta)) + x,
+            3 * sin(radians(theta)) - 4 * cos(radians(theta)) + y,
+        )
     )
     assert pose.inverse.apply(*there) == pytest.approx((3.0, -4.0), abs=1e-12)
     assert hypot(*pose.turn(3.0, -4.0)) == pytest.approx(5.0)

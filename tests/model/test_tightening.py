@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
-from workhold.model.tightening import clamp_names, clamp_shares, freedom_words, order_words
 
 LOCATOR = Peg("plate", 0, 0, 0.0, 0.0, 1, 0.3)
 NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?(?:e[-+]\d+)?(?= )")
@@ -35,7 +35,9 @@ def test_the_one_that_lifts_nothing_comes_first(end: float) -> None:
     for low, high, first, second, most in ((0.0, end, "E2", "C5", end), (end, inf, "C5", "E2", 1 / end)):
         words = order_words(held(low, high))
         assert words.startswith(f"Tighten clamp {first} first. Then tighten clamp {second} with less than ")
-        (number,) = (float(found.replace(",", "")) for found in NUMBER.findall(words.split("less than ")[1])[:1])
+        (number,) = (
+            float(found.replace(",", "")) for found in NUMBER.findall(words.split("less than ")[1])[:1]
+        )
         assert 0.9 * most - 1e-12 <= number <= most * (1 + 1e-9)
 
 
@@ -53,7 +55,9 @@ def test_other_fixtures_have_no_order() -> None:
     assert order_words(Fixture("clamp", (LOCATOR,), Pose(0, 0, 0), 0.0, {}, "-x")) == ""
 
 
-@pytest.mark.parametrize(("low", "high", "ratio"), [(0.0, inf, 1.0), (0.0, 0.0001, 0.00005), (1.0, inf, 1 + 2**0.5)])
+@pytest.mark.parametrize(
+    ("low", "high", "ratio"), [(0.0, inf, 1.0), (0.0, 0.0001, 0.00005), (1.0, inf, 1 + 2**0.5)]
+)
 def test_the_shares_are_in_the_working_ratio(low: float, high: float, ratio: float) -> None:
     """They make up the whole, in the ratio that is the middle of the range as an angle."""
     first, second = clamp_shares(held(low, high))

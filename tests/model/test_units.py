@@ -10,7 +10,9 @@ from workhold.errors import InputError
 from workhold.units import INCH, MILLIMETRE, unit_named
 
 
-@pytest.mark.parametrize("unit", [MILLIMETRE, INCH, unit_named("cm"), unit_named("m")], ids=lambda unit: unit.name)
+@pytest.mark.parametrize(
+    "unit", [MILLIMETRE, INCH, unit_named("cm"), unit_named("m")], ids=lambda unit: unit.name
+)
 @given(st.floats(-5000, 5000))
 def test_numbers_are_right_to_half_their_last_digit(unit, length):
     """Every unit shows a length to 5 µm or better, as a fixed number of decimals or without its idle zeros."""

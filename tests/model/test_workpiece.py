@@ -96,10 +96,16 @@ REFUSED = {
     "words": ([[["a", 0, 0], [1, 0, 0], [1, 1, 0]]], "loop 0 is not a list of"),
     "empty loop": ([SQUARE, []], "loop 1"),
     "nan": ([[[0, 0, 0], [nan, 0, 0], [1, 1, 0]]], "loop 0, segment 1 has a coordinate or bulge"),
-    "inf": ([SQUARE, [[10, 10, 0], [20, 10, 0], [20, 20, inf]]], "loop 1, segment 2 has a coordinate or bulge"),
+    "inf": (
+        [SQUARE, [[10, 10, 0], [20, 10, 0], [20, 20, inf]]],
+        "loop 1, segment 2 has a coordinate or bulge",
+    ),
     "two lines": ([[[0, 0, 0], [10, 0, 0]]], "too few segments"),
     "one vertex": ([[[0, 0, 1]]], "too few segments"),
-    "zero length": ([[[0, 0, 0], [40, 0, 0], [40, 0, 0], [0, 40, 0]]], "segment 1 has zero length at (40, 0)"),
+    "zero length": (
+        [[[0, 0, 0], [40, 0, 0], [40, 0, 0], [0, 40, 0]]],
+        "segment 1 has zero length at (40, 0)",
+    ),
     "closing point repeated": ([[*SQUARE, [0, 0, 0]]], "segment 4 has zero length at (0, 0)"),
     "line crosses line": ([STAR], "segment 0 and part: loop 0, segment 2 cross or touch at (20, 15)"),
     "line crosses arc": (
@@ -111,7 +117,10 @@ REFUSED = {
         [[[0, 0, -0.9], [40, 0, 0], [40, 20, -0.9], [0, 20, 0]]],
         "segment 0 and part: loop 0, segment 2",
     ),
-    "touches at a vertex": ([[[0, 0, 0], [40, 0, 0], [40, 40, 0], [20, 0, 0], [0, 40, 0]]], "touch at (20, 0)"),
+    "touches at a vertex": (
+        [[[0, 0, 0], [40, 0, 0], [40, 40, 0], [20, 0, 0], [0, 40, 0]]],
+        "touch at (20, 0)",
+    ),
     "vertex visited twice": (
         [[[0, 0, 0], [20, 20, 0], [40, 0, 0], [40, 40, 0], [20, 20, 0], [0, 40, 0]]],
         "touch at (20, 20)",
@@ -125,8 +134,14 @@ REFUSED = {
     "hole outside": ([SQUARE, moved(HOLE, 60, 0)], "loop 1, at (70, 10), lies outside the outer loop"),
     "outer loop second": ([HOLE, SQUARE], "lies outside the outer loop"),
     "hole around": ([SQUARE, moved(SQUARE, -20, -20, 3)], "lies outside the outer loop"),
-    "hole in a hole": ([SQUARE, HOLE, disc(15, 15, 2)], "loop 2, at (13, 15), lies inside the hole of loop 1"),
-    "hole around a hole": ([SQUARE, disc(15, 15, 2), HOLE], "loop 1, at (13, 15), lies inside the hole of loop 2"),
+    "hole in a hole": (
+        [SQUARE, HOLE, disc(15, 15, 2)],
+        "loop 2, at (13, 15), lies inside the hole of loop 1",
+    ),
+    "hole around a hole": (
+        [SQUARE, disc(15, 15, 2), HOLE],
+        "loop 1, at (13, 15), lies inside the hole of loop 2",
+    ),
     "hole crosses outer": ([SQUARE, moved(HOLE, 25, 0)], "loops must stay apart"),
     "holes cross": ([SQUARE, HOLE, disc(20, 15, 3)], "loop 1, segment 1 and part: loop 2, segment"),
     "hole touches outer": ([SQUARE, [[0, 20, 0], [10, 15, 0], [10, 25, 0]]], "cross or touch at (0, 20)"),
@@ -159,7 +174,8 @@ def test_labels_name_segments_in_messages():
 def test_tangent_joined_outlines_are_accepted(turn, radius, digits):
     """Rounded rectangles and obrounds, whose neighbours touch at their joints to within rounding, are parts."""
     outline = [
-        [round(v, digits) for v in vertex] for vertex in moved(rounded_rectangle(60, 40, radius), 7, -3, 1, turn)
+        [round(v, digits) for v in vertex]
+        for vertex in moved(rounded_rectangle(60, 40, radius), 7, -3, 1, turn)
     ]
     assert len(part(outline).faces) == 8
     obround = [[0, 0, 0], [30, 0, 1], [30, 2 * radius, 0], [0, 2 * radius, 1]]
@@ -177,7 +193,10 @@ def test_chains_of_tangent_arcs_are_accepted():
     assert len(part([[0, 0, 0.5], [40, 0, -0.45]]).faces) == 2
 
 
-@given(outlines(), st.sampled_from([(0.02, 0, 0), (30.0, 0, 0), (1.0, 1e4, -1e4), (20.0, -1e4, 1e4), (0.01, 1e3, 0)]))
+@given(
+    outlines(),
+    st.sampled_from([(0.02, 0, 0), (30.0, 0, 0), (1.0, 1e4, -1e4), (20.0, -1e4, 1e4), (0.01, 1e3, 0)]),
+)
 def test_size_and_place_do_not_matter(piece, change):
     """From half a millimetre to two metres and 14 m from the origin: the same part, scaled."""
     scale, dx, dy = change

@@ -12,9 +12,9 @@ import pytest
 import workhold
 from fakes import fake_result
 from workhold.errors import InputError
-from workhold.files.result.csv import column_names, result_csv_text
-from workhold.presenting import frames
-from workhold.presenting.frames import columns_of
+from workhold.files.result.fixture_text import column_names, result_csv_text
+from workhold.presenting import data
+from workhold.presenting.data import columns_of
 
 RECTANGLE = workhold.Workpiece.from_loops("bar", [[[0, 0, 0], [70, 0, 0], [70, 40, 0], [0, 40, 0]]])
 
@@ -28,19 +28,25 @@ def two_clamps() -> workhold.Result:
 @pytest.mark.parametrize("result", [fake_result(7), two_clamps()], ids=["vise", "two clamps"])
 def test_columns_are_those_of_the_csv_form(result: workhold.Result, monkeypatch: pytest.MonkeyPatch) -> None:
     """Names and values, also over several blocks."""
-    monkeypatch.setattr("workhold.files.result.fixture_lines.BLOCK", 3)
+    monkeypatch.setattr("workhold.files.result.fixture_text.BLOCK", 3)
     rows = list(csv.DictReader(io.StringIO("".join(result_csv_text(result)))))
     columns = columns_of(result)
     assert list(columns) == list(rows[0]) and len(rows) == len(result)
     for name, values in columns.items():
         for row, value in zip(rows, values, strict=True):
-            assert row[name] == value if isinstance(value, str) else float(row[name]) == pytest.approx(value, rel=1e-11)
+            assert (
+                row[name] == value
+                if isinstance(value, str)
+                else float(row[name]) == pytest.approx(value, rel=1e-11)
+            )
 
 
 def test_no_fixture_makes_an_empty_table() -> None:
     """With all its columns."""
     result = fake_result(0)
-    assert {name: len(column) for name, column in columns_of(result).items()} == dict.fromkeys(column_names(result), 0)
+    assert {name: len(column) for name, column in columns_of(result).items()} == dict.fromkeys(
+        column_names(result), 0
+    )
 
 
 @pytest.mark.parametrize(("name", "method"), [("pandas", "to_pandas"), ("pyarrow", "to_arrow")])
@@ -49,7 +55,10 @@ def test_a_table_of_the_library_is_made(name: str, method: str) -> None:
     pytest.importorskip(name, reason="the extra 'tables' is not installed")
     result = fake_result(3)
     table = getattr(result, method)()
-    count, column = table.shape[0], table["peg1_hole"].to_list() if name == "pandas" else table["peg1_hole"].to_pylist()
+    count, column = (
+        table.shape[0],
+        table["peg1_hole"].to_list() if name == "pandas" else table["peg1_hole"].to_pylist(),
+    )
     assert count == 3 and column == [fixture.pegs[0].hole for fixture in result]
     kind = str(table.dtypes["peg1_face"] if name == "pandas" else table.schema.field("peg1_face").type)
     assert kind == "int64"
@@ -60,5 +69,5 @@ def test_a_library_that_is_missing_is_told_in_a_sentence(name: str, method: str,
     monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(InputError) as told:
         getattr(fake_result(1), method)()
-    requirement = frames.REQUIREMENTS[name]
+    requirement = data.REQUIREMENTS[name]
     assert str(told.value) == f"this needs a library that is not installed: pip install '{requirement}'."

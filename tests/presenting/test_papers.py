@@ -33,9 +33,7 @@ def result_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_papers_are_those_of_the_command(ending: str, result_file: Path, tmp_path: Path) -> None:
     """Byte for byte, with the same wishes; a fixture that went through pickle has the same."""
     theirs = tmp_path / f"theirs.{ending}"
-    words = (
-        f"--date {DAY} --jaw-force 900 --unit inch --zero centre --clearance 2mm --thickness 8mm --jaw constant".split()
-    )
+    words = f"--date {DAY} --jaw-force 900 --unit inch --zero centre --clearance 2mm --thickness 8mm --jaw constant".split()
     outcome = CliRunner().invoke(app, ["sheet", str(result_file), "2", "-o", str(theirs), *words])
     assert outcome.exit_code == 0, outcome.stderr
     asked: dict[str, Any] = {"unit": "inch", "zero": "centre", "thickness": 8.0, "clearance": 2.0}
@@ -68,7 +66,9 @@ def test_a_sheet_names_a_file_only_where_there_is_one(result_file: Path, tmp_pat
         ("none/sheet.svg", {}, "cannot be written"),
     ],
 )
-def test_what_cannot_be_is_told_in_a_sentence(path: str, asked: dict[str, Any], words: str, tmp_path: Path) -> None:
+def test_what_cannot_be_is_told_in_a_sentence(
+    path: str, asked: dict[str, Any], words: str, tmp_path: Path
+) -> None:
     with pytest.raises(InputError, match=words):
         RESULT[0].save_sheet(tmp_path / path, **asked)
 

@@ -9,8 +9,8 @@ import attrs
 import pytest
 
 from fakes import fake_result, plate
-from workhold.drawing.features_picture import draw_features
-from workhold.drawing.fixture_picture import draw_fixture
+from workhold.drawing.fixture_pictures import draw_fixture
+from workhold.drawing.part_pictures import draw_features
 from workhold.errors import InputError
 from workhold.units import unit_named
 
@@ -48,7 +48,10 @@ def test_a_result_is_drawn_in_a_unit() -> None:
         (lambda folder: plate().draw(unit="ell"), "Unit 'ell' is not known"),
         (lambda folder: plate().draw(folder / "none" / "part.svg"), "cannot be written"),
         (lambda folder: attrs.evolve(RESULT[0], listed=None).draw(), "this fixture is not of a result"),
-        (lambda folder: fake_result(0, notes=("Nothing fits.",)).draw(), "there is no fixture to draw. Nothing fits."),
+        (
+            lambda folder: fake_result(0, notes=("Nothing fits.",)).draw(),
+            "there is no fixture to draw. Nothing fits.",
+        ),
     ],
 )
 def test_what_cannot_be_drawn_is_told_in_a_sentence(draw: Any, words: str, tmp_path: Path) -> None:

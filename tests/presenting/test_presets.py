@@ -8,7 +8,7 @@ import pytest
 
 import workhold
 from workhold.errors import InputError
-from workhold.files.toolkit.presets import load_toolkit, preset_names
+from workhold.files.toolkit_file import load_toolkit, preset_names
 
 CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw)
 

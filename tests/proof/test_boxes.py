@@ -40,7 +40,10 @@ def test_a_contact_past_an_end_counts_at_a_tangent_joint_alone(row: np.ndarray, 
         nearest = min(slacks, key=lambda slack: float(slack.mid()))
         assert (nearest > 0) == (smooth == 1) and (nearest < 0) == (smooth == -1)
         assert (
-            min(float(slack.mid()) for slack in end_slacks([*row, *ends], (arb(place[0]), arb(place[1])), 1.0)) < -0.9
+            min(
+                float(slack.mid()) for slack in end_slacks([*row, *ends], (arb(place[0]), arb(place[1])), 1.0)
+            )
+            < -0.9
         )
     assert end_slacks([*arc_row(0, 0, 5.0, 0.0, pi), 0.0, 0.0], (arb(5), arb(0)), 9.0) == []
 
@@ -52,5 +55,7 @@ def test_a_wide_box_is_decided_in_doubles() -> None:
     row = np.zeros((1, record.RECORD_LENGTH))
     row[0, : record.PSI] = 3, 12, 14, 13, 2, 0, -4, -1, 0, 0, -4, -1, -2
     row[0, record.PSI :] = -0.4988108, -15.43876, 4.146501, 47.99848, 4.116907e-4, 8.815414
-    proven, still_open = interval_newton_in_doubles(row, problem, problem.setting._replace(backward_error=0.0))
+    proven, still_open = interval_newton_in_doubles(
+        row, problem, problem.setting._replace(backward_error=0.0)
+    )
     assert len(proven) == len(still_open) == 0

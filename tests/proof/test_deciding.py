@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from workhold import Vise, load
 from workhold.contact.problem import Problem
-from workhold.listing import finish as finish_module
-from workhold.listing.listed import Work, listed_result
+from workhold.listing import collector as finish_module
+from workhold.listing.results import Work, listed_result
 from workhold.model.result import Result
 from workhold.proof import deciding
 from workhold.proof import interval_newton as settling
@@ -35,7 +35,9 @@ def found() -> tuple[Problem, list[NDArray[np.float64]], Result]:
     return *kept[0], result
 
 
-def test_progress_of_the_listing_rises_to_its_end(found: tuple[Problem, list[NDArray[np.float64]], Result]) -> None:
+def test_progress_of_the_listing_rises_to_its_end(
+    found: tuple[Problem, list[NDArray[np.float64]], Result],
+) -> None:
     """Every record is counted once, whatever stage decides it, and what is kept are the fixtures."""
     problem, records, _ = found
     seen: list[tuple[float, int]] = []
@@ -107,7 +109,9 @@ def test_both_kinds_of_interval_arithmetic_decide_alike(
     assert set(other.query.arrangements) == set(other.found)
 
 
-def test_overlapping_boxes_of_the_same_pegs_are_one(found: tuple[Problem, list[NDArray[np.float64]], Result]) -> None:
+def test_overlapping_boxes_of_the_same_pegs_are_one(
+    found: tuple[Problem, list[NDArray[np.float64]], Result],
+) -> None:
     """The box of both holds both; another place, or other pegs, stay apart."""
     problem, records, _ = found
     first = np.concatenate(records)[0]

@@ -27,7 +27,7 @@ from workhold.kernels.contact.record import (
     TAIL_Y,
 )
 from workhold.kernels.proof.interval_newton import jacobians
-from workhold.listing import finish
+from workhold.listing import collector
 from workhold.model.query import Query
 from workhold.proof import deciding
 from workhold.proof.degenerate import TouchedFeatures, antipodal, hold_nothing, sliding, turning
@@ -41,7 +41,9 @@ OFF, ROUNDED = 1e-6, 1e-14
 
 def arc(center: complex, radius: float, place: complex) -> TouchedFeatures:
     """A peg on an arc."""
-    return TouchedFeatures(*(np.array([value]) for value in (True, center + 0j, 1.0 + 0j, radius, place + 0j)))
+    return TouchedFeatures(
+        *(np.array([value]) for value in (True, center + 0j, 1.0 + 0j, radius, place + 0j))
+    )
 
 
 def line(point: complex, axis: complex, place: complex) -> TouchedFeatures:
@@ -119,7 +121,9 @@ def test_a_third_peg_that_turns_past_a_feature_passes_its_normal_through_the_cen
 @pytest.mark.parametrize("off", [-OFF, 0.0, ROUNDED, OFF])
 @pytest.mark.parametrize("gap", [0.0, 6.0, -6.0])
 @pytest.mark.parametrize("outside", [1, -1])
-def test_a_third_peg_that_slides_past_an_arc_has_a_parallel_normal(off: float, gap: float, outside: int) -> None:
+def test_a_third_peg_that_slides_past_an_arc_has_a_parallel_normal(
+    off: float, gap: float, outside: int
+) -> None:
     """Pegs on one line or on two parallel ones, and one on an arc whose centre is its radius from the peg's way."""
     axis, radius = complex(cos(0.4), sin(0.4)), 11.0
     # Pegs (0, 0), (10, 0), (3, 20), turned so that the second is off the first's line by the gap.
@@ -221,7 +225,7 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
 
     small = np.flatnonzero((rows[:, IS_ARC] != 0.0) & (rows[:, RADIUS] < 0.5))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(finish, "decided", kept_as_well)
+        patch.setattr(collector, "decided", kept_as_well)
         answer(problem.query)
     proven = np.concatenate(found)
     numbers, pegs = np.nonzero(np.isin(proven[:, FEATURES : FEATURES + 2], small))

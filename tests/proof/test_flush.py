@@ -9,7 +9,7 @@ from workhold import Fence, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.flush import Candidate, pressing
-from workhold.search import pin_contacts, wall_closure
+from workhold.search import wall_contacts
 from workhold.search.wall_search import WallSearch, lying_on
 
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
@@ -38,11 +38,11 @@ def test_balls_and_bounds_agree_on_every_pair(
     """With rounding taken for as large as lengths are, everything is left to the balls."""
     search, found = searched(loop, direction, margin)
     with monkeypatch.context() as patched:
-        patched.setattr(wall_closure, "ROUNDING", 1e3)
+        patched.setattr(wall_contacts, "ROUNDING", 1e3)
         in_balls, also = searched(loop, direction, margin)
         # So are places, and contacts far beyond the ends of their faces are looked at, too.
-        patched.setattr(pin_contacts, "ROUNDING", 1e-4)
-        patched.setattr(pin_contacts, "LOOSE", 6.0)
+        patched.setattr(wall_contacts, "ROUNDING", 1e-4)
+        patched.setattr(wall_contacts, "LOOSE", 6.0)
         wider, once_more = searched(loop, direction, margin)
     assert in_balls.escalated == in_balls.examined == search.examined > 10
     assert found == also and len(found) == search.verified == in_balls.verified > 0
@@ -73,7 +73,9 @@ def test_a_row_that_just_grazes_an_arc_is_decided_in_balls() -> None:
     fence = Fence((10, 42 - 4), 2, wall_offset=4, directions=["-x", "-y"])
     for way in fence.ways:
         search = WallSearch(Problem.of(Query(part, fence.changed({"directions": way.directions}))))
-        tops = [p for e in search.edges for found in search.fixtures(e) for p in found.locator.tolist() if e == 0]
+        tops = [
+            p for e in search.edges for found in search.fixtures(e) for p in found.locator.tolist() if e == 0
+        ]
         assert all(abs(v - 42.0) > 1e-9 for _, v in tops)
         assert not search.undecided
         laid, standing = lying_on(search.problem, 0), search.problem.standing

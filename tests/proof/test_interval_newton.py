@@ -15,10 +15,14 @@ from workhold.proof.interval_newton import BoxOutcome, CandidateBox, solutions_i
 LIMITS = Limits(-100.0, 0.0, 20.0, 9.0, 1.0, 0.0, 0.0)
 
 
-def box(height: float, turn: float, reach: float, features: list[list[float]] = ladders.FEATURES) -> CandidateBox:
+def box(
+    height: float, turn: float, reach: float, features: list[list[float]] = ladders.FEATURES
+) -> CandidateBox:
     """The ladders with psi within ``reach`` of 45 degrees and a turn."""
     middle = ladders.near(np.pi / 4 + turn, height)
-    return CandidateBox(features, ladders.offsets(height), 2, middle, (reach, 10 * reach, 10 * reach, 20 * reach))
+    return CandidateBox(
+        features, ladders.offsets(height), 2, middle, (reach, 10 * reach, 10 * reach, 20 * reach)
+    )
 
 
 def solutions(height: float) -> list[float]:

@@ -26,7 +26,9 @@ class Plant:
     fixture: dict[str, Any]
 
 
-def choose_pegs(random: np.random.Generator, vise: Vise, lefts: int) -> tuple[Array, list[dict[str, Any]], float]:
+def choose_pegs(
+    random: np.random.Generator, vise: Vise, lefts: int
+) -> tuple[Array, list[dict[str, Any]], float]:
     """Four pegs in different holes (4, 2), their places, and a jaw separation."""
     lattice = np.array(vise.pitch)
     separation = float(random.uniform(1.2, 4.0) * vise.pitch[0])
@@ -60,7 +62,10 @@ def half_plane_polygon(normals: Array, offsets: Array) -> Array | None:
         if turn < 0.1:
             return None
         corners.append(
-            [(d[k] * b[1] - d[(k + 1) % len(n)] * a[1]) / turn, (a[0] * d[(k + 1) % len(n)] - b[0] * d[k]) / turn]
+            [
+                (d[k] * b[1] - d[(k + 1) % len(n)] * a[1]) / turn,
+                (a[0] * d[(k + 1) % len(n)] - b[0] * d[k]) / turn,
+            ]
         )
     return np.array(corners)
 
@@ -123,7 +128,12 @@ def plant(seed: int) -> Plant | None:
 
 
 def all_sides(
-    random: np.random.Generator, normals: Array, touches: Array, corners: Array, radius: float, plain: int = -1
+    random: np.random.Generator,
+    normals: Array,
+    touches: Array,
+    corners: Array,
+    radius: float,
+    plain: int = -1,
 ) -> tuple[Array, dict[int, int]] | None:
     """Vertices of a part within the corners of half planes, and the segment that touches at each of the touches; that of the
     number ``plain`` is the whole line. None where a touch is at a corner."""

@@ -14,13 +14,11 @@ from fixture_sets import Listed
 from workhold import Vise, Workpiece
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.query import Query
-from workhold.verification.balls import dot
-from workhold.verification.closure import minors
-from workhold.verification.contacts import BallContact, contact_system
+from workhold.verification.ball_geometry import BallOutline, dot
+from workhold.verification.contacts import BallContact, contact_system, minors
 from workhold.verification.contacts import BallPose as Balls
-from workhold.verification.fixture_proof import Judge
-from workhold.verification.outline import BallOutline
 from workhold.verification.placing import certified_zero
+from workhold.verification.verify import Judge
 
 __all__ = [
     "Carried",
@@ -103,7 +101,9 @@ def solved_fixture(fixture: Fixture, contacts: list[BallContact], zero: list[arb
         evolve(peg, x=peg.x + opened * (peg.carrier == "right"), force=float((entry / push).mid()))
         for peg, entry in zip(fixture.pegs, vector, strict=True)
     )
-    return Fixture(fixture.type, (first, second, third, fourth), Pose(degrees(theta), x, y), separation, quality={})
+    return Fixture(
+        fixture.type, (first, second, third, fourth), Pose(degrees(theta), x, y), separation, quality={}
+    )
 
 
 def workpiece(name: str, loops: list[Loop]) -> Workpiece:
@@ -111,10 +111,14 @@ def workpiece(name: str, loops: list[Loop]) -> Workpiece:
     return Workpiece.from_loops(name, loops)
 
 
-def redrawn(part: Workpiece, turn: float = 0.0, x: float = 0.0, y: float = 0.0, scale: float = 1.0) -> Workpiece:
+def redrawn(
+    part: Workpiece, turn: float = 0.0, x: float = 0.0, y: float = 0.0, scale: float = 1.0
+) -> Workpiece:
     """A part scaled, turned by an angle in radians and moved by (x, y) mm."""
     c, s = scale * cos(turn), scale * sin(turn)
-    loops = [[[c * px - s * py + x, s * px + c * py + y, b] for px, py, b in loop.tolist()] for loop in part.loops]
+    loops = [
+        [[c * px - s * py + x, s * px + c * py + y, b] for px, py, b in loop.tolist()] for loop in part.loops
+    ]
     return workpiece(part.name, loops)
 
 
@@ -199,7 +203,8 @@ def slotted(radius: float) -> Workpiece:
 def notched(radius: float) -> Workpiece:
     """A block with a half circle cut out of one side, its corners sharp: face 3."""
     return workpiece(
-        "notched", [[[-25, -14, 0], [27, -11, 0], [24, 16, 0], [radius, 16, -1], [-radius, 16, 0], [-20, 16, 0]]]
+        "notched",
+        [[[-25, -14, 0], [27, -11, 0], [24, 16, 0], [radius, 16, -1], [-radius, 16, 0], [-20, 16, 0]]],
     )
 
 
@@ -233,7 +238,12 @@ def held_in_notch(play: float) -> tuple[Workpiece, Vise, Listed]:
         {"jaw": jaw, "column": 0, "row": row, "x": at, "y": 10.0 * row, "segment": face}
         for jaw, row, at, face in places
     ]
-    planted = {"type": "I", "pegs": pegs, "pose": {"theta_deg": 0.0, "x": 0.0, "y": 0.0}, "jaw_separation": 30.0}
+    planted = {
+        "type": "I",
+        "pegs": pegs,
+        "pose": {"theta_deg": 0.0, "x": 0.0, "y": 0.0},
+        "jaw_separation": 30.0,
+    }
     return part, Vise(pitch=10, columns=1, peg_radius=3), planted
 
 

@@ -12,7 +12,7 @@ import pytest
 from workhold import Query, Vise, Workpiece, count_contacts, design, load
 from workhold.contact.problem import Problem
 from workhold.files.result.writer import write_result
-from workhold.listing.best import BestFixtures
+from workhold.listing.collector import BestFixtures
 from workhold.listing.ranking import measured
 from workhold.model.result import FixtureTable
 from workhold.search.toolkit_search import ToolkitSearch
@@ -35,7 +35,9 @@ MARGIN = ["closure-margin"]
     ("threads", "rank_by"),
     [(1, ["closure-margin"]), (3, ["closure-margin"]), (2, ["clamp-amplification", "end-distance"])],
 )
-def test_the_best_are_the_first_of_all(name: str, vise: Vise, most: int, threads: int, rank_by: list[str]) -> None:
+def test_the_best_are_the_first_of_all(
+    name: str, vise: Vise, most: int, threads: int, rank_by: list[str]
+) -> None:
     """Ties fall as in the full ranking, on any number of threads and whatever is ranked by."""
     full = design(load(name), vise, rank_by=rank_by)
     best = design(load(name), vise, rank_by=rank_by, best=most, threads=threads)
@@ -49,7 +51,11 @@ def test_what_is_left_out_does_not_depend_on_threads(tmp_path: Path) -> None:
     files = []
     for threads in (1, 2, 5):
         best = design(
-            load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), rank_by=MARGIN, best=25, threads=threads
+            load("oblongPart"),
+            Vise(pitch=8, columns=4, peg_radius=3),
+            rank_by=MARGIN,
+            best=25,
+            threads=threads,
         )
         files.append(tmp_path / f"{threads}.json")
         write_result(best, files[-1])
@@ -83,7 +89,9 @@ def test_the_margin_to_reach_never_exceeds_that_of_the_last_kept(monkeypatch: py
         return limits_from(self, margin)
 
     monkeypatch.setattr(ToolkitSearch, "limits_from", watched)
-    best = design(load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), rank_by=MARGIN, best=25, threads=1)
+    best = design(
+        load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), rank_by=MARGIN, best=25, threads=1
+    )
     assert told == sorted(told) and told[-1] > 0.0
     assert told[-1] < np.round(best.table.null_vector[-1].min(), 9)
 
@@ -99,7 +107,7 @@ def test_only_what_is_kept_stays_in_memory(monkeypatch: pytest.MonkeyPatch) -> N
         held.append(len(self.kept.standing))
 
     monkeypatch.setattr(BestFixtures, "decide", watched)
-    monkeypatch.setattr("workhold.listing.best.WAITING_LONG", 500)
+    monkeypatch.setattr("workhold.listing.collector.WAITING_LONG", 500)
     design(load("oblongPart"), Vise(pitch=8, columns=10, peg_radius=3), best=50)
     assert len(held) > 3 and max(held) < 50 * 8
 
@@ -144,15 +152,14 @@ def test_what_waits_is_measured_a_share_at_a_time(monkeypatch: pytest.MonkeyPatc
     at_once = BestFixtures(problem)
     at_once.waiting.extend(records)
     together, _ = at_once.finished()
-    for module in ("best", "finish"):
-        monkeypatch.setattr(f"workhold.listing.{module}.BLOCK", 64)
+    monkeypatch.setattr("workhold.listing.collector.BLOCK", 64)
     seen: list[int] = []
 
     def watched(table: FixtureTable, problem: Problem) -> FixtureTable:
         seen.append(len(table))
         return measured(table, problem)
 
-    monkeypatch.setattr("workhold.listing.best.measured", watched)
+    monkeypatch.setattr("workhold.listing.collector.measured", watched)
     in_shares = BestFixtures(problem)
     in_shares.waiting.extend(records)
     best, _ = in_shares.finished()

@@ -15,12 +15,24 @@ import pytest
 from test_restrictions import identities
 
 from bounds import WITHIN, avoids, clear_of_box, clear_of_circle, keeps_margin, lies_within
-from workhold import Fence, InputError, OpeningVise, Plate, Query, Restrictions, Result, Vise, Workpiece, answer, design
+from workhold import (
+    Fence,
+    InputError,
+    OpeningVise,
+    Plate,
+    Query,
+    Restrictions,
+    Result,
+    Vise,
+    Workpiece,
+    answer,
+    design,
+)
 from workhold.algebra.engine import answer_by_algebra
 from workhold.model.fixture import Fixture
-from workhold.model.restrictions import circle_zone, polygon_zone
+from workhold.model.requirements import circle_zone, polygon_zone
 from workhold.verification import verify
-from workhold.verification.fixture_proof import verify_fixture
+from workhold.verification.verify import verify_fixture
 
 Loop = list[tuple[float, ...]]
 Keeps = Callable[..., bool]
@@ -62,7 +74,12 @@ def identity(fixture: Fixture) -> tuple[Any, ...]:
     first = fixture.pegs[0]
     holes = [(p.carrier, p.column - first.column, p.row - first.row) for p in fixture.pegs]
     x, y = fixture.pose.x - first.x, fixture.pose.y - first.y
-    return fixture.type, fixture.direction, *holes, *(round(v, 4) + 0.0 for v in (fixture.pose.theta_deg % 360, x, y))
+    return (
+        fixture.type,
+        fixture.direction,
+        *holes,
+        *(round(v, 4) + 0.0 for v in (fixture.pose.theta_deg % 360, x, y)),
+    )
 
 
 def box_zone(box: tuple[float, float, float, float]) -> Restrictions:
@@ -89,7 +106,9 @@ def circle(x: float, y: float, radius: float) -> tuple[dict[str, Any], Keeps]:
 
 def angle(low: float, high: float) -> tuple[dict[str, Any], Keeps]:
     """A range of angles, and who lies in it."""
-    return {"restrictions": Restrictions(angles=((low, high),))}, lambda f, r, w: lies_within(f, (low, high), w)
+    return {"restrictions": Restrictions(angles=((low, high),))}, lambda f, r, w: lies_within(
+        f, (low, high), w
+    )
 
 
 def avoid(*faces: int) -> tuple[dict[str, Any], Keeps]:
@@ -97,7 +116,9 @@ def avoid(*faces: int) -> tuple[dict[str, Any], Keeps]:
     return {"restrictions": Restrictions(avoid=faces)}, lambda f, r, w: avoids(f, r, faces, w)
 
 
-def both(one: tuple[dict[str, Any], Keeps], other: tuple[dict[str, Any], Keeps]) -> tuple[dict[str, Any], Keeps]:
+def both(
+    one: tuple[dict[str, Any], Keeps], other: tuple[dict[str, Any], Keeps]
+) -> tuple[dict[str, Any], Keeps]:
     """Two restrictions at once."""
     return {**one[0], **other[0]}, lambda f, r, w: one[1](f, r, w) and other[1](f, r, w)
 
@@ -170,7 +191,9 @@ def test_a_clamp_that_grazes_an_arc_is_none(short: float, grazes: bool) -> None:
     """A tip beside the top of the disc pushes with a share of sqrt(short / 10), 9.8e-7 and 1.02e-6: above 1e-6 it is one."""
     plate = Plate(20, 3, columns=4, rows=7, clamps=2, directions=[("-x", "-x")])
     result = design(lollipop(short), plate, listing="all", restrictions=Restrictions(angles=((0.0, 0.0),)))
-    most = [max(abs(force) for pair in f.pair.reactions for force in pair) for f in result if f.pair is not None]
+    most = [
+        max(abs(force) for pair in f.pair.reactions for force in pair) for f in result if f.pair is not None
+    ]
     # A locator under the foot takes up the clamp's whole push, those beside it a couple that may be larger.
     assert len(most) > 20 and max(most) < 1e6
     assert (max(most) > 4e5) == grazes
@@ -199,7 +222,9 @@ def whole_part(random: Random) -> Loop:
 
 
 @pytest.mark.prove
-@pytest.mark.parametrize("kit", ["vise", "opening", "plate", "wide tip", "fence", "two clamps", "two on a fence"])
+@pytest.mark.parametrize(
+    "kit", ["vise", "opening", "plate", "wide tip", "fence", "two clamps", "two on a fence"]
+)
 @pytest.mark.parametrize("seed", range(8))
 def test_parts_of_whole_numbers_under_every_restriction(seed: int, kit: str) -> None:
     """As above, for eight restrictions each."""

@@ -17,7 +17,7 @@ from slow_plate import seen, slow_plate
 from workhold import Fence, Plate, Query, Result, Vise, Workpiece, design
 from workhold.algebra.engine import answer_by_algebra
 from workhold.completeness import verify
-from workhold.files.toolkit.presets import load_toolkit, preset_names
+from workhold.files.toolkit_file import load_toolkit, preset_names
 
 PRESETS = preset_names()
 # Fixtures listed of each part.
@@ -75,12 +75,18 @@ def test_vises_agree_with_the_algebra(seed: int, pitch: float) -> None:
 ONE: dict[str, Any] = {"directions": ["-x", "-y"]}
 TWO: dict[str, Any] = {"directions": [("-x", "-y")], "clamps": 2}
 LONG = (
-    pytest.param(seed, 40.0, 3, fields, marks=pytest.mark.prove) for seed in (4, 5, 6, 7, 16) for fields in (ONE, TWO)
+    pytest.param(seed, 40.0, 3, fields, marks=pytest.mark.prove)
+    for seed in (4, 5, 6, 7, 16)
+    for fields in (ONE, TWO)
 )
 
 
-@pytest.mark.parametrize(("seed", "pitch", "columns", "fields"), [(6, 30.0, 2, ONE), (6, 30.0, 2, TWO), *LONG])
-def test_plates_agree_with_a_slow_search(seed: int, pitch: float, columns: int, fields: dict[str, Any]) -> None:
+@pytest.mark.parametrize(
+    ("seed", "pitch", "columns", "fields"), [(6, 30.0, 2, ONE), (6, 30.0, 2, TWO), *LONG]
+)
+def test_plates_agree_with_a_slow_search(
+    seed: int, pitch: float, columns: int, fields: dict[str, Any]
+) -> None:
     """One clamp and two, tips alone: the same fixtures to the last one."""
     part = cad_part(seed)
     plate = Plate(pitch, 3, columns=columns, rows=2, clamp_radius=5, **fields)

@@ -18,8 +18,8 @@ import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
 from workhold import InputError, Plate, Query, Result, Workpiece, answer, design
 from workhold.kernels.contact import clamp_pairs
-from workhold.model.force_ratio import ratios, working_forces
-from workhold.model.restrictions import Restrictions
+from workhold.model.clamps import ratios, working_forces
+from workhold.model.requirements import Restrictions
 from workhold.statics.quality import quality_of
 
 COMPLETE = sorted((Path(__file__).parent.parent / "data" / "toolkits").glob("clamp2_*.json"))
@@ -44,7 +44,10 @@ def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     [
         (NOTCHED, {"pitch": (20, 16), "columns": 5, "rows": 4, "clamp_radius": 5.0}),
         (NOTCHED, {"pitch": 20, "columns": 4, "rows": 4, "directions": ["-x", "+y"], "travel": (4.0, 30.0)}),
-        (MOUTH, {"pitch": 24, "columns": 3, "rows": 4, "directions": [("-x", "+x"), ("-y", "-y"), ("+y", "-x")]}),
+        (
+            MOUTH,
+            {"pitch": 24, "columns": 3, "rows": 4, "directions": [("-x", "+x"), ("-y", "-y"), ("+y", "-x")]},
+        ),
     ],
 )
 def test_every_fixture_stands_before_the_checker_and_reads_back(
@@ -109,7 +112,10 @@ def in_part(result: Result, mirrored: bool = False) -> set[tuple[Any, ...]]:
             push = back.turn(*WAYS[peg.carrier.removeprefix("clamp ")])
             clamps.append((*back.apply(peg.x, peg.y), *push))
         rounded = [
-            sorted(tuple(round(flip * v if k % 2 == 0 else v, 3) + 0.0 for k, v in enumerate(one)) for one in many)
+            sorted(
+                tuple(round(flip * v if k % 2 == 0 else v, 3) + 0.0 for k, v in enumerate(one))
+                for one in many
+            )
             for many in (locators, clamps)
         ]
         seen.add((tuple(rounded[0]), tuple(rounded[1])))
@@ -121,7 +127,9 @@ def test_moving_and_turning_the_part_and_mirroring_it() -> None:
     plate = Plate(20, 3, clamps=2, columns=4, rows=4)
     one = design(part(NOTCHED), plate, listing="all")
     angle = 0.3
-    turned = [(cos(angle) * x - sin(angle) * y + 7, sin(angle) * x + cos(angle) * y - 4, b) for x, y, b in NOTCHED]
+    turned = [
+        (cos(angle) * x - sin(angle) * y + 7, sin(angle) * x + cos(angle) * y - 4, b) for x, y, b in NOTCHED
+    ]
     other = design(part(turned), plate, listing="all")
     assert len(one) == len(other) > 100
     key = sorted(tuple(sorted((p.face, p.column, p.row) for p in f.pegs)) for f in one)
@@ -147,7 +155,8 @@ def test_half_a_turn_of_the_plate_lists_nothing_twice(pair: tuple[str, str]) -> 
     """A pair of directions and what half a turn makes of it are the same fixtures; naming both is naming one."""
     turned = tuple(HALF_TURN[name] for name in pair)
     plates = [
-        Plate(20, 3, columns=4, rows=4, clamps=2, directions=asked) for asked in ([pair], [turned], [pair, turned])
+        Plate(20, 3, columns=4, rows=4, clamps=2, directions=asked)
+        for asked in ([pair], [turned], [pair, turned])
     ]
     one, other, both = (design(part(NOTCHED), plate, listing="all") for plate in plates)
     assert in_part(one) == in_part(other) == in_part(both)
@@ -167,7 +176,9 @@ def test_the_best_of_each_seat_is_the_best_of_all() -> None:
         group = groups[seat_key(fixture)]
         assert fixture.pair is not None and fixture.pair.count == len(group)
         freest = max(one.quality["clamp_freedom"] for one in group)
-        margins = [one.quality["closure_margin"] for one in group if one.quality["clamp_freedom"] > freest - 1e-4]
+        margins = [
+            one.quality["closure_margin"] for one in group if one.quality["clamp_freedom"] > freest - 1e-4
+        ]
         assert fixture.quality["clamp_freedom"] > freest - 1e-4
         assert fixture.quality["closure_margin"] == pytest.approx(max(margins), abs=2e-9)
 
@@ -189,7 +200,11 @@ def test_larger_plates_longer_strokes_and_more_directions_hold_all_that_smaller_
     small = Plate(16, 3, columns=4, rows=4, clamps=2, directions=[("-x", "-y")], travel=(4, 22))
     base = in_part(design(part(NOTCHED), small, listing="all"))
     assert base
-    for change in ({"columns": 5, "rows": 5}, {"travel": (2, 40)}, {"directions": [("-x", "-y"), ("-x", "+x")]}):
+    for change in (
+        {"columns": 5, "rows": 5},
+        {"travel": (2, 40)},
+        {"directions": [("-x", "-y"), ("-x", "+x")]},
+    ):
         assert base <= in_part(design(part(NOTCHED), attrs.evolve(small, **change), listing="all"))
 
 
@@ -228,7 +243,9 @@ def in_part_single(result: Result) -> set[tuple[Any, Any]]:
     seen = set()
     for fixture in result:
         back = fixture.pose.inverse
-        locators = sorted(tuple(round(v, 3) + 0.0 for v in back.apply(peg.x, peg.y)) for peg in fixture.pegs[:3])
+        locators = sorted(
+            tuple(round(v, 3) + 0.0 for v in back.apply(peg.x, peg.y)) for peg in fixture.pegs[:3]
+        )
         tip, push = fixture.pegs[3], back.turn(*WAYS[fixture.direction or ""])
         clamp = tuple(round(v, 3) + 0.0 for v in (*back.apply(tip.x, tip.y), *push))
         seen.add((tuple(locators), clamp))
@@ -269,7 +286,9 @@ def enumerated(loop: list[tuple[float, float, float]], plate: Plate) -> dict[tup
                 ):
                     seat = wrenches(inside, normals[list(chosen)], center)
                     if abs(np.linalg.det(seat)) > 1e-4:
-                        clamps = clamps_at(pegs, turn, shift, plate, (corners, along, lengths, normals, far, center))
+                        clamps = clamps_at(
+                            pegs, turn, shift, plate, (corners, along, lengths, normals, far, center)
+                        )
                         add_pairs(counts, triple, seat, clamps, plate)
     return counts
 
@@ -377,7 +396,9 @@ def test_random_polygons_against_a_slow_enumeration(seed: int) -> None:
     loop = convex(random)
     pitch = random.choice([(22.0, 18.0), (17.0, 21.0)])
     directions = [("-x", "-y"), ("-x", "+y"), ("-x", "-x")]
-    plate = Plate(pitch, 3, columns=3, rows=3, clamps=2, clamp_radius=random.choice([3.0, 4.0]), directions=directions)
+    plate = Plate(
+        pitch, 3, columns=3, rows=3, clamps=2, clamp_radius=random.choice([3.0, 4.0]), directions=directions
+    )
     result = design(part(loop), plate, listing="all")
     found = {pair: sum(f.direction == " ".join(pair) for f in result) for pair in plate.directions}
     assert found == enumerated(loop, plate)
@@ -413,7 +434,9 @@ def test_restrictions_leave_what_filtering_the_whole_list_leaves() -> None:
     workpiece, plate = part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2)
     whole = design(workpiece, plate, listing="all")
     avoid = whole[0].pegs[3].face
-    restricted = design(workpiece, plate, listing="all", restrictions=Restrictions(avoid=(avoid,), angles=((0, 120),)))
+    restricted = design(
+        workpiece, plate, listing="all", restrictions=Restrictions(avoid=(avoid,), angles=((0, 120),))
+    )
     kept = [f for f in whole if avoid not in {p.face for p in f.pegs} and f.pose.theta_deg <= 120]
     assert len(restricted) == len(kept) > 0
 

@@ -41,12 +41,16 @@ def test_complete_set_is_reproduced(path: Path) -> None:
         known.append((theta, place, marginal))
     expected = {}
     for fixture in truth["fixtures"]:
-        key, theta, _ = judge.identity(fixture | {"pose": {"theta_deg": fixture["theta_deg"], "x": 0.0, "y": 0.0}})
+        key, theta, _ = judge.identity(
+            fixture | {"pose": {"theta_deg": fixture["theta_deg"], "x": 0.0, "y": 0.0}}
+        )
         expected.setdefault(key, []).append((theta, None, fixture["marginal"]))
     for have, want in ((identities, expected), (expected, identities)):
         for key, poses in want.items():
             for theta, _, marginal in poses:
-                near = [t for t, *_ in have.get(key, []) if abs((theta - t + 3) % 6.283185307179586 - 3) < 1e-5]
+                near = [
+                    t for t, *_ in have.get(key, []) if abs((theta - t + 3) % 6.283185307179586 - 3) < 1e-5
+                ]
                 assert near or marginal, (key, theta)
 
 

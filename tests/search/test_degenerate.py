@@ -10,7 +10,7 @@ import pytest
 from fixture_sets import Judge, assert_same, listed, missing, turned
 from workhold import InputError, Query, Vise, Workpiece, design, load
 from workhold.algebra.engine import answer_by_algebra
-from workhold.geometry import face
+from workhold.geometry import loop
 
 DRAWINGS = Path(__file__).parent.parent / "data" / "drawings"
 
@@ -69,7 +69,9 @@ def test_a_bar_with_parallel_faces_at_any_angle(turn: float) -> None:
         "bar", [[[x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn), 0.0] for x, y in corners]]
     )
     vise = Vise(pitch=10, columns=2, peg_radius=3)
-    assert_same(listed(design(slanted, vise)), turned(listed(design(straight, vise)), turn), Judge(slanted, vise))
+    assert_same(
+        listed(design(slanted, vise)), turned(listed(design(straight, vise)), turn), Judge(slanted, vise)
+    )
 
 
 def test_pegs_in_round_holes_a_whole_number_of_steps_apart() -> None:
@@ -109,7 +111,7 @@ def test_a_seam_of_a_whole_circle_is_nowhere() -> None:
     vise = Vise(pitch=16, columns=2, peg_radius=1)
     here = listed(design(part, vise))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(face, "SEAM_ANGLE", 1.0)
+        patch.setattr(loop, "SEAM_ANGLE", 1.0)
         there = listed(design(Workpiece.from_loops("plate", [plate, *holes]), vise))
     assert len(here) > 100
     assert_same(here, there, Judge(part, vise))
@@ -118,7 +120,8 @@ def test_a_seam_of_a_whole_circle_is_nowhere() -> None:
 def test_antipodal_pegs_in_a_hole_hold_nothing() -> None:
     """Two pegs across a hole, as far apart as they fit, share one line of action: rounding must not make them a grip."""
     part = Workpiece.from_loops(
-        "plate", [[[-40, -30, 0], [40, -28, 0.2], [38, 30, 0], [-42, 25, 0]], disc(9, 5, 3), disc(7, -20, -10)]
+        "plate",
+        [[[-40, -30, 0], [40, -28, 0.2], [38, 30, 0], [-42, 25, 0]], disc(9, 5, 3), disc(7, -20, -10)],
     )
     result = design(part, Vise(pitch=8, columns=2, peg_radius=1), types=["II"])
     assert len(result) > 100
@@ -131,7 +134,8 @@ def test_a_circle_drawn_in_many_pieces_is_one_face() -> None:
     """Joints inside a face are nothing a peg could notice: a slot drawn with split sides has the same fixtures."""
     whole = Workpiece.from_loops("slot", [[[0, 0, 0], [40, 0, 1], [40, 20, 0], [5, 21, 0.8]]])
     split = Workpiece.from_loops(
-        "slot", [[[0, 0, 0], [13, 0, 0], [40, 0, sqrt(2) - 1], [50, 10, sqrt(2) - 1], [40, 20, 0], [5, 21, 0.8]]]
+        "slot",
+        [[[0, 0, 0], [13, 0, 0], [40, 0, sqrt(2) - 1], [50, 10, sqrt(2) - 1], [40, 20, 0], [5, 21, 0.8]]],
     )
     assert [face.number for face in split.faces] == [0, 2, 4, 5]
     vise = Vise(pitch=9, columns=2, peg_radius=2)

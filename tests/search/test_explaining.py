@@ -12,11 +12,11 @@ import pytest
 from attrs import evolve
 
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer, design, load
-from workhold.model.explanation import Explanation
-from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.model.requirements import Restrictions, circle_zone
+from workhold.model.search_report import Explanation
 from workhold.search import explaining
-from workhold.search.contacts import count_contacts
 from workhold.search.explaining import explain
+from workhold.search.toolkit_search import count_contacts
 from workhold.units import MILLIMETRE
 
 PLAIN = Vise(pitch=8, columns=1, peg_radius=3)
@@ -54,7 +54,11 @@ def test_the_rules_take_all_away(rule: str, vise: Vise, asked: dict[str, Any]) -
     assert all(removal.after <= removal.before for removal in removals)
     assert removals[-1].after == 0 and explanation.last_rule == removals[-1].rule
     assert rule in [removal.rule for removal in removals]
-    assert explanation.nearest is not None or removals[-1].rule in ("keep-out zones", "angles of the part", HOLES)
+    assert explanation.nearest is not None or removals[-1].rule in (
+        "keep-out zones",
+        "angles of the part",
+        HOLES,
+    )
 
 
 def test_help_helps() -> None:
@@ -137,7 +141,9 @@ def test_why_two_clamps_hold_nothing_on_a_fence() -> None:
     assert len(answer(query)) == 0
     explanation = explain(query)
     removals = explanation.removals
-    assert explanation.contacts == removals[0].before > removals[-1].before > 0 and explanation.nearest is None
+    assert (
+        explanation.contacts == removals[0].before > removals[-1].before > 0 and explanation.nearest is None
+    )
     assert all(one.after == next_.before for one, next_ in pairwise(removals)) and removals[-1].after == 0
     rules = [removal.rule for removal in removals]
     assert rules[:-1] == ["angles of the part", "holes that the plate does not have", "contact margin"]
@@ -153,7 +159,9 @@ def test_what_comes_nearest_on_a_fence_has_forces() -> None:
     part = Workpiece.from_loops("block", [[[x, y, 0] for x, y in corners]])
     nearest = explain(Query(part, Fence(pitch=20, peg_radius=3, wall_offset=10))).nearest
     assert nearest is not None and "would not press" in nearest.words
-    assert nearest.fixture.pegs[-1].force == pytest.approx(1.0) and all(isfinite(p.force) for p in nearest.fixture.pegs)
+    assert nearest.fixture.pegs[-1].force == pytest.approx(1.0) and all(
+        isfinite(p.force) for p in nearest.fixture.pegs
+    )
 
 
 def test_another_number_of_clamps_helps() -> None:
@@ -163,6 +171,8 @@ def test_another_number_of_clamps_helps() -> None:
     helps = {item.change: item for item in explain(Query(RECTANGLE, one, restrictions=square)).helps}
     two = helps["with a second clamp"]
     assert two.fixtures == len(design(RECTANGLE, one.changed(two.fields or {}), restrictions=square)) > 0
-    pairs = Query(RECTANGLE, evolve(one, clamps=2, directions=None, rows=2), ranking="clamp-freedom", listing="all")
+    pairs = Query(
+        RECTANGLE, evolve(one, clamps=2, directions=None, rows=2), ranking="clamp-freedom", listing="all"
+    )
     changed = [item for item in explaining.changes(pairs, MILLIMETRE) if item[0] == "with one clamp"]
     assert [item[1]().toolkit for item in changed] == [evolve(one, rows=2, directions=None)]

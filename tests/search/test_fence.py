@@ -18,7 +18,7 @@ from toolkit_results import NOTCHED, check_and_read_back, checked, part
 from workhold import Fence, InputError, Query, Result, Workpiece, answer, design
 from workhold.listing import wall_fixtures
 from workhold.listing.ranking import ranking_keys
-from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.model.requirements import Restrictions, circle_zone
 from workhold.search import wall_search
 from workhold.verification import verify
 
@@ -109,7 +109,12 @@ def test_every_fixture_stands_before_the_checker_and_reads_back(
     assert len(result) > 0
     check_and_read_back(result, tmp_path)
     for fixture in list(result)[:20]:
-        assert [peg.carrier for peg in fixture.pegs] == ["plate", "wall", "wall", f"clamp {fixture.direction}"]
+        assert [peg.carrier for peg in fixture.pegs] == [
+            "plate",
+            "wall",
+            "wall",
+            f"clamp {fixture.direction}",
+        ]
 
 
 def test_an_equilateral_triangle_is_counted_by_hand() -> None:
@@ -146,7 +151,9 @@ def test_round_parts_and_fences_out_of_reach_are_told_why() -> None:
     disc = Workpiece.from_loops("disc", [[(0, 0, 1), (40, 0, 1)]])
     result = design(disc, Fence(10, 3, wall_offset=5))
     assert (
-        result.counts == {"edge": 0} and result.complete and "no straight piece of its convex hull" in result.notes[0]
+        result.counts == {"edge": 0}
+        and result.complete
+        and "no straight piece of its convex hull" in result.notes[0]
     )
     bar = part([(0, 0, 0), (60, 0, 0), (57, 4, 0), (2, 5, 0)])
     upright = Restrictions(angles=((-5.0, 5.0),))
@@ -179,7 +186,9 @@ def test_half_the_pitch_longer_strokes_more_holes_and_directions_keep_all_fixtur
 
     def places(fence: Fence) -> set[tuple[Any, ...]]:
         """Fixtures without the numbers of rows and columns."""
-        return {(way, face, other, *rest) for way, face, other, _, _, *rest in seen(design(part(FEET), fence))}
+        return {
+            (way, face, other, *rest) for way, face, other, _, _, *rest in seen(design(part(FEET), fence))
+        }
 
     coarse = Fence(pitch=(16, 12), peg_radius=2, wall_offset=5)
     few = places(coarse)
@@ -237,7 +246,9 @@ def test_the_contact_margin_is_kept_by_locator_and_clamp() -> None:
     fence = Fence(pitch=7, peg_radius=2, wall_offset=4)
     everything = design(part(FEET), fence)
     kept = design(part(FEET), fence, contact_margin=4.0)
-    assert seen(kept) == {key for f, key in zip(everything, map(one_seen, everything), strict=True) if far(f, 4.0)}
+    assert seen(kept) == {
+        key for f, key in zip(everything, map(one_seen, everything), strict=True) if far(f, 4.0)
+    }
     assert 0 < len(kept) < len(everything)
 
 

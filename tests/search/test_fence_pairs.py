@@ -14,7 +14,7 @@ import pytest
 import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
 from workhold import Fence, Query, Workpiece, answer, design
-from workhold.model.restrictions import Restrictions
+from workhold.model.requirements import Restrictions
 from workhold.proof.flush import reactions_on_fence
 from workhold.search import wall_search
 
@@ -41,8 +41,12 @@ def rows_beside(side: float, pitch: float, offset: float, radius: float) -> int:
     return sum(0 < offset + k * pitch < side for k in range(99) if offset + k * pitch >= radius)
 
 
-@pytest.mark.parametrize(("size", "pitch", "offset"), [((62.0, 34.0), (10, 10), 5.0), ((45.0, 28.0), (13, 9), 7.0)])
-def test_a_rectangle_is_counted_by_hand(size: tuple[float, float], pitch: tuple[float, float], offset: float) -> None:
+@pytest.mark.parametrize(
+    ("size", "pitch", "offset"), [((62.0, 34.0), (10, 10), 5.0), ((45.0, 28.0), (13, 9), 7.0)]
+)
+def test_a_rectangle_is_counted_by_hand(
+    size: tuple[float, float], pitch: tuple[float, float], offset: float
+) -> None:
     """One face down, every row that meets the side as stop and as clamp, and every column over it; the clamp that pushes
     down may always be tightened first."""
     fence = Fence(pitch, 3, wall_offset=offset, clamps=2, directions=[("-x", "-y")])
@@ -63,7 +67,14 @@ def test_a_rectangle_is_counted_by_hand(size: tuple[float, float], pitch: tuple[
     [
         (
             NOTCHED,
-            {"pitch": (16, 12), "wall_offset": 6, "directions": ALL, "columns": 4, "rows": 5, "clamp_radius": 4.0},
+            {
+                "pitch": (16, 12),
+                "wall_offset": 6,
+                "directions": ALL,
+                "columns": 4,
+                "rows": 5,
+                "clamp_radius": 4.0,
+            },
         ),
         (MOUTH, {"pitch": 14, "wall_offset": 8, "travel": (4.0, 30.0), "columns": 7, "rows": 5}),
     ],
@@ -80,7 +91,10 @@ def test_every_fixture_stands_before_the_checker_and_reads_back(
 def seen(result: workhold.Result) -> list[tuple[Any, ...]]:
     """Fixtures without their poses."""
     return sorted(
-        (f.direction, tuple((p.carrier, p.column, p.row, round(p.x - f.pegs[0].x, 4), round(p.y, 4)) for p in f.pegs))
+        (
+            f.direction,
+            tuple((p.carrier, p.column, p.row, round(p.x - f.pegs[0].x, 4), round(p.y, 4)) for p in f.pegs),
+        )
         for f in result
     )
 
@@ -114,9 +128,9 @@ def test_no_clamp_of_a_pair_holds_alone_and_the_best_are_the_best_of_all() -> No
     best = design(part(NOTCHED), Fence((16, 12), 3, clamps=2, **fields))
     groups: dict[Any, list[workhold.Fixture]] = {}
     for fixture in every:
-        groups.setdefault((fixture.direction, round(fixture.pose.theta_deg, 4), peg_key(fixture, 0)), []).append(
-            fixture
-        )
+        groups.setdefault(
+            (fixture.direction, round(fixture.pose.theta_deg, 4), peg_key(fixture, 0)), []
+        ).append(fixture)
     assert len(groups) == len(best)
     for fixture in best:
         group = groups[fixture.direction, round(fixture.pose.theta_deg, 4), peg_key(fixture, 0)]
@@ -137,7 +151,9 @@ def test_a_symmetric_part_counts_its_copies_once() -> None:
     assert result.distinct == {"edge2": len(result) // 2} and len(result) > 10
 
 
-def test_a_search_that_is_stopped_within_a_hull_edge_looks_at_no_further_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_that_is_stopped_within_a_hull_edge_looks_at_no_further_pairs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """What was found on the edge before is listed, and the result says that it is incomplete."""
     query = Query(part(NOTCHED), Fence((16, 12), 3, wall_offset=6, clamps=2, columns=4, rows=5))
     whole, stop, looked_at = answer(query), Event(), 0
@@ -159,7 +175,12 @@ def test_a_search_that_is_stopped_within_a_hull_edge_looks_at_no_further_pairs(m
     last = answer(attrs.evolve(query, restrictions=Restrictions(angles=((-1, 1),))), cancel=stop)
     assert looked_at == 12 and not last.complete and last.statistics["hull_edges"] == 0
     assert stopped.statistics["hull_edges"] < whole.statistics["hull_edges"]
-    assert len(stopped) > 0 and stopped.pairs is not None and whole.pairs is not None and stopped.pairs < whole.pairs
+    assert (
+        len(stopped) > 0
+        and stopped.pairs is not None
+        and whole.pairs is not None
+        and stopped.pairs < whole.pairs
+    )
 
 
 def test_what_doubles_leave_open_balls_tell(monkeypatch: pytest.MonkeyPatch) -> None:

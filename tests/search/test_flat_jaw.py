@@ -56,7 +56,9 @@ def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     assert_all_proven(result, tmp_path, search_files=True)
 
 
-def curve_points(first: Segment, second: Segment, shift: tuple[float, float], steps: int = 4000) -> list[list[float]]:
+def curve_points(
+    first: Segment, second: Segment, shift: tuple[float, float], steps: int = 4000
+) -> list[list[float]]:
     """Where one curve crosses another moved back by a shift, by signs of the distance to it at many points."""
     s = np.linspace(0.0, 1.0, steps)
     if isinstance(first, Line):
@@ -94,7 +96,9 @@ def normal_at(face: Segment, x: float, y: float) -> tuple[float, float]:
     return (by - ay) / length, -(bx - ax) / length
 
 
-def slow_search(workpiece: Workpiece, vise: FlatJaw, reach: int) -> list[tuple[float, int, int, float, float]]:
+def slow_search(
+    workpiece: Workpiece, vise: FlatJaw, reach: int
+) -> list[tuple[float, int, int, float, float]]:
     """Orientation, step and place of the first peg of every fixture, by sampled curves and a linear solver."""
     found = []
     features = [one.segment for one in contact_features(workpiece, vise.peg_radius, vise.flat)]
@@ -124,7 +128,9 @@ def slow_search(workpiece: Workpiece, vise: FlatJaw, reach: int) -> list[tuple[f
                             *_, null = np.linalg.svd(wrenches)[2]
                             null = null / null.sum() if null.sum() else null
                             if null.min() > 1e-4 and min(y, v) >= vise.min_gap + 1e-4:
-                                found.append((round(pose.theta_deg % 360.0, 3), i, j, round(x, 2), round(y, 2)))
+                                found.append(
+                                    (round(pose.theta_deg % 360.0, 3), i, j, round(x, 2), round(y, 2))
+                                )
     return found
 
 
@@ -147,7 +153,9 @@ def test_a_slow_search_of_sampled_curves_finds_the_same(loop: list[tuple[float, 
     slow, fast = slow_search(workpiece, vise, 6), places(workhold.design(workpiece, vise))
     near = [f for f in fast if f[1] < 6 and abs(f[2]) < 6]
 
-    def has(known: list[tuple[float, int, int, float, float]], one: tuple[float, int, int, float, float]) -> bool:
+    def has(
+        known: list[tuple[float, int, int, float, float]], one: tuple[float, int, int, float, float]
+    ) -> bool:
         return any(o[:3] == one[:3] and hypot(o[3] - one[3], o[4] - one[4]) < 0.05 for o in known)
 
     assert len(near) > 10
@@ -181,10 +189,17 @@ def test_planted_fixtures_are_found() -> None:
                 x, y = ax + share * (bx - ax), ay + share * (by - ay)
             else:
                 angle = face.mid_angle + (2 * share - 1) * face.half_sweep
-                x, y = face.center[0] + face.radius * np.cos(angle), face.center[1] + face.radius * np.sin(angle)
+                x, y = (
+                    face.center[0] + face.radius * np.cos(angle),
+                    face.center[1] + face.radius * np.sin(angle),
+                )
             two.append((float(x), float(y), *normal_at(face, float(x), float(y))))
         (x, y, ax, ay), (u, v, bx, by) = sorted(two)
-        wrenches = [[0.0, 0.0, ax, bx], [-1.0, -1.0, ay, by], [0.0, -length, x * ay - y * ax, u * by - v * bx]]
+        wrenches = [
+            [0.0, 0.0, ax, bx],
+            [-1.0, -1.0, ay, by],
+            [0.0, -length, x * ay - y * ax, u * by - v * bx],
+        ]
         null = np.linalg.svd(np.array(wrenches))[2][-1]
         null = null * np.sign(null.sum())
         if null.min() < 1e-3 or u - x < 4 * radius or abs(v - y) < 4 * radius or min(y, v) < radius + 0.1:
@@ -203,7 +218,9 @@ def test_planted_fixtures_are_found() -> None:
 
 
 @pytest.mark.parametrize("loop", [KITE, ROCKER], ids=["kite", "rocker"])
-def test_the_mirrored_part_has_the_mirrored_set_and_turning_changes_poses_only(loop: list[tuple[float, ...]]) -> None:
+def test_the_mirrored_part_has_the_mirrored_set_and_turning_changes_poses_only(
+    loop: list[tuple[float, ...]],
+) -> None:
     """Up to the angles, which turn with the part."""
     vise = FlatJaw(pitch=(9, 7), peg_radius=2)
     result = workhold.design(part(loop), vise)
@@ -232,10 +249,15 @@ def test_finer_lattices_lose_none_and_greater_gaps_add_none() -> None:
     assert len(doubled) > 5 and doubled <= seen(many)
     for fixture in many:
         wall, pegs = fixture.pegs[:2], fixture.pegs[2:]
-        assert sum(peg.force for peg in wall) == pytest.approx(1.0, abs=1e-9) and min(peg.force for peg in pegs) > 0
+        assert (
+            sum(peg.force for peg in wall) == pytest.approx(1.0, abs=1e-9)
+            and min(peg.force for peg in pegs) > 0
+        )
     before = seen(many)
     for gap in (3, 9, 15, 27):
-        now = seen(workhold.design(part(ROCKER), FlatJaw(pitch=6, peg_radius=2, columns=5, rows=5, min_gap=gap)))
+        now = seen(
+            workhold.design(part(ROCKER), FlatJaw(pitch=6, peg_radius=2, columns=5, rows=5, min_gap=gap))
+        )
         assert now <= before
         before = now
 
@@ -270,7 +292,9 @@ def test_a_rectangle_has_none_and_it_is_said_what_helps() -> None:
 def test_an_explanation_counts_what_each_rule_takes_away() -> None:
     """Down to nothing where angles are left that no hull edge has."""
     query = workhold.Query(
-        part(KITE), FlatJaw(pitch=10, peg_radius=3, max_opening=12, rows=1), restrictions=Restrictions(avoid=(1, 3))
+        part(KITE),
+        FlatJaw(pitch=10, peg_radius=3, max_opening=12, rows=1),
+        restrictions=Restrictions(avoid=(1, 3)),
     )
     assert len(workhold.answer(query)) == 0
     explained = explain(query)
@@ -288,7 +312,9 @@ def test_restrictions_and_margins_hold() -> None:
     kept = workhold.design(workpiece, vise, contact_margin=4.0)
     assert 0 < len(kept) < len(everything) and all(one.quality["end_distance"] >= 4.0 - 1e-6 for one in kept)
     level = workhold.design(workpiece, vise, restrictions=Restrictions(angles=((-5.0, 5.0),)))
-    assert seen(level) == seen_where(everything, lambda fixture: abs((fixture.pose.theta_deg + 180) % 360 - 180) <= 5)
+    assert seen(level) == seen_where(
+        everything, lambda fixture: abs((fixture.pose.theta_deg + 180) % 360 - 180) <= 5
+    )
     zone = circle_zone(70, 20, 8)
     clear = workhold.design(workpiece, vise, restrictions=Restrictions(zones=(zone,)))
     assert 0 < len(clear) < len(everything) and seen(clear) < seen(everything)
@@ -348,7 +374,14 @@ def test_a_contact_at_a_tangent_joint_is_listed_once() -> None:
     """The pitch puts a peg exactly where a slope runs into a fillet, which is on both faces."""
     # A slope at 45 degrees that a fillet of radius 10 ends, and a slope on the other side.
     joint, bulge = (30.0 + 10.0 * 0.5**0.5, 30.0 - 10.0 * (1 - 0.5**0.5)), -tan(pi / 16)
-    loop = [(0, 0, 0), (60, 0, 0), (joint[0] + 12.0, joint[1] - 12.0, 0), (*joint, -bulge), (30, 30, 0), (20, 30, 0)]
+    loop = [
+        (0, 0, 0),
+        (60, 0, 0),
+        (joint[0] + 12.0, joint[1] - 12.0, 0),
+        (*joint, -bulge),
+        (30, 30, 0),
+        (20, 30, 0),
+    ]
     workpiece = part([(float(x), float(y), float(b)) for x, y, b in loop])
     radius = 2.0
     first = joint[0] + radius * 0.5**0.5, joint[1] + radius * 0.5**0.5
@@ -366,4 +399,6 @@ def test_it_is_said_where_only_the_vise_is_in_the_way() -> None:
     vise = FlatJaw(pitch=10, peg_radius=3, rows=1, max_opening=5)
     result = workhold.design(part(KITE), vise)
     assert result.counts == {"flat": 0} and result.complete
-    assert "pairs of pegs would hold the part, but none of them can stand in the jaw as asked" in result.notes[0]
+    assert (
+        "pairs of pegs would hold the part, but none of them can stand in the jaw as asked" in result.notes[0]
+    )

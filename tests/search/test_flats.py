@@ -18,12 +18,12 @@ from toolkit_results import NOTCHED, assert_all_proven, part
 from workhold import Fence, Fixture, InputError, Plate, Query, Vise, design
 from workhold.algebra.engine import answer_by_algebra
 from workhold.contact.features import contact_features
-from workhold.files.toolkit.presets import load_toolkit
-from workhold.fixels.flat import Flat, flat_of, standoff
+from workhold.files.toolkit_file import load_toolkit
+from workhold.fixels.carrier import Flat, flat_of, standoff
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.offset import trimmed_offsets
 from workhold.geometry.segment import Arc, Line
-from workhold.model.load import Load
+from workhold.model.requirements import Load
 from workhold.statics.loads import load_cases
 from workhold.verification import verify_file, verify_fixture
 
@@ -37,7 +37,13 @@ RADIUS, DISTANCE = 3.0, 1.5
 def key(fixture: Fixture) -> tuple[Any, ...]:
     """What tells fixtures apart."""
     pegs = tuple((peg.carrier, peg.column, peg.row, peg.face) for peg in fixture.pegs)
-    return fixture.direction, pegs, round(fixture.pose.theta_deg, 5), round(fixture.pose.x, 5), round(fixture.pose.y, 5)
+    return (
+        fixture.direction,
+        pegs,
+        round(fixture.pose.theta_deg, 5),
+        round(fixture.pose.x, 5),
+        round(fixture.pose.y, 5),
+    )
 
 
 def body_is_clear(fixture: Fixture, loop: list[list[float]]) -> bool:
@@ -70,7 +76,9 @@ def body_is_clear(fixture: Fixture, loop: list[list[float]]) -> bool:
         ),
     ],
 )
-def test_on_straight_faces_they_are_thinner_round_ones_that_keep_clear(loop: Any, flat: Toolkit, thin: Toolkit) -> None:
+def test_on_straight_faces_they_are_thinner_round_ones_that_keep_clear(
+    loop: Any, flat: Toolkit, thin: Toolkit
+) -> None:
     """All fixtures of pegs as thin as the flat's distance but those whose thicker body comes near another face."""
     found = {key(fixture) for fixture in design(part(loop), flat)}
     thinner = list(design(part(loop), thin))
@@ -197,7 +205,9 @@ def test_keeping_their_place() -> None:
 def test_a_toolkit_file_and_a_table(tmp_path: Path) -> None:
     """In inches; in a spreadsheet each peg's angle stands behind all else."""
     path = tmp_path / "flat.toml"
-    path.write_text('unit = "inch"\nkind = "plate"\npitch = 0.75\npeg_radius = 0.125\nflat = [0.1, 0.05]\nclamps = 2\n')
+    path.write_text(
+        'unit = "inch"\nkind = "plate"\npitch = 0.75\npeg_radius = 0.125\nflat = [0.1, 0.05]\nclamps = 2\n'
+    )
     fields = load_toolkit(path).fields
     toolkit = Plate(**fields, columns=4, rows=4)
     assert toolkit.flat == Flat(2.54, 1.27)
@@ -237,8 +247,14 @@ def test_the_margin_counts_from_where_the_body_meets_another_face() -> None:
 
 def test_forces_act_where_the_flat_lies() -> None:
     """The centre stands so far from a line and from an arc; with friction that is where the lever is counted from."""
-    line, arc = (next(f.segment for f in part(EAR).faces if isinstance(f.segment, kind)) for kind in (Line, Arc))
-    assert (standoff(3.0, Flat(1.5), line), standoff(3.0, Flat(1.5), arc), standoff(3.0, None, line)) == (1.5, 3.0, 3.0)
+    line, arc = (
+        next(f.segment for f in part(EAR).faces if isinstance(f.segment, kind)) for kind in (Line, Arc)
+    )
+    assert (standoff(3.0, Flat(1.5), line), standoff(3.0, Flat(1.5), arc), standoff(3.0, None, line)) == (
+        1.5,
+        3.0,
+        3.0,
+    )
     thick, thin = (Vise(9, 2, radius, min_gap=9, flat=DISTANCE) for radius in (RADIUS, DISTANCE))
     fixture = design(part(TRIANGLE), thick, best=1)[0]
     loads = [Load(((20.0, 10.0),), 100.0)]

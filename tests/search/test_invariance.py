@@ -35,7 +35,9 @@ def moved(workpiece: Workpiece, change: Callable[[np.ndarray], np.ndarray], flip
 
 
 @settings(max_examples=EXAMPLES)
-@given(outlines(), pitches, columns, offsets, st.floats(-3.0, 3.0), st.floats(-500, 500), st.floats(-500, 500))
+@given(
+    outlines(), pitches, columns, offsets, st.floats(-3.0, 3.0), st.floats(-500, 500), st.floats(-500, 500)
+)
 def test_turning_and_moving_the_part(
     workpiece: Workpiece, pitch: float, count: int, offset: float, angle: float, x: float, y: float
 ) -> None:
@@ -121,7 +123,9 @@ def test_swapping_the_jaws(workpiece: Workpiece, pitch: float, count: int, offse
 
 @settings(max_examples=EXAMPLES)
 @given(outlines(), pitches, columns, st.sampled_from([0.01, 0.1, 25.4, 100.0]))
-def test_scaling_part_pitch_and_peg_together(workpiece: Workpiece, pitch: float, count: int, scale: float) -> None:
+def test_scaling_part_pitch_and_peg_together(
+    workpiece: Workpiece, pitch: float, count: int, scale: float
+) -> None:
     """Scaling part, pitch and peg scales lengths; holes, faces, orientations and closure margins stay."""
     vise = vise_for(pitch, count, 0.0)
     larger = Vise(pitch=pitch * scale, columns=count, peg_radius=vise.peg_radius * scale)
@@ -160,5 +164,14 @@ def test_number_of_threads_changes_nothing(name: str) -> None:
 
     vise = Vise(pitch=10, columns=3, peg_radius=3)
     one, three = (design(load(name), vise, threads=threads).table for threads in (1, 3))
-    for field in ("arrangement", "column", "row", "face", "theta", "position", "jaw_separation", "null_vector"):
+    for field in (
+        "arrangement",
+        "column",
+        "row",
+        "face",
+        "theta",
+        "position",
+        "jaw_separation",
+        "null_vector",
+    ):
         assert np.array_equal(getattr(one, field), getattr(three, field))

@@ -12,9 +12,9 @@ from toolkit_results import NOTCHED, part
 from workhold import FlatJaw, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.proof.lattice_pair import verdict_on_pair
-from workhold.search.lattice_pair_shares import LatticePairSearch, LatticePairShares
 from workhold.search.lattice_pairs import are_pressed, closure_of, pairs_on
 from workhold.search.wall_search import lying_on
+from workhold.search.wall_shares import LatticePairSearch, LatticePairShares
 
 KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
 ROCKER = [(0, 0, 0), (14, 0, 0), (20, 8, 0), (40, 8, 0), (46, 0, 0), (60, 0, 0.5), (60, 40, 0.2), (0, 40, 0)]
@@ -76,7 +76,9 @@ def test_what_doubles_are_too_coarse_for_is_taken_from_balls() -> None:
             coarse.reach[:], coarse.swing[:] = np.inf, np.inf
             sharp, undecided, count = are_pressed(coarse, edge, lying, search.problem)
             assert len(undecided) == 0 and count >= len(fine)
-            assert np.allclose(sharp.point, fine.point, atol=1e-11) and np.allclose(sharp.null, fine.null, atol=1e-9)
+            assert np.allclose(sharp.point, fine.point, atol=1e-11) and np.allclose(
+                sharp.null, fine.null, atol=1e-9
+            )
 
 
 def test_places_that_are_told_too_coarsely_are_taken_from_balls() -> None:

@@ -44,9 +44,14 @@ def test_contacts_that_close_are_clamped_by_closing_or_by_opening_or_are_double_
     other = all_contacts(Problem.of(Query(part, opening)), 1)
     assert len(other.clamping) == len(contacts.clamping)
     assert np.array_equal(np.sort(other.clamping), np.sort(-contacts.clamping))
-    kept = contacts.take((contacts.candidates.gap >= vise.min_gap - GAP_SLACK) & (contacts.margin > LEAST_CLOSURE))
+    kept = contacts.take(
+        (contacts.candidates.gap >= vise.min_gap - GAP_SLACK) & (contacts.margin > LEAST_CLOSURE)
+    )
     pegs = kept.candidates.standing
-    for toolkit, clamps in ((vise, kept.clamping > LEAST_CLAMPING), (opening, kept.clamping < -LEAST_CLAMPING)):
+    for toolkit, clamps in (
+        (vise, kept.clamping > LEAST_CLAMPING),
+        (opening, kept.clamping < -LEAST_CLAMPING),
+    ):
         found = design(part, toolkit).found
         assert found == {"I": int((clamps & (pegs == 2)).sum()), "II": int((clamps & (pegs == 3)).sum())}
         assert sum(found.values()) > 0

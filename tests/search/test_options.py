@@ -178,7 +178,9 @@ def test_distinct_counts_by_brute_force(name: str) -> None:
         images = []
         for k in range(orbit):
             moved = fixture | {
-                "pegs": [peg | {"segment": (peg["segment"] + 2 * k) % 8} if k else peg for peg in fixture["pegs"]],
+                "pegs": [
+                    peg | {"segment": (peg["segment"] + 2 * k) % 8} if k else peg for peg in fixture["pegs"]
+                ],
                 "pose": fixture["pose"] | {"theta_deg": fixture["pose"]["theta_deg"] - 90.0 * k},
             }
             key, theta, _ = judge.identity(moved)

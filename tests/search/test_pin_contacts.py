@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row
-from workhold.search.pin_contacts import PartOnWall, half_angles, heights, pin_contacts_on
+from workhold.search.wall_contacts import PartOnWall, half_angles, heights, pin_contacts_on
 
 
 @pytest.mark.parametrize("upright", [False, True])
@@ -26,7 +26,10 @@ def test_an_arc_reaches_from_its_lowest_to_its_highest_point(upright: bool) -> N
         angles = middle + np.linspace(-reach, reach, 4001)
         points = row[6] * (np.cos(angles) if upright else np.sin(angles))
         assert low[0] <= points.min() - 9e-4 and points.max() + 9e-4 <= high[0]
-        assert low[0] >= points.min() - 1.1e-3 - 1e-5 * row[6] and high[0] <= points.max() + 1.1e-3 + 1e-5 * row[6]
+        assert (
+            low[0] >= points.min() - 1.1e-3 - 1e-5 * row[6]
+            and high[0] <= points.max() + 1.1e-3 + 1e-5 * row[6]
+        )
         laid = PartOnWall(rows, 50.0, 1e-15, 1e-13)
         inside = middle + np.array([random.uniform(-0.99, 0.99) * half for _ in range(5)])
         x, y = 3.0 + row[6] * np.cos(inside), -2.0 + row[6] * np.sin(inside)

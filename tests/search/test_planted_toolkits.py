@@ -48,7 +48,9 @@ def assert_found_on_plates(first_seed: int, plants: int) -> None:
     for workpiece, plate, wanted, theta in islice(on_plates(first_seed), plants):
         result = design(workpiece, plate)
         assert result.proof is not None and result.proof.undecided == ()
-        turns = [abs((one.pose.theta_deg - theta + 180) % 360 - 180) for one in result if relative(one) == wanted]
+        turns = [
+            abs((one.pose.theta_deg - theta + 180) % 360 - 180) for one in result if relative(one) == wanted
+        ]
         assert turns and min(turns) < NEAR, (workpiece.loops, plate, wanted)
 
 
@@ -71,7 +73,9 @@ def plant_on_fence(seed: int) -> OnFence | None:
     fence = Fence(pitch, radius, wall_offset=float(radius + random.uniform(0.5, 8)), directions=("-x",))
     rows = int(random.integers(0, 5)), int(random.integers(0, 5))
     ahead = float(random.uniform(25, 70))
-    points = np.array([[x, fence.wall_offset + row * pitch] for x, row in zip((0.0, ahead), rows, strict=True)])
+    points = np.array(
+        [[x, fence.wall_offset + row * pitch] for x, row in zip((0.0, ahead), rows, strict=True)]
+    )
     angles = np.array([pi, 0.0]) + random.uniform(-1.2, 1.2, 2)
     normals = np.array([[0.0, -1.0], *np.stack([np.cos(angles), np.sin(angles)], axis=1)])
     touches = np.array([[0.0, 0.0], *(points - radius * normals[1:])])
@@ -108,7 +112,10 @@ def assert_found_on_fences(first_seed: int, plants: int) -> None:
     for planted in islice(parts, plants):
         result = design(planted.workpiece, planted.fence)
         assert result.proof is not None and result.proof.undecided == ()
-        assert any(is_planted(fixture, planted) for fixture in result), (planted.workpiece.loops, planted.fence)
+        assert any(is_planted(fixture, planted) for fixture in result), (
+            planted.workpiece.loops,
+            planted.fence,
+        )
 
 
 def is_planted(fixture: Fixture, planted: OnFence) -> bool:

@@ -15,7 +15,7 @@ import pytest
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part
 from workhold import InputError, Plate, Query, Result, Vise, Workpiece, answer, design
 from workhold.algebra.engine import answer_by_algebra
-from workhold.model.restrictions import Restrictions
+from workhold.model.requirements import Restrictions
 from workhold.search.explaining import explain
 
 TESTS = Path(__file__).parent.parent
@@ -33,20 +33,31 @@ def plate_of(truth: dict[str, Any]) -> Plate:
 def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     """Every fixture of the set and no other, each by itself beyond reproach; and nothing undecided."""
     truth = json.loads(path.read_text())
-    result = design(Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"]), plate_of(truth))
+    result = design(
+        Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"]), plate_of(truth)
+    )
     assert result.proof is not None and result.proof.undecided == ()
     assert result.counts == truth["counts"]
     assert "0 missing, 0 extra" in checked(result, tmp_path / "result.json", path)
 
 
-@pytest.mark.parametrize("loop", [NOTCHED, pytest.param(MOUTH, marks=pytest.mark.prove)], ids=["notched", "mouth"])
+@pytest.mark.parametrize(
+    "loop", [NOTCHED, pytest.param(MOUTH, marks=pytest.mark.prove)], ids=["notched", "mouth"]
+)
 @pytest.mark.parametrize(
     "fields",
     [
         {"pitch": (20, 16), "directions": ("-x", "+y"), "clamp_radius": 9.0},
         {"pitch": (12, 10), "columns": 5, "rows": 6, "directions": ("-x",), "clamp_radius": 5.0},
         {"pitch": 20, "columns": 4, "rows": 3, "travel": (4.0, 24.0), "directions": ("+x", "-y")},
-        {"pitch": (12, 10), "columns": 6, "rows": 6, "travel": (3.0, 40.0), "directions": ("-x",), "clamp_radius": 4.0},
+        {
+            "pitch": (12, 10),
+            "columns": 6,
+            "rows": 6,
+            "travel": (3.0, 40.0),
+            "directions": ("-x",),
+            "clamp_radius": 4.0,
+        },
     ],
 )
 def test_every_fixture_stands_before_the_checker_and_reads_back(
@@ -99,7 +110,9 @@ def test_turning_and_moving_the_part_changes_poses_only_and_a_mirrored_part_has_
     c, s = cos(0.7), sin(0.7)
     there = design(part([(c * x - s * y + 300, s * x + c * y - 40, b) for x, y, b in NOTCHED]), plate)
     assert there.counts == here.counts
-    assert np.allclose(np.sort(here.table.null_vector.min(axis=1)), np.sort(there.table.null_vector.min(axis=1)))
+    assert np.allclose(
+        np.sort(here.table.null_vector.min(axis=1)), np.sort(there.table.null_vector.min(axis=1))
+    )
     # The mirrored part, its loop run the other way, and the mirrored plate: a clamp along -y stays one.
     loop = NOTCHED[::-1]
     flipped = [(-x, y, loop[(k + 1) % len(loop)][2]) for k, (x, y, _) in enumerate(loop)]
@@ -133,7 +146,9 @@ def test_a_rectilinear_part_is_touched_from_all_four_sides_and_a_plain_rectangle
     normals = {face.number: face.segment.normal(0.0) for face in workpiece.faces}
     for fixture in result:
         assert len({tuple(np.round(normals[peg.face], 6)) for peg in fixture.pegs}) == 4
-    rectangle = design(part([(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]), Plate(20, 3, columns=8, rows=6))
+    rectangle = design(
+        part([(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]), Plate(20, 3, columns=8, rows=6)
+    )
     assert len(rectangle) > 0
     assert all(abs(fixture.pose.theta_deg % 90 - 45) < 44.9 for fixture in rectangle)
 
@@ -170,7 +185,9 @@ def test_which_fixtures_of_a_plate_a_vise_can_hold(columns: int) -> None:
     assert rest > len(held)
 
 
-@pytest.mark.parametrize("seed", [1, 2, 5, *(pytest.param(seed, marks=pytest.mark.prove) for seed in range(6, 60))])
+@pytest.mark.parametrize(
+    "seed", [1, 2, 5, *(pytest.param(seed, marks=pytest.mark.prove) for seed in range(6, 60))]
+)
 def test_planted_fixtures_are_found(seed: int) -> None:
     """Triangles and quadrangles cut around four chosen pegs on a plate: that fixture is listed."""
     random = np.random.default_rng(seed)
@@ -225,8 +242,13 @@ def stands(corners: np.ndarray, places: np.ndarray, normals: np.ndarray, radius:
     for place, normal in zip(places, normals, strict=True):
         touching = place - radius * normal
         along = ((touching - corners) * edges).sum(axis=1) / lengths
-        off = np.abs((touching - corners)[:, 0] * edges[:, 1] - (touching - corners)[:, 1] * edges[:, 0]) / lengths
-        if not any(o < 1e-9 and 0.5 < a < length - 0.5 for o, a, length in zip(off, along, lengths, strict=True)):
+        off = (
+            np.abs((touching - corners)[:, 0] * edges[:, 1] - (touching - corners)[:, 1] * edges[:, 0])
+            / lengths
+        )
+        if not any(
+            o < 1e-9 and 0.5 < a < length - 0.5 for o, a, length in zip(off, along, lengths, strict=True)
+        ):
             return False
     return True
 
@@ -294,7 +316,9 @@ def test_both_engines_list_the_same_fixtures(loop: list[tuple[float, ...]]) -> N
 
 def test_why_there_is_none_is_told_in_the_words_of_a_plate() -> None:
     """Over both directions together; no jaw is spoken of."""
-    query = Query(part([(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]), Plate((20, 16), 3, columns=3, rows=3))
+    query = Query(
+        part([(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]), Plate((20, 16), 3, columns=3, rows=3)
+    )
     explanation = explain(attrs.evolve(query, restrictions=Restrictions(angles=((0.0, 0.0),))))
     rules = [removal.rule for removal in explanation.removals]
     assert {"angles of the part", "closure", "holes that the plate does not have"} <= set(rules)
@@ -303,5 +327,10 @@ def test_why_there_is_none_is_told_in_the_words_of_a_plate() -> None:
     assert [peg.carrier for peg in explanation.nearest.fixture.pegs][:3] == ["plate"] * 3
     far = design(part([(0, 0, 0), (30, 0, 0), (30, 20, 0), (0, 20, 0)]), Plate(200, 3))
     ring = design(part([(-20, 0, 1), (20, 0, 1)]), Plate(20, 3))
-    for words in (*far.notes, *ring.notes, *(help.change for help in explanation.helps), explanation.nearest.words):
+    for words in (
+        *far.notes,
+        *ring.notes,
+        *(help.change for help in explanation.helps),
+        explanation.nearest.words,
+    ):
         assert "jaw" not in words and "vise" not in words

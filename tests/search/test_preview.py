@@ -11,7 +11,7 @@ from workhold.files.part.load import load
 from workhold.files.result.writer import write_result_to
 from workhold.fixels.vise import Vise
 from workhold.model.result import Result
-from workhold.search import preview
+from workhold.search import shares
 from workhold.search.design import design
 
 
@@ -33,8 +33,8 @@ def text(result: Result) -> str:
 
 @pytest.mark.parametrize("best", [None, 20])
 def test_previews_are_some_of_the_fixtures(monkeypatch: pytest.MonkeyPatch, best: int | None) -> None:
-    monkeypatch.setattr(preview, "PAUSE", 0.0)
-    monkeypatch.setattr(preview, "SHARE", 0.0)
+    monkeypatch.setattr(shares, "PAUSE", 0.0)
+    monkeypatch.setattr(shares, "SHARE", 0.0)
     widget, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
     shown: list[Result] = []
     result = design(widget, vise, best=best, preview=shown.append, threads=1)
@@ -50,7 +50,7 @@ def test_previews_are_some_of_the_fixtures(monkeypatch: pytest.MonkeyPatch, best
 
 
 def test_a_short_search_shows_nothing_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(preview, "PAUSE", 1000.0)
+    monkeypatch.setattr(shares, "PAUSE", 1000.0)
     shown: list[Result] = []
     design(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), preview=shown.append)
     assert shown == []

@@ -10,9 +10,9 @@ import pytest
 from fixture_sets import Judge, listed
 from workhold import InputError, Query, Result, Vise, Workpiece, answer, design, load
 from workhold.algebra.engine import answer_by_algebra
-from workhold.fixels.holes import holes_named
+from workhold.fixels.carrier import holes_named
 from workhold.model.fixture import Fixture
-from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
+from workhold.model.requirements import Restrictions, circle_zone, polygon_zone
 
 Key = tuple[object, float]
 
@@ -73,7 +73,9 @@ def test_no_body_stands_over_a_zone(free: Result, body: float) -> None:
         min(
             min(
                 hypot(x - circle[0], y - circle[1]) - circle[2],
-                hypot(max(corners[0][0] - x, 0, x - corners[1][0]), max(corners[0][1] - y, 0, y - corners[2][1])),
+                hypot(
+                    max(corners[0][0] - x, 0, x - corners[1][0]), max(corners[0][1] - y, 0, y - corners[2][1])
+                ),
             )
             for x, y in peg_places(fixture)
         )
@@ -87,7 +89,10 @@ def test_no_body_stands_over_a_zone(free: Result, body: float) -> None:
 def test_thick_bodies_keep_pegs_apart(free: Result) -> None:
     """Bodies may be thicker than the distance between holes; then no two pegs stand in neighbouring holes."""
     limited = design(free.workpiece, vise(body_radius=6.0))
-    chosen = [min(hypot(a.x - b.x, a.y - b.y) for k, a in enumerate(f.pegs) for b in f.pegs[:k]) >= 12.0 for f in free]
+    chosen = [
+        min(hypot(a.x - b.x, a.y - b.y) for k, a in enumerate(f.pegs) for b in f.pegs[:k]) >= 12.0
+        for f in free
+    ]
     assert 0 < sum(chosen) < len(free)
     assert identities(limited) == identities(free, chosen)
     assert limited.statistics["chord_curves"] < free.statistics["chord_curves"]
@@ -119,7 +124,8 @@ def test_no_peg_stands_in_a_blocked_hole(free: Result, rows: int | None, names: 
     for fixture in limited:
         for peg in fixture.pegs:
             assert not any(
-                (peg.carrier, peg.column) == (h.carrier, h.column) and h.row in (None, peg.row) for h in blocked
+                (peg.carrier, peg.column) == (h.carrier, h.column) and h.row in (None, peg.row)
+                for h in blocked
             ), fixture
     unblocked = design(free.workpiece, vise(rows=rows))
     chosen = [can_stand(fixture, unblocked.toolkit, blocked) for fixture in unblocked]

@@ -18,13 +18,13 @@ import pytest
 import workhold
 from seating_examples import solved
 from workhold import InputError, OpeningVise, Plate, Query, Result, Vise, Workpiece
-from workhold.files.result.seating_forms import figures_told
+from workhold.files.result.fixture_forms import figures_told
 from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
-from workhold.model.notes import by_hand_note
 from workhold.model.quality import SEATING_FIGURES
+from workhold.model.search_report import by_hand_note
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
 from workhold.seating import solver as solver_module
-from workhold.seating.equilibrium_check import is_equilibrium
+from workhold.seating.contact_forces import is_equilibrium
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import NO_PASS, Solver
 
@@ -118,7 +118,10 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
         words = f"the part is caught only while {opened} by less than 0.500 mm"
         assert small.in_toolkit(toolkit).warnings == (words,)
     untold = attrs.evolve(one, capture_opening=0.0, lowest_pass=None, cage=None, placing=None)
-    assert untold.warnings == ("from where on the part is caught is not known",) and untold.figures["placing"] == 0.0
+    assert (
+        untold.warnings == ("from where on the part is caught is not known",)
+        and untold.figures["placing"] == 0.0
+    )
     assert figures_told(untold.as_fields())["placing"] == 0.0
     free = attrs.evolve(one, capture_opening=None)
     assert not free.warnings and free.catches(1e9) and free.figures["capture_opening"] == inf
@@ -177,7 +180,9 @@ def test_a_file_with_a_seating_that_is_none_is_refused(seated: Result, tmp_path:
 def test_rules_leave_out_what_is_not_as_asked_and_say_so(seated: Result) -> None:
     kept = workhold.design(WEDGE, VISE, seating=LOOKED_AT, foolproof=True)
     wanted = [told for told in seated.seating if told.is_foolproof]
-    assert 0 < len(wanted) < LOOKED_AT and [t.as_fields() for t in kept.seating] == [t.as_fields() for t in wanted]
+    assert 0 < len(wanted) < LOOKED_AT and [t.as_fields() for t in kept.seating] == [
+        t.as_fields() for t in wanted
+    ]
     assert len(kept) == len(wanted) and sum(kept.found.values()) == len(seated)
     assert f"The seating of the first 8 fixtures was worked out: {len(wanted)} of them" in kept.notes[-1]
     # The more the jaws open, the fewer fixtures catch the part, and the more wrong seats count.
@@ -243,7 +248,9 @@ def test_what_needs_seating_is_refused_without_it() -> None:
         workhold.design(WEDGE, VISE, seating=2, rank_by="bliss")
 
 
-def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is_put_in_by_hand(tmp_path: Path) -> None:
+def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is_put_in_by_hand(
+    tmp_path: Path,
+) -> None:
     """In one go and through a file; what is read from the file holds, and asking is no search for figures that are none."""
     part = Workpiece.from_loops("square", [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [0, 45, 0]]])
     plate, heard = Plate(pitch=20, peg_radius=3, clamps=2, columns=4, rows=3), list[float]()
@@ -262,7 +269,9 @@ def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is
             InputError, match=r"put against its locators by hand, so no opening.*ask for the seating alone"
         ):
             workhold.answer(attrs.evolve(asked, **further))
-    none = workhold.answer(Query(Workpiece.from_loops("tiny", [[[0, 0, 0], [2, 0, 0], [1, 2, 0]]]), plate, seating=2))
+    none = workhold.answer(
+        Query(Workpiece.from_loops("tiny", [[[0, 0, 0], [2, 0, 0], [1, 2, 0]]]), plate, seating=2)
+    )
     assert not len(none) and by_hand_note() not in none.notes
 
 
@@ -280,7 +289,9 @@ def test_of_two_clamps_no_seating_may_be_told_and_the_note_must(tmp_path: Path) 
     assert any("than of the 0 that it is asked of" in fault for fault in outcome.faults)
 
 
-def test_an_opening_is_told_only_with_a_pass_that_is_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_an_opening_is_told_only_with_a_pass_that_is_one(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     """Passes are equilibria, and are none a little beside; without one nothing is claimed, and that is warned of."""
     solver, fixture, _ = solved(1)
     pattern = Pattern.of(fixture, solver.toolkit)

@@ -14,12 +14,12 @@ import pytest
 
 import workhold
 from workhold import Query, Result, Vise
-from workhold.cli import result_forms
+from workhold.cli import outputs
 from workhold.cli.ending import Interrupted
 from workhold.listing import collector, runs
 from workhold.listing.collector import ResultCollector
-from workhold.listing.listed import MEASURED
-from workhold.model.notes import cut_note, kept_note
+from workhold.listing.results import MEASURED
+from workhold.model.search_report import cut_note, kept_note
 from workhold.search.design import SEARCH
 from workhold.search.seated import SEARCHED
 from workhold.verification import verify, verify_file
@@ -83,7 +83,10 @@ def test_the_best_are_listed_and_all_are_counted(answer: Callable[..., Result], 
 
 def test_what_is_listed_before_somebody_asks_to_stop_stays(tmp_path: Path) -> None:
     """In a file it is written by then; what follows is not."""
-    result, whole = in_a_file(SYMMETRIC, tmp_path, **stopped_at(LISTING)), in_a_file(SYMMETRIC, tmp_path / "..")
+    result, whole = (
+        in_a_file(SYMMETRIC, tmp_path, **stopped_at(LISTING)),
+        in_a_file(SYMMETRIC, tmp_path / ".."),
+    )
     assert MOST < len(result) < len(whole)
     assert list(result) == list(whole)[: len(result)]
     assert result.notes == (cut_note(len(whole), len(result)),)
@@ -117,7 +120,9 @@ def test_of_several_ways_the_best_of_all_are_listed(tmp_path: Path) -> None:
     whole, result = (
         workhold.answer(WAYS),
         workhold.answer(
-            WAYS, threads=1, **stopped_at((len(WAYS.toolkit.ways) - 1 + ALL_MEASURED) / len(WAYS.toolkit.ways))
+            WAYS,
+            threads=1,
+            **stopped_at((len(WAYS.toolkit.ways) - 1 + ALL_MEASURED) / len(WAYS.toolkit.ways)),
         ),
     )
     assert len(PLATE.ways) == 2 and list(result) == list(whole)[:MOST] and len(whole) > MOST
@@ -160,9 +165,11 @@ def test_a_server_that_keeps_fewer_says_that_alone() -> None:
     assert verify(job.result).holds
 
 
-def test_stopped_while_the_file_is_written_the_best_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stopped_while_the_file_is_written_the_best_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Of a result that is small enough nothing else is tried, nor of one that goes to the terminal."""
-    whole, write, tries = workhold.answer(SYMMETRIC), result_forms.write_output, list[int]()
+    whole, write, tries = workhold.answer(SYMMETRIC), outputs.write_output, list[int]()
 
     def interrupted(result: Result, out: str, form: str) -> None:
         tries.append(len(result))
@@ -170,13 +177,13 @@ def test_stopped_while_the_file_is_written_the_best_are(tmp_path: Path, monkeypa
             raise Interrupted
         write(result, out, form)
 
-    monkeypatch.setattr(result_forms, "write_output", interrupted)
-    monkeypatch.setattr(result_forms, "keep_what_is_found", lambda: None)
-    written = result_forms.write_found(whole, str(tmp_path / "a.json"), "json")
+    monkeypatch.setattr(outputs, "write_output", interrupted)
+    monkeypatch.setattr(outputs, "keep_what_is_found", lambda: None)
+    written = outputs.write_found(whole, str(tmp_path / "a.json"), "json")
     assert tries == [len(whole), MOST]
     assert written == cut(MOST) and len(workhold.open(tmp_path / "a.json")) == MOST
     for result, out in ((whole.part(slice(MOST)), str(tmp_path / "b.json")), (whole, "-")):
         tries.clear()
         with pytest.raises(Interrupted):
-            result_forms.write_found(result, out, "json")
+            outputs.write_found(result, out, "json")
         assert len(tries) == 1

@@ -10,7 +10,7 @@ import pytest
 
 import workhold
 from workhold import InputError, Query, Vise
-from workhold.listing import finish, runs
+from workhold.listing import collector, runs
 from workhold.listing.collector import ResultCollector
 
 QUERIES = {
@@ -21,7 +21,8 @@ QUERIES = {
     ),
     "none": Query(workhold.load("small4Handle"), Vise(pitch=70, columns=1, peg_radius=3)),
     "several ways": Query(
-        workhold.load("widget"), workhold.Plate(pitch=25, peg_radius=3, columns=4, rows=4, directions=("-x", "-y"))
+        workhold.load("widget"),
+        workhold.Plate(pitch=25, peg_radius=3, columns=4, rows=4, directions=("-x", "-y")),
     ),
     "best": Query(workhold.load("widget"), Vise(pitch=8, columns=1, peg_radius=3), best=7),
 }
@@ -32,7 +33,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """So little room that everything goes through the disk."""
     for name, value in (("PART", 100), ("ROOM", 150), ("STRIDE", 9)):
         monkeypatch.setattr(runs, name, value)
-    monkeypatch.setattr(finish, "BLOCK", 64)
+    monkeypatch.setattr(collector, "BLOCK", 64)
 
 
 @pytest.mark.parametrize("name", QUERIES)
@@ -66,7 +67,9 @@ def test_progress_rises_to_its_end(small: None, tmp_path: Path) -> None:
     assert seen == sorted(seen) and seen[-1] == pytest.approx(1.0) and len(seen) > 10
 
 
-def test_what_is_being_sorted_has_no_name_that_a_killed_program_could_leave(small: None, tmp_path: Path) -> None:
+def test_what_is_being_sorted_has_no_name_that_a_killed_program_could_leave(
+    small: None, tmp_path: Path
+) -> None:
     """Runs are on the disk before the file is begun, and no one sees them."""
     seen: set[str] = set()
 

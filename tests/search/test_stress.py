@@ -143,7 +143,9 @@ CROWNED = Vise(pitch=10, columns=1, peg_radius=3)
 BULGES = [1e-2, 1e-3, 1e-4, 1e-5, 3e-6]
 
 
-@pytest.mark.parametrize("bulge", [*BULGES, *(pytest.param(-bulge, marks=pytest.mark.prove) for bulge in BULGES)])
+@pytest.mark.parametrize(
+    "bulge", [*BULGES, *(pytest.param(-bulge, marks=pytest.mark.prove) for bulge in BULGES)]
+)
 def test_a_crowned_edge_costs_like_an_arc(bulge: float) -> None:
     """However shallow the arc, the search ends with everything decided, and looks at a few times the contacts of the
     straight plate. (Below bulges of 1e-5, beyond radii of 10 km here, the figures of a fixture are known to less than the
@@ -286,7 +288,8 @@ def test_half_a_millimetre_across(family: Family, pitch: float, radius: float, c
     vise = Vise(pitch=pitch, columns=1, peg_radius=radius)
     large = fixtures_of(family, 0.0, vise)
     small = design(
-        parts.redrawn(large.workpiece, scale=0.01), Vise(pitch=pitch * 0.01, columns=1, peg_radius=radius * 0.01)
+        parts.redrawn(large.workpiece, scale=0.01),
+        Vise(pitch=pitch * 0.01, columns=1, peg_radius=radius * 0.01),
     )
     assert len(large) == len(small) == count
     assert_same(parts.resized(listed(small), 100.0), listed(large), Judge(large.workpiece, vise))

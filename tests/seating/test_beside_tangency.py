@@ -16,8 +16,7 @@ from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, SECOND, SEPARATION, THETA
 from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
-from workhold.seating.pattern import Pattern
-from workhold.seating.peg_subsets import subsets_of
+from workhold.seating.pattern import Pattern, subsets_of
 from workhold.seating.solver import Solver
 from workhold.seating.two_contact_curves import TwoContactCurves
 
@@ -52,12 +51,19 @@ def test_it_is_a_seat_and_nothing_is_unsettled(case):
     assert len(found.doubtful) == 0
     assert len(JoinTree.of(found, closing).doubtful) == 0
     [row] = [row for row in found.seats if abs(row[SEPARATION] - case[2][3]) < 2e-6]
-    assert np.abs((row[CONFIG] - case[2] + np.pi) % (2.0 * np.pi) - np.pi).max() < 5e-6 and row[CONTACTS] == 3.0
+    assert (
+        np.abs((row[CONFIG] - case[2] + np.pi) % (2.0 * np.pi) - np.pi).max() < 5e-6 and row[CONTACTS] == 3.0
+    )
     given, step = TwoContactCurves.of(closing.boundary, closing.pattern).given, 2e-8
     assert np.abs(touching(row, given, row[CONFIG])).max() < 1e-9
     before, after = (at_angle(row, given, row[THETA] + off) for off in (-step, step))
     assert (before + after - 2.0 * row[SEPARATION]) / step**2 == pytest.approx(row[SECOND], rel=0.05)
-    apart = np.random.default_rng(1).normal(0.0, 1.0, (8, 4)) * [1e-5, 1e-3, 1e-3, 0.0] + [0.0, 0.0, 0.0, 5e-3]
+    apart = np.random.default_rng(1).normal(0.0, 1.0, (8, 4)) * [1e-5, 1e-3, 1e-3, 0.0] + [
+        0.0,
+        0.0,
+        0.0,
+        5e-3,
+    ]
     ends, how = closing.run(row[CONFIG] + apart, 1e-3)
     assert (how == AT_REST).all() and np.abs(ends - row[CONFIG]).max() < 1e-4
 

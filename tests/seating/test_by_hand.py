@@ -12,10 +12,8 @@ from scipy.optimize import linprog
 
 import workhold
 from workhold import Fence, Fixture, Plate, Result, Workpiece
-from workhold.model.force_ratio import working_forces
-from workhold.model.tightening import order_words
-from workhold.seating.by_hand import WHY, by_hand
-from workhold.seating.sticking_friction import sticking_friction_of_two
+from workhold.model.clamps import order_words, working_forces
+from workhold.seating.clamping import WHY, by_hand, sticking_friction_of_two
 
 RECTANGLE = Workpiece.from_loops("rectangle", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
 BOWED = Workpiece.from_loops("bowed", [[[0, 0, 0], [70, 0, 0], [70, 45, 0.2], [20, 50, 0.3], [0, 40, 0]]])
@@ -39,7 +37,9 @@ def of_every_kind(result: Result) -> Iterator[Fixture]:
             yield fixture
 
 
-def balances(fixture: Fixture, part: Workpiece, toolkit: Plate | Fence, friction: float, without: int) -> bool:
+def balances(
+    fixture: Fixture, part: Workpiece, toolkit: Plate | Fence, friction: float, without: int
+) -> bool:
     """Whether both clamps at their working ratio balance within friction cones without a locator: forces and moments from
     holes, faces and the pose alone."""
     columns, pushes = [], []
@@ -84,7 +84,10 @@ def test_below_the_friction_told_no_locator_can_be_spared(result: Result) -> Non
         told = by_hand(fixture, result.workpiece, result.toolkit).sticking_friction
         assert told is not None and 0.0 < told < inf
         sticks = [
-            any(balances(fixture, result.workpiece, result.toolkit, told * by, without) for without in range(3))
+            any(
+                balances(fixture, result.workpiece, result.toolkit, told * by, without)
+                for without in range(3)
+            )
             for by in (1.0 - 1e-5, 1.0 + 1e-5)
         ]
         assert sticks == [False, True]
@@ -94,9 +97,14 @@ def test_what_a_clamp_alone_does_not_press_is_told(result: Result) -> None:
     """In balance of that clamp alone those locators have no force, or would have to pull; of a clamp that may be first none
     pulls, and at the working ratio none is without force."""
     for fixture in of_every_kind(result):
-        told, reactions = by_hand(fixture, result.workpiece, result.toolkit), np.array([fixture.pair.reactions])
+        told, reactions = (
+            by_hand(fixture, result.workpiece, result.toolkit),
+            np.array([fixture.pair.reactions]),
+        )
         for k, pegs in enumerate(told.unpressed):
-            pressed = [peg for peg, one in zip(fixture.pegs[:3], reactions[0, :, k], strict=False) if one > 1e-9]
+            pressed = [
+                peg for peg, one in zip(fixture.pegs[:3], reactions[0, :, k], strict=False) if one > 1e-9
+            ]
             assert sorted((*pegs, *pressed), key=repr) == sorted(fixture.pegs[:3], key=repr) and pegs
             may_be_first = fixture.pair.ratio[k] == (0.0, inf)[k]
             assert may_be_first == bool((reactions[0, :3, k] > -1e-9).all())
@@ -116,7 +124,8 @@ def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> Non
         assert ("the fence, flush, and against the locator" in push) == bool(on_wall)
         assert all(f"at the fence on the {peg.hole.split()[1]}" in touch for peg in on_wall)
         towards = [
-            {"-x": "left", "+x": "right", "-y": "downward", "+y": "upward"}[d] for d in fixture.direction.split()
+            {"-x": "left", "+x": "right", "-y": "downward", "+y": "upward"}[d]
+            for d in fixture.direction.split()
         ]
         assert all(word in push for word in towards)
         assert order.startswith(order_words(fixture)) and "until both are tight" in order

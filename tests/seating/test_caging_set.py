@@ -25,7 +25,8 @@ BRACKET = Workpiece.from_loops(
 )
 QUAD = Workpiece.from_loops("quad", [[[0, 0, 0], [70, 0, 0], [62, 30, 0], [12, 48, 0]]])
 HOLED = Workpiece.from_loops(
-    "holed", [[[0, 0, 0], [80, 0, 0], [80, 70, 0], [0, 70, 0]], [[20, 20, 0], [60, 14, 0], [62, 50, 0], [26, 52, 0]]]
+    "holed",
+    [[[0, 0, 0], [80, 0, 0], [80, 70, 0], [0, 70, 0]], [[20, 20, 0], [60, 14, 0], [62, 50, 0], [26, 52, 0]]],
 )
 KITS: dict[str, tuple[Workpiece, Toolkit]] = {
     "oblong": (load("oblongPart"), Vise(pitch=10, columns=1, peg_radius=3)),
@@ -109,7 +110,8 @@ def end_at_home(name: str, rank: int, share: float, which: list[int]) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("name", "rank"), [("0", 0), ("1", 0), ("2", 0), ("oblong", 0), ("bracket", 1), ("fence", 0), ("opening", 0)]
+    ("name", "rank"),
+    [("0", 0), ("1", 0), ("2", 0), ("oblong", 0), ("bracket", 1), ("fence", 0), ("opening", 0)],
 )
 def test_the_extremes_are_those_of_a_flood(name, rank):
     """Nowhere short of it, and beyond it by no more than the rows that step over a narrow end."""

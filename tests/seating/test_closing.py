@@ -12,20 +12,23 @@ from sharpness import changed
 from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
 from workhold.kernels.seating.columns import CONFIG, SECOND, DescentWorkSpace
+from workhold.kernels.seating.descent_paths import OUTSIDE, STOP
 from workhold.kernels.seating.linear_program import add_normal, shortest_out
-from workhold.kernels.seating.pieces import clearances
-from workhold.kernels.seating.places import OUTSIDE, STOP
-from workhold.seating.closing_frame import ClosingFrame
-from workhold.seating.descent_paths import descent_starts
+from workhold.kernels.seating.obstacles import clearances
+from workhold.seating.closing import descent_starts
 from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
-from workhold.seating.pattern import Pattern
+from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
 
 # In which a part is moved that is said not to get away.
 DIRECTIONS = 144
 NOTCH = Workpiece.from_loops(
-    "notch", [[[0, 0, 0], [70, 0, 0], [70, 22, 0], [40, 26, 0], [30, 55, 0], [0, 55, 0]], [[30, 12, -1], [14, 12, -1]]]
+    "notch",
+    [
+        [[0, 0, 0], [70, 0, 0], [70, 22, 0], [40, 26, 0], [30, 55, 0], [0, 55, 0]],
+        [[30, 12, -1], [14, 12, -1]],
+    ],
 )
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PEGS = (("left", 10.0, 20.0, 5), ("left", 10.0, 50.0, 5), ("right", 52.38024723796786, 0.0, 0))
@@ -154,7 +157,9 @@ def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
         for side in (0, 1):
             starts = every[side::2]
             for k in np.flatnonzero(lengths[side::2, 0] == how_far).tolist():
-                ends, how = closing.run(starts[k : k + 1], how_far, np.ascontiguousarray(tree.seats[:, CONFIG]))
+                ends, how = closing.run(
+                    starts[k : k + 1], how_far, np.ascontiguousarray(tree.seats[:, CONFIG])
+                )
                 at_end, at_start = closing.escape(np.concatenate([ends, starts[k : k + 1]])).tolist()
                 if how[0] == AT_THE_STOP:
                     assert joined[k, side] == (OUTSIDE if at_end or at_start else STOP)
@@ -166,7 +171,9 @@ def test_a_seat_joins_at_the_lowest_pass_that_leads_elsewhere(ways):
     for _, _, tree in ways:
         joins = [tree.join(number) for number in range(len(tree.passes))]
         for place in range(len(tree.seats) + len(tree.loose)):
-            out = [join for join in joins if tree.own[place] in join.places and join.places[0] != join.places[1]]
+            out = [
+                join for join in joins if tree.own[place] in join.places and join.places[0] != join.places[1]
+            ]
             assert tree.join_of(place) == (min(out, key=lambda join: join.separation) if out else None)
 
 
@@ -187,7 +194,9 @@ def test_pegs_that_a_part_does_not_fit_between_get_nowhere():
     )
     for thick, expected in ((20.02, True), (19.98, False)):
         bar = Workpiece.from_loops("bar", [[[-90, 0, 0], [60, 0, 0], [60, thick, 0], [-90, thick, 0]]])
-        closing = Solver(bar, VISE).closing(Pattern.of(Fixture("I", pegs, Pose(0, 0, 0), 100.0, {}), VISE), False)
+        closing = Solver(bar, VISE).closing(
+            Pattern.of(Fixture("I", pegs, Pose(0, 0, 0), 100.0, {}), VISE), False
+        )
         # The place is that of its middle.
         start = np.array([[0.0, -15.0, 13.0, 80.0]])
         [how] = closing.run(start, 0.005)[1]

@@ -125,13 +125,17 @@ def test_a_part_beside_the_pegs_is_outside_and_one_between_them_at_the_stop():
     """A small square far above all pegs can be taken away; one with all four about it cannot, though none touches it."""
     square = Workpiece.from_points("square", [(0, 0), (6, 0), (6, 6), (0, 6)])
     vise = Vise(20, 2, 3)
-    fixture = held([(LEFT, 0.0, 0.0), (LEFT, 0.0, 20.0), (RIGHT, 40.0, 0.0), (RIGHT, 40.0, 20.0)], (0, 20, 7), 40.0)
+    fixture = held(
+        [(LEFT, 0.0, 0.0), (LEFT, 0.0, 20.0), (RIGHT, 40.0, 0.0), (RIGHT, 40.0, 20.0)], (0, 20, 7), 40.0
+    )
     solver = Solver(square, vise)
     away = simulate_closing(solver, fixture, (), Pose(0.0, 20.0, 90.0), 5.0)
     assert (away.ending, away.seat) == ("outside", None)
     assert away.travels[-1] == pytest.approx(vise.gap) and away.poses[0] == away.poses[-1]
     larger = Workpiece.from_points("larger", [(0, 0), (8.5, 0), (8.5, 8.5), (0, 8.5)])
-    about = held([(LEFT, 0.0, 0.0), (LEFT, 0.0, 12.0), (RIGHT, 20.0, 0.0), (RIGHT, 20.0, 12.0)], (0, 3, 2), 20.0)
+    about = held(
+        [(LEFT, 0.0, 0.0), (LEFT, 0.0, 12.0), (RIGHT, 20.0, 0.0), (RIGHT, 20.0, 12.0)], (0, 3, 2), 20.0
+    )
     shut = simulate_closing(Solver(larger, evolve(vise, min_gap=14.0)), about, (), Pose(0.0, 2.75, 1.75), 5.0)
     assert (shut.ending, shut.seat) == ("stop", None)
     assert shut.travels[-1] == pytest.approx(14.0)
@@ -139,7 +143,9 @@ def test_a_part_beside_the_pegs_is_outside_and_one_between_them_at_the_stop():
 
 def test_a_seat_that_is_not_given_is_elsewhere():
     solver, fixture, told = solved(CASE)
-    played = simulate_closing(solver, fixture, [seat for seat in told.seats if not seat.is_own], fixture.pose, 0.01)
+    played = simulate_closing(
+        solver, fixture, [seat for seat in told.seats if not seat.is_own], fixture.pose, 0.01
+    )
     assert (played.ending, played.seat) == ("elsewhere", None)
 
 
@@ -150,7 +156,9 @@ def test_a_loose_seat_is_known_by_its_reading():
     apart = 2.0 * np.sqrt(18.0**2 - 10.0**2)
     seat = Seat("loose", Pose(0.0, apart / 2, 10.0), apart, 0.0, False, False, (), (), None, False)
     fixture = evolve(moved_right(fixture, apart - 25.0), jaw_separation=apart)
-    played = simulate_closing(Solver(disc, Vise(10, 2, 3)), fixture, (seat,), Pose(77.0, apart / 2 + 0.3, 10.4), 2.0)
+    played = simulate_closing(
+        Solver(disc, Vise(10, 2, 3)), fixture, (seat,), Pose(77.0, apart / 2 + 0.3, 10.4), 2.0
+    )
     assert (played.ending, played.seat) == ("wrong", seat)
     assert played.travels[-1] == pytest.approx(apart, abs=1e-6)
 
@@ -171,14 +179,18 @@ def test_starts_that_cannot_be_are_refused_in_a_sentence():
     with pytest.raises(InputError, match=r"^the peg in .* stands in the part there: put the part elsewhere"):
         simulate_closing(solver, fixture, told.seats, put(fixture, solver.workpiece, 0.0, -15.0, 0.0), 1.0)
     with pytest.raises(InputError, match=r"^pegs meet before what moves stands there"):
-        simulate_closing(solver, fixture, told.seats, Pose(0.0, 0.0, 500.0), told.stop - fixture.jaw_separation - 1.0)
+        simulate_closing(
+            solver, fixture, told.seats, Pose(0.0, 0.0, 500.0), told.stop - fixture.jaw_separation - 1.0
+        )
 
 
 def test_a_way_that_nobody_wants_any_more_ends():
     solver, fixture, told = solved(CASE)
     asked = iter([False, False, True])
     pose, opening = put(fixture, solver.workpiece, 0.0, 0.5, 0.0), 1.0
-    played = simulate_closing(solver, fixture, told.seats, pose, opening, is_cancelled=lambda: next(asked, True))
+    played = simulate_closing(
+        solver, fixture, told.seats, pose, opening, is_cancelled=lambda: next(asked, True)
+    )
     assert len(played.poses) <= 4
 
 
@@ -209,7 +221,9 @@ def test_whatever_clamps_leads_home(part, toolkit):
     assert played.travels[0] == pytest.approx(fixture.jaw_separation + toolkit.clamping * opening)
     assert played.travels[-1] == pytest.approx(fixture.jaw_separation, abs=1e-4)
     assert played.poses[-1].theta_deg == pytest.approx(fixture.pose.theta_deg, abs=1e-4)
-    assert (played.poses[-1].x, played.poses[-1].y) == pytest.approx((fixture.pose.x, fixture.pose.y), abs=1e-3)
+    assert (played.poses[-1].x, played.poses[-1].y) == pytest.approx(
+        (fixture.pose.x, fixture.pose.y), abs=1e-3
+    )
 
 
 def test_jaws_are_opened_no_farther_than_they_go():

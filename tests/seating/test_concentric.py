@@ -12,14 +12,22 @@ import pytest
 from seating_examples import at_angle, held, on_pieces, touching
 from workhold import Vise, Workpiece, load
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CLEAR, CONFIG, MOTION, PEG, PIECE, SECOND, SEPARATION
-from workhold.kernels.seating.concentric import about_one_center
-from workhold.seating.equilibria import equilibria
-from workhold.seating.growing_rows import filled
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CLEAR,
+    CONFIG,
+    MOTION,
+    PEG,
+    PIECE,
+    SECOND,
+    SEPARATION,
+)
+from workhold.kernels.seating.parallel_and_concentric import about_one_center
+from workhold.seating.closing import filled
+from workhold.seating.equilibria import equilibria, in_balance
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
-from workhold.seating.subset_equilibria import in_balance
 from workhold.seating.two_contact_curves import TwoContactCurves
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
@@ -49,7 +57,10 @@ def found():
     random, solver, out = np.random.default_rng(7), Solver(PLATE, VISE), []
     for _ in range(60):
         places = random.uniform((0.0, 0.0), (25.0, 60.0), (4, 2))
-        pegs = [("left" if k < 2 else "right", x + 100.0 * (k >= 2), y) for k, (x, y) in enumerate(places.tolist())]
+        pegs = [
+            ("left" if k < 2 else "right", x + 100.0 * (k >= 2), y)
+            for k, (x, y) in enumerate(places.tolist())
+        ]
         pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 100.0), VISE)
         closing = solver.closing(pattern, False)
         given = TwoContactCurves.of(closing.boundary, pattern).given
@@ -99,7 +110,12 @@ def test_ways_down_end_nowhere_that_is_not_known(found):
 def test_a_bracket_that_rests_on_its_rounded_end_is_seated():
     """A peg of each jaw on the rounded end, and one of the left in a rounded inner corner: it was told as unsettled."""
     part = load(Path(__file__).parents[2] / "examples" / "bracket.dxf")
-    pegs = [("left", 10, 0), ("left", 10, 60), ("right", 65.09828112125015, 20), ("right", 65.09828112125015, 100)]
+    pegs = [
+        ("left", 10, 0),
+        ("left", 10, 60),
+        ("right", 65.09828112125015, 20),
+        ("right", 65.09828112125015, 100),
+    ]
     fixture = held(pegs, (90.0, 62.098281121250174, 3.0), 55.09828112125016)
     closing = Solver(part, VISE).closing(Pattern.of(fixture, VISE), True)
     tree = JoinTree.of(equilibria(closing.boundary, closing.pattern, closing.size), closing)

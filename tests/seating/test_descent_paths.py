@@ -23,13 +23,12 @@ from workhold.kernels.seating.columns import (
     TURNED,
 )
 from workhold.kernels.seating.descent_paths import free_until
-from workhold.kernels.seating.leaving import RANGES, leave
-from workhold.kernels.seating.pieces import clearances
-from workhold.seating import subset_equilibria
-from workhold.seating.closing import Closing
-from workhold.seating.descent_paths import DescentCache, descent_starts
+from workhold.kernels.seating.free_space import RANGES, leave
+from workhold.kernels.seating.obstacles import clearances
+from workhold.seating import equilibria as equilibria_module
+from workhold.seating.closing import Closing, DescentCache, descent_starts
 from workhold.seating.equilibria import equilibria
-from workhold.seating.pass_descents import free_paths, pass_descents, shifts_of
+from workhold.seating.join_tree import free_paths, pass_descents, shifts_of
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
 
@@ -119,7 +118,16 @@ def test_a_part_is_not_taken_away_through_a_wall():
 
 def test_a_long_step_is_looked_at_between_its_ends():
     """A peg that goes through a thin fin is free before and behind it; shorter steps are looked at where they end."""
-    fin = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [30.5, 20, 0], [30.5, 40, 0], [29.5, 40, 0], [29.5, 20, 0], [0, 20, 0]]
+    fin = [
+        [0, 0, 0],
+        [60, 0, 0],
+        [60, 20, 0],
+        [30.5, 20, 0],
+        [30.5, 40, 0],
+        [29.5, 40, 0],
+        [29.5, 20, 0],
+        [0, 20, 0],
+    ]
     part, vise = Workpiece.from_loops("fin", [fin]), Vise(pitch=10, columns=2, peg_radius=0.5)
     # Pegs far off, but for the second one, beside the fin.
     places = [("left", -90.0, 0.0), ("left", 28.0, 30.0), ("right", 190.0, 0.0), ("right", 190.0, 40.0)]
@@ -133,7 +141,16 @@ def test_a_long_step_is_looked_at_between_its_ends():
     for most, last in ((10.0, 1), (0.3, 0)):
         lasts = np.empty(1, np.int64)
         free_until(
-            one, one, nodes, np.array([0, 2]), np.zeros((1, 4)), others, most, obstacles, np.empty((4, 4)), lasts
+            one,
+            one,
+            nodes,
+            np.array([0, 2]),
+            np.zeros((1, 4)),
+            others,
+            most,
+            obstacles,
+            np.empty((4, 4)),
+            lasts,
         )
         assert lasts[0] == last
 
@@ -155,7 +172,7 @@ def test_nodes_say_how_far_their_way_has_come(ways):
 
 def test_nothing_depends_on_what_was_followed_before(ways, monkeypatch):
     """Nor on what is forgotten: to the last bit."""
-    monkeypatch.setattr(subset_equilibria, "MOST_NODES", 0)
+    monkeypatch.setattr(equilibria_module, "MOST_NODES", 0)
     for number in (2, 1):
         again = followed(Solver(STEP, VISE), PATTERNS[number])[3]
         assert [part.tobytes() for part in again] == [part.tobytes() for part in ways[2 * number][3]]
@@ -204,7 +221,10 @@ def test_all_passes_of_pegs_that_have_no_group_of_their_own_are_told(ways):
             there = down.candidates[own - down.first]
             assert there[CONFIG] + group.shift == pytest.approx(row[CONFIG], abs=1e-9)
             assert row[PEG:PIECE].tolist() == group.names[there[PEG:PIECE].astype(int)].tolist()
-            assert row[[CONTACTS, *range(PIECE, FORCE)]].tolist() == there[[CONTACTS, *range(PIECE, FORCE)]].tolist()
+            assert (
+                row[[CONTACTS, *range(PIECE, FORCE)]].tolist()
+                == there[[CONTACTS, *range(PIECE, FORCE)]].tolist()
+            )
 
 
 def test_what_leaves_where_a_way_began_or_ended_is_outside(ways):

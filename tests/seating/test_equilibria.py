@@ -11,7 +11,7 @@ from workhold.kernels.seating.candidates import complete_third, complete_three
 from workhold.kernels.seating.columns import BOTTOM, CANDIDATE_LENGTH, CELL_LENGTH, DEPTH, SEPARATION, TOP
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
-from workhold.seating.growing_rows import filled
+from workhold.seating.closing import filled
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
 from workhold.seating.two_contact_curves import TwoContactCurves
@@ -25,8 +25,12 @@ def told_by(holdings, boundary, pattern, discs, stop):
         three.append(filled(ROOT_LENGTH, 4096, three_contacts, *given, stop, stack, work))
         third.append(filled(ROOT_LENGTH, 4096, third_of_jaw, *given, stack))
     three, third = np.concatenate(three), np.concatenate(third)
-    found = filled(CANDIDATE_LENGTH, len(three) + 1, complete_three, three, holdings.given, boundary.pocket_pieces)
-    fixed = filled(CANDIDATE_LENGTH, len(third) + 1, complete_third, third, holdings.given, boundary.pocket_pieces)
+    found = filled(
+        CANDIDATE_LENGTH, len(three) + 1, complete_three, three, holdings.given, boundary.pocket_pieces
+    )
+    fixed = filled(
+        CANDIDATE_LENGTH, len(third) + 1, complete_third, third, holdings.given, boundary.pocket_pieces
+    )
     return found[found[:, SEPARATION] > pattern.stop], fixed
 
 
@@ -76,7 +80,9 @@ def test_many_fixtures_are_told_as_one_by_one():
     again = moved(fixture, [1, 2, 3, 0], False, (16.0, 8.0))
     turned = moved(fixture, [0, 1, 2, 3], True, (0.0, 0.0))
     for threads in (1, 2):
-        one, two, three = Solver(solver.workpiece, solver.toolkit).of_all([again, turned, fixture], False, threads)
+        one, two, three = Solver(solver.workpiece, solver.toolkit).of_all(
+            [again, turned, fixture], False, threads
+        )
         for other, given in ((one, again), (two, turned), (three, fixture)):
             own = next(seat for seat in other.seats if seat.is_own)
             assert own.pose.theta_deg == pytest.approx(given.pose.theta_deg % 360.0, abs=1e-9)

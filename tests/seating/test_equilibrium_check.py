@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from workhold.seating.equilibrium_check import balance
+from workhold.seating.contact_forces import balance
 
 
 def three(generator: np.random.Generator, forces: list[float]) -> np.ndarray:
@@ -23,7 +23,9 @@ def three(generator: np.random.Generator, forces: list[float]) -> np.ndarray:
         moments = generator.normal(size=3)
         moments[2] = -(forces[0] * moments[0] + forces[1] * moments[1]) / forces[2]
         if abs(normals[0, 0]) > 0.1:
-            return np.column_stack([normals, moments, normals[:, 0] * [np.sign(forces[0] * normals[0, 0]), 0.0, 0.0]])
+            return np.column_stack(
+                [normals, moments, normals[:, 0] * [np.sign(forces[0] * normals[0, 0]), 0.0, 0.0]]
+            )
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -55,5 +57,7 @@ def test_parallel_forces_balance_by_their_moments() -> None:
 def test_two_balance_on_one_line() -> None:
     line = [[0.6, -0.8, 0.3, 0.6], [-0.6, 0.8, -0.3, 0.0]]
     assert balance(line)
-    assert not balance([line[0], [-0.6, 0.8, -0.3 + 1e-6, 0.0]]) and not balance([line[0], [-0.8, 0.6, -0.3, 0.0]])
+    assert not balance([line[0], [-0.6, 0.8, -0.3 + 1e-6, 0.0]]) and not balance(
+        [line[0], [-0.8, 0.6, -0.3, 0.0]]
+    )
     assert not balance([[*one[:3], -one[3]] for one in line])

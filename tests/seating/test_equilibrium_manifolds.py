@@ -24,5 +24,9 @@ def test_a_plate_lies_square_only_against_a_peg_between(heights, is_held):
     pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 0.0), vise)
     tree = Solver(PLATE, vise).trees(pattern)[0]
     # Its two long faces are 40 + 2 * 3 apart, the jaws' pegs 10 nearer.
-    square = [one for one in (*tree.loose, *tree.slack) if abs(one[SEPARATION] - 36.0) < 1e-9 and one[CONTACTS] >= 3.0]
+    square = [
+        one
+        for one in (*tree.loose, *tree.slack)
+        if abs(one[SEPARATION] - 36.0) < 1e-9 and one[CONTACTS] >= 3.0
+    ]
     assert bool(square) == is_held

@@ -10,8 +10,7 @@ import pytest
 from loose_sets import NOWHERE, laid_out, straight
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, SEPARATION
-from workhold.kernels.seating.descent_paths import BESIDE
-from workhold.kernels.seating.places import OUTSIDE, STOP
+from workhold.kernels.seating.descent_paths import BESIDE, OUTSIDE, STOP
 from workhold.seating.join_tree import JoinTree, ManifoldDescents, distances
 
 
@@ -23,14 +22,18 @@ class Slope:
     def run(self, configs: np.ndarray, first: float, seats: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         x = configs[:, 1]
         fall = np.where(x > 0.0, 1.0, np.where(x < -100.0, 2.0, 1e-7))
-        return configs - fall[:, None] * [0.0, 0.0, 0.0, 1.0], np.where(x < -100.0, AT_THE_STOP, AT_REST).astype(
-            np.int8
-        )
+        return configs - fall[:, None] * [0.0, 0.0, 0.0, 1.0], np.where(
+            x < -100.0, AT_THE_STOP, AT_REST
+        ).astype(np.int8)
 
 
 def test_what_leads_down_off_loose_sets():
     """On none, one or both sides; a part on three pegs lies there a while, unless it gives way in the middle."""
-    still, one, both = straight(7.0, 4.0, 5, (-9.0, 0.0)), straight(8.0, 4.0), straight(9.0, 200.0, 5, (-150.0, 0.0))
+    still, one, both = (
+        straight(7.0, 4.0, 5, (-9.0, 0.0)),
+        straight(8.0, 4.0),
+        straight(9.0, 200.0, 5, (-150.0, 0.0)),
+    )
     gives = straight(6.0, 0.0, 5, (30.0, 0.0))
     families = laid_out(
         [still, one, both, gives, one], [3.0, 3.0, 2.0, 3.0, 2.0], None, [NOWHERE] * 3 + [(1.0, 0.0), NOWHERE]
@@ -44,7 +47,12 @@ def test_what_leads_down_off_loose_sets():
     assert ends[:, 3].tolist() == [7.0, 8.0, 5.0, 5.0] and how.tolist() == [AT_THE_STOP, *[AT_REST] * 3]
     starts, ends, how = off.one
     assert starts[:, 1] == pytest.approx([4.0 + BESIDE, -150.0 - BESIDE, across[0], 4.0 + BESIDE], abs=1e-12)
-    assert ends[:, 3].tolist() == [7.0, 7.0, 5.0, 7.0] and how.tolist() == [AT_REST, AT_THE_STOP, AT_REST, AT_REST]
+    assert ends[:, 3].tolist() == [7.0, 7.0, 5.0, 7.0] and how.tolist() == [
+        AT_REST,
+        AT_THE_STOP,
+        AT_REST,
+        AT_REST,
+    ]
     none = ManifoldDescents.of(laid_out([]), Slope(), np.zeros((0, 4)))
     assert [len(part) for part in (none.lying, none.falling, none.slack, none.dividing)] == [0] * 4
 
@@ -59,7 +67,9 @@ def test_the_first_pass_that_leads_elsewhere_is_the_one_at_which_a_cage_opens():
     assert tree.first_joins.tolist() == [1, -1, -1, 3, 1, -1, 4]
     joins = [tree.join_of(place) for place in range(4)]
     assert [join and join.separation for join in joins] == [2.0, None, 4.0, 4.0]
-    assert joins[0].places == (0, 4) and joins[0].candidate is not None and joins[2] == joins[3] == tree.join(3)
+    assert (
+        joins[0].places == (0, 4) and joins[0].candidate is not None and joins[2] == joins[3] == tree.join(3)
+    )
     assert [tree.way_out(place) for place in range(4)] == [5.0, None, 5.0, 5.0]
     stopped = JoinTree(seats, loose, loose[:0], np.zeros((1, 4)), passes[:1], np.array([[1, STOP]]), own)
     assert stopped.join_of(1) == stopped.join(0) and stopped.way_out(1) is None

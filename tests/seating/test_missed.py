@@ -13,8 +13,8 @@ import workhold
 from workhold import Fence, Fixture, Result, Vise, Workpiece
 from workhold.kernels.seating.columns import THETA
 from workhold.seating import solver as solver_module
+from workhold.seating.contact_forces import OTHERS_MAY_BE, WAS_NOT_FOUND
 from workhold.seating.equilibria import Equilibria
-from workhold.seating.missed import OTHERS_MAY_BE, WAS_NOT_FOUND
 from workhold.seating.pattern import Pattern
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -46,7 +46,9 @@ def result(request: pytest.FixtureRequest) -> Result:
     return workhold.design(WEDGE, KITS[request.param], seating=2, best=2)
 
 
-def test_it_is_named_and_tells_what_is_known(result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_it_is_named_and_tells_what_is_known(
+    result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     first, other = result[:]
     monkeypatch.setattr(solver_module, "equilibria", missing(first, result.toolkit))
     made = workhold.design(WEDGE, result.toolkit, seating=2, best=2)
@@ -58,7 +60,8 @@ def test_it_is_named_and_tells_what_is_known(result: Result, monkeypatch: pytest
     whole = first.seating
     assert told.sticking_friction == pytest.approx(whole.sticking_friction, abs=1e-9)
     seats = [
-        sorted(one.seats, key=lambda seat: (seat.mirrored, round(seat.pose.theta_deg, 4))) for one in (told, whole)
+        sorted(one.seats, key=lambda seat: (seat.mirrored, round(seat.pose.theta_deg, 4)))
+        for one in (told, whole)
     ]
     for one, right in zip(*seats, strict=True):
         assert (one.kind, one.is_own, one.mirrored) == (right.kind, right.is_own, right.mirrored)

@@ -13,7 +13,7 @@ from seating_examples import STEP, solved
 from workhold import Workpiece
 from workhold.contact.curves import LatticeSteps, curve_table
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
-from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.chord.columns import HEAD, TAIL
 from workhold.model.seating import SeatContact
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 
@@ -45,9 +45,13 @@ def test_rolled_corners_make_up_a_turn():
     for part in (*POLYGONS, workhold.load("oblongPart")):
         rows = ObstacleBoundary.of(part, (2.5, 2.5)).rows
         outer = sum(2.0 * row[HALF_EXTENT] * (row[RADIUS] if row[IS_ARC] != 0.0 else 1.0) for row in rows)
-        around = sum(2.0 * s.half_extent * getattr(s, "radius", 1.0) for s in (face.segment for face in part.faces))
+        around = sum(
+            2.0 * s.half_extent * getattr(s, "radius", 1.0) for s in (face.segment for face in part.faces)
+        )
         assert outer == pytest.approx(around + 2.0 * pi * 2.5, abs=1e-9)
-    corners = [row[HALF_EXTENT] for row in ObstacleBoundary.of(POLYGONS[0], (2.5, 2.5)).rows if row[IS_ARC] != 0.0]
+    corners = [
+        row[HALF_EXTENT] for row in ObstacleBoundary.of(POLYGONS[0], (2.5, 2.5)).rows if row[IS_ARC] != 0.0
+    ]
     assert corners == pytest.approx([pi / 8.0] * 8)
 
 
@@ -67,7 +71,9 @@ def test_contacts_are_told_by_their_pegs_and_pieces() -> None:
 def test_curves_of_each_jaw_are_those_of_its_pieces():
     """Of pegs of two radii, on a part with arcs of one centre, whatever was asked before."""
     boundary = ObstacleBoundary.of(workhold.load("oblongPart"), (2.5, 4.0))
-    steps = LatticeSteps(np.array([15.0]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0]))
+    steps = LatticeSteps(
+        np.array([15.0]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0])
+    )
     for side, (first, end) in enumerate(boundary.parts.tolist()):
         boundary.curves(10.0, side)
         told, known = boundary.curves(15.0, side), curve_table(boundary.loose[first:end], steps)

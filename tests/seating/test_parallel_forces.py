@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from seating_examples import solved
-from workhold.kernels.seating.parallel import ALPHA, tangent_chords
-from workhold.seating.growing_rows import filled
-from workhold.seating.parallel_forces import chords_at_tangencies
+from workhold.kernels.seating.parallel_and_concentric import ALPHA, tangent_chords
+from workhold.seating.antipodal_contacts import chords_at_tangencies
+from workhold.seating.closing import filled
 
 
 @pytest.mark.parametrize("jaw", [0, 1])
@@ -19,6 +19,8 @@ def test_each_length_has_tangencies_of_its_own(jaw: int) -> None:
     found = 0
     for length in (20.0, 20.3, 20.0, 20.30001):
         rows = chords_at_tangencies(boundary, length, jaw)
-        assert np.array_equal(rows, filled(ALPHA + 1, 256, tangent_chords, boundary.pieces, first, end, length))
+        assert np.array_equal(
+            rows, filled(ALPHA + 1, 256, tangent_chords, boundary.pieces, first, end, length)
+        )
         found += len(rows)
     assert found > 4

@@ -10,7 +10,9 @@ from workhold import Vise
 from workhold.seating.pattern import Pattern
 
 VISE = Vise(pitch=10, columns=3, peg_radius=3)
-FIXTURE = held([(LEFT, 10.0, 0.0), (LEFT, 0.0, 30.0), (RIGHT, 60.0, 10.0), (RIGHT, 50.0, 20.0)], (0.0, 0.0, 0.0), 40.0)
+FIXTURE = held(
+    [(LEFT, 10.0, 0.0), (LEFT, 0.0, 30.0), (RIGHT, 60.0, 10.0), (RIGHT, 50.0, 20.0)], (0.0, 0.0, 0.0), 40.0
+)
 
 
 def test_patterns_that_differ_by_names_places_and_the_zero_of_the_separation_are_one():

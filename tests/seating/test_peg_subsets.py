@@ -25,14 +25,14 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     THETA,
 )
-from workhold.kernels.seating.pieces import clearances
+from workhold.kernels.seating.obstacles import clearances
 from workhold.kernels.seating.slides import slides_blocked
-from workhold.seating import subset_equilibria, two_contact_curves
+from workhold.seating import equilibria as equilibria_module
+from workhold.seating import two_contact_curves
+from workhold.seating.closing import filled
 from workhold.seating.equilibria import Equilibria, equilibria
-from workhold.seating.growing_rows import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
-from workhold.seating.pattern import Pattern
-from workhold.seating.peg_subsets import PegSubset, subsets_of
+from workhold.seating.pattern import Pattern, PegSubset, subsets_of
 from workhold.seating.solver import Solver
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
@@ -64,18 +64,22 @@ def told(found: Equilibria) -> list[bytes]:
 @cache
 def by_themselves() -> list[list[bytes]]:
     """What is found of each pattern by a solver that has seen no other."""
-    return [[byte for one in solve(Solver(STEP, VISE), pattern) for byte in told(one)] for pattern in patterns()]
+    return [
+        [byte for one in solve(Solver(STEP, VISE), pattern) for byte in told(one)] for pattern in patterns()
+    ]
 
 
 def test_nothing_depends_on_what_was_solved_before():
     """Not on the order of patterns: to the last bit."""
     solver, count = Solver(STEP, VISE), 0
     for number in reversed(range(len(patterns()))):
-        assert [byte for one in solve(solver, patterns()[number]) for byte in told(one)] == by_themselves()[number]
+        assert [byte for one in solve(solver, patterns()[number]) for byte in told(one)] == by_themselves()[
+            number
+        ]
         count += len(subsets_of(patterns()[number]))
     [boundary] = solver.boundaries.values()
     assert (
-        len(boundary.once(subset_equilibria.SubsetCache.empty).found) < 0.8 * count
+        len(boundary.once(equilibria_module.SubsetCache.empty).found) < 0.8 * count
         and len(boundary.once(two_contact_curves.curves_of_jaws)) < count
     )
 
@@ -83,14 +87,22 @@ def test_nothing_depends_on_what_was_solved_before():
 def test_what_is_forgotten_is_found_again(monkeypatch):
     """With room for three groups, which one pattern has more of, and the cells of one or two jaws, the same; and no more are
     kept than those of a pattern."""
-    monkeypatch.setattr(subset_equilibria, "MOST_KEPT", 3)
+    monkeypatch.setattr(equilibria_module, "MOST_KEPT", 3)
     monkeypatch.setattr(two_contact_curves, "MOST_KEPT", 1500)
     solver = Solver(STEP, VISE)
     for pattern, known in zip(patterns()[:2], by_themselves()[:2], strict=True):
         assert [byte for one in solve(solver, pattern) for byte in told(one)] == known
     for boundary in (one for drawn in solver.boundaries.values() for one in (drawn, drawn.turned_over)):
-        assert 0 < len(boundary.once(subset_equilibria.SubsetCache.empty).found) <= len(subsets_of(patterns()[1]))
-        assert 0 < sum(len(one.cells) for one in boundary.once(two_contact_curves.curves_of_jaws).values()) <= 1500
+        assert (
+            0
+            < len(boundary.once(equilibria_module.SubsetCache.empty).found)
+            <= len(subsets_of(patterns()[1]))
+        )
+        assert (
+            0
+            < sum(len(one.cells) for one in boundary.once(two_contact_curves.curves_of_jaws).values())
+            <= 1500
+        )
 
 
 @pytest.mark.parametrize("order", [[0, 1, 2, 3], [3, 1, 0, 2]])
@@ -98,7 +110,9 @@ def test_pegs_that_stand_alike_are_one_group(order):
     """Moved, renamed, counted from another separation and off by rounding; and the stop is none of a group's own."""
     for pattern in (patterns()[0], patterns()[-1]):
         places = (
-            pattern.pegs[order] + [17.3, -8.1] + 1e-13 * np.array([[1.0, -1.0], [-1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+            pattern.pegs[order]
+            + [17.3, -8.1]
+            + 1e-13 * np.array([[1.0, -1.0], [-1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
         )
         right = pattern.right[order]
         places[:, 0] += 5.7 * right
@@ -139,7 +153,12 @@ def slides_on(row: np.ndarray, pattern: Pattern, boundary: ObstacleBoundary) -> 
     touching = [(int(row[PEG + k]), boundary.rows[int(row[PIECE + k])]) for k in range(int(row[CONTACTS]))]
     for (p, one), (q, two) in combinations(touching, 2):
         across = abs(one[AXIS_X] * two[AXIS_Y] - one[AXIS_Y] * two[AXIS_X])
-        if p != q and pattern.right[p] == pattern.right[q] and one[IS_ARC] == two[IS_ARC] == 0.0 and across < 1e-9:
+        if (
+            p != q
+            and pattern.right[p] == pattern.right[q]
+            and one[IS_ARC] == two[IS_ARC] == 0.0
+            and across < 1e-9
+        ):
             return len({peg for peg, _ in touching if pattern.right[peg] == pattern.right[p]})
     return 0
 
@@ -166,14 +185,16 @@ def test_slides_end_where_a_third_peg_of_the_jaw_touches():
     held = two_contact_curves.TwoContactCurves.of(boundary, group.pattern)
     stopped = filled(CANDIDATE_LENGTH, 256, slides_blocked, held.slides, held.given)
     assert len(stopped) > 2
-    kept = subset_equilibria.SubsetCache()
-    own = subset_equilibria.equilibria_of_subset(kept, boundary, group, size)
+    kept = equilibria_module.SubsetCache()
+    own = equilibria_module.equilibria_of_subset(kept, boundary, group, size)
     every, told = np.split(kept.candidates[own.first : own.end], [-len(stopped)])
     assert np.array_equal(told, stopped)
     for row in stopped:
         touch(row, group.pattern, boundary)
         turn = np.abs((every[:, THETA] - row[THETA] + pi) % tau - pi)
-        assert (turn + np.abs(every[:, PLACE_X : PLACE_Y + 1] - row[PLACE_X : PLACE_Y + 1]).sum(axis=1)).min() < 1e-6
+        assert (
+            turn + np.abs(every[:, PLACE_X : PLACE_Y + 1] - row[PLACE_X : PLACE_Y + 1]).sum(axis=1)
+        ).min() < 1e-6
 
 
 def test_all_kinds_of_groups_have_their_part():

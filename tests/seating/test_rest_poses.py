@@ -14,10 +14,18 @@ from seating_examples import STEP, solved
 from workhold import Fence, Fixture, Vise
 from workhold.kernels.seating.columns import CANDIDATE_LENGTH, CONFIG, CONTACTS, PEG, PIECE, SEPARATION
 from workhold.model.seating import SeatContact
-from workhold.seating.join_tree import JoinTree
+from workhold.seating.join_tree import (
+    FIXTURE,
+    KINDS,
+    LOOSE,
+    SHALLOW,
+    UNSETTLED,
+    JoinTree,
+    RestPoses,
+    kinds_of,
+)
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
-from workhold.seating.rest_poses import FIXTURE, KINDS, LOOSE, SHALLOW, UNSETTLED, RestPoses, kinds_of
 from workhold.seating.solver import Solver
 
 CASES = ("sampled", "step", "fence")
@@ -28,7 +36,9 @@ def example(name: str) -> tuple[Solver, Fixture]:
     """A part on pegs."""
     if name == "sampled":
         return solved(2)[:2]
-    toolkit = Vise(20, 2, 3) if name == "step" else Fence(pitch=15, peg_radius=3, wall_offset=6, directions=["-x"])
+    toolkit = (
+        Vise(20, 2, 3) if name == "step" else Fence(pitch=15, peg_radius=3, wall_offset=6, directions=["-x"])
+    )
     return Solver(STEP, toolkit), workhold.design(STEP, toolkit, best=1)[0]
 
 
@@ -40,13 +50,17 @@ def kind(row: np.ndarray, boundary: ObstacleBoundary, pattern: Pattern) -> str:
         return "curved"
     if len(set(pegs)) < 4:
         return "pocket"
-    at_corner = [touches[piece].corner and peg < len(pattern.pegs) for peg, piece in zip(pegs, pieces, strict=True)]
+    at_corner = [
+        touches[piece].corner and peg < len(pattern.pegs) for peg, piece in zip(pegs, pieces, strict=True)
+    ]
     return "corner" if any(at_corner) else "fixture"
 
 
 def listed(tree: JoinTree, boundary: ObstacleBoundary, pattern: Pattern) -> list[Told]:
     """Kind, depth and configuration of what is listed of a tree, one after the other."""
-    every = [(kind(row, boundary, pattern), row) for row in tree.seats] + [("loose", row) for row in tree.loose]
+    every = [(kind(row, boundary, pattern), row) for row in tree.seats] + [
+        ("loose", row) for row in tree.loose
+    ]
     out = []
     for place, (name, row) in enumerate(every):
         join = tree.join_of(place)
@@ -68,9 +82,16 @@ def test_what_is_listed_is_what_the_trees_tell(name: str) -> None:
     low = np.array(first.seats)
     # The first seat from which there is a way is next to none, the next just deep enough.
     shallow, deep = np.flatnonzero(tops < inf)[:2]
-    low[shallow, SEPARATION], low[deep, SEPARATION] = tops[shallow] - 0.99 * SHALLOW, tops[deep] - 1.01 * SHALLOW
+    low[shallow, SEPARATION], low[deep, SEPARATION] = (
+        tops[shallow] - 0.99 * SHALLOW,
+        tops[deep] - 1.01 * SHALLOW,
+    )
     doubtful = np.array([[0.1, 2.0, 3.0, 4.0]])
-    for trees in ((first, other), (evolve(first, seats=low), other), (first, evolve(other, doubtful=doubtful))):
+    for trees in (
+        (first, other),
+        (evolve(first, seats=low), other),
+        (first, evolve(other, doubtful=doubtful)),
+    ):
         rests = RestPoses.of(trees, boundary, len(pattern.pegs))
         told = [
             (KINDS[kind], depth, tuple(row))
@@ -86,7 +107,8 @@ def test_a_peg_that_touches_twice_is_in_a_pocket_whatever_else_touches_a_corner(
     solver, fixture = example("step")
     boundary = solver.closing(Pattern.of(fixture, solver.toolkit), False).boundary
     corner, face = (
-        next(k for k, touch in enumerate(boundary.touches) if touch.corner == is_one) for is_one in (True, False)
+        next(k for k, touch in enumerate(boundary.touches) if touch.corner == is_one)
+        for is_one in (True, False)
     )
     rows = np.zeros((4, CANDIDATE_LENGTH))
     rows[:, CONTACTS], rows[:, PEG : PEG + 4], rows[:, PIECE : PIECE + 4] = 4.0, [2, 0, 3, 1], face
@@ -129,6 +151,10 @@ def test_seats_have_the_contacts_and_forces_of_their_candidates(name: str) -> No
             right.add((turned_over, pattern.frame.sign * row[SEPARATION], told, forces))
     for seat in seats:
         told = seat.contacts, seat.forces
-        assert (seat.mirrored, seat.jaw_separation, *told) in right if seat.kind != "unsettled" else told == ((), ())
+        assert (
+            (seat.mirrored, seat.jaw_separation, *told) in right
+            if seat.kind != "unsettled"
+            else told == ((), ())
+        )
     keys = [(seat.jaw_separation, seat.mirrored, seat.pose.theta_deg) for seat in seats]
     assert keys == sorted(keys) and sum(seat.is_own for seat in seats) == 1

@@ -11,8 +11,7 @@ from attrs import evolve
 from seating_examples import held
 from workhold import Vise, Workpiece
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.seating.pattern import Pattern
-from workhold.seating.peg_subsets import PegSubset
+from workhold.seating.pattern import Pattern, PegSubset
 from workhold.seating.self_motions import balance, circles_meet, on_one_center, on_one_line, on_parallel_lines
 from workhold.seating.solver import Solver
 from workhold.seating.two_contact_curves import TwoContactCurves
@@ -32,7 +31,9 @@ SOLVERS = {id(part): Solver(part, VISE) for part in (PART, DISC)}
 
 def ways_of(part, pegs, right):
     """The ways of pegs by themselves, with the boundary and the pattern."""
-    placed = [("right" if side else "left", x + 100.0 * side, y) for side, (x, y) in zip(right, pegs, strict=True)]
+    placed = [
+        ("right" if side else "left", x + 100.0 * side, y) for side, (x, y) in zip(right, pegs, strict=True)
+    ]
     whole = Pattern.of(held([*placed, ("left", -300.0, 300.0)], (0.0, 0.0, 0.0), 100.0), VISE)
     pattern = evolve(PegSubset.of(whole, range(len(pegs))).pattern, stop=-np.inf)
     boundary = SOLVERS[id(part)].closing(pattern, False).boundary
@@ -81,14 +82,19 @@ def test_the_half_turn_that_swaps_the_jaws_leaves_all_ways():
     for pegs, right in random_pegs(30):
         one, two = (
             sorted(way.configs[0, 3] + pattern.pegs[-1, 0] - pattern.pegs[0, 0] for way in ways)
-            for _, pattern, ways in (ways_of(PART, pegs, right), ways_of(PART, -pegs, [1 - side for side in right]))
+            for _, pattern, ways in (
+                ways_of(PART, pegs, right),
+                ways_of(PART, -pegs, [1 - side for side in right]),
+            )
         )
         found += len(one)
         assert one == pytest.approx(two, abs=1e-6)
     assert found > 50
 
 
-@pytest.mark.parametrize(("height", "is_held"), [(10.0, True), (1.0, True), (19.0, True), (21.0, False), (-5.0, False)])
+@pytest.mark.parametrize(
+    ("height", "is_held"), [(10.0, True), (1.0, True), (19.0, True), (21.0, False), (-5.0, False)]
+)
 def test_a_disc_turns_between_three_pegs(height, is_held):
     """Two 20 mm above each other and one of the other jaw, which has to press between them."""
     _, pattern, ways = ways_of(DISC, [(0.0, 0.0), (0.0, 20.0), (0.0, height)], [0, 0, 1])
@@ -117,4 +123,6 @@ def test_circles_meet_in_points_of_both():
         assert len(met) == 2 and met[0] != met[1]
         for x, y in met:
             assert (hypot(x - 1.0, y - 2.0), hypot(x - two[0], y - two[1])) == pytest.approx((6.0, 5.0))
-    assert circles_meet((0.0, 0.0), 1.0, (5.0, 0.0), 3.0) == circles_meet((0.0, 0.0), 1.0, (1.0, 0.0), 3.0) == []
+    assert (
+        circles_meet((0.0, 0.0), 1.0, (5.0, 0.0), 3.0) == circles_meet((0.0, 0.0), 1.0, (1.0, 0.0), 3.0) == []
+    )

@@ -9,7 +9,7 @@ import pytest
 
 from workhold import Workpiece, load
 from workhold.kernels.base.distance import outline_distances
-from workhold.seating.silhouette import SAME_PLACE, Silhouette
+from workhold.seating.part_features import SAME_PLACE, Silhouette
 
 PLATE = Workpiece.from_loops("plate", [[[0, 0, 0], [40, 0, 0], [40, 60, 0], [0, 60, 0]]])
 DISC = Workpiece.from_loops("disc", [[[-15, 0, 1], [15, 0, 1]]])
@@ -57,7 +57,10 @@ def test_all_is_as_the_distances_of_all_points_say() -> None:
     right = []
     for other, is_over in zip(others, over, strict=True):
         (c, s), (d, t) = ((np.cos(theta), np.sin(theta)) for theta in (other[0], HERE[0]))
-        points = outline.points * ([-1.0, 1.0] if is_over else [1.0, 1.0]) @ np.array([[c, s], [-s, c]]) + other[1:3]
+        points = (
+            outline.points * ([-1.0, 1.0] if is_over else [1.0, 1.0]) @ np.array([[c, s], [-s, c]])
+            + other[1:3]
+        )
         back = (points - HERE[1:3]) @ np.array([[d, -t], [t, d]])
         right.append(outline_distances(back, outline.rows).max() <= SAME_PLACE)
     assert told.tolist() == right and 20 < sum(right) < count - 20

@@ -104,7 +104,9 @@ def test_figures_keep_their_order(number):
     assert told.seats[0].jaw_separation > told.stop
 
 
-def walk(number: int, seed: int, share: float, steps: int) -> tuple[Obstacle, np.ndarray, np.ndarray, float, float]:
+def walk(
+    number: int, seed: int, share: float, steps: int
+) -> tuple[Obstacle, np.ndarray, np.ndarray, float, float]:
     """A random walk from a seat through free configurations below a share of the capture opening."""
     solver, fixture, told = solved(number)
     obstacle = Obstacle(solver.workpiece, fixture, solver.toolkit.peg_radius)
@@ -126,7 +128,9 @@ def ends_at_home(number: int, seed: int, share: float, steps: int) -> bool:
     """Whether closing by linear programs of another hand leads home from the end of a walk."""
     obstacle, config, seat, size, stop = walk(number, seed, share, steps)
     end = closed(obstacle, config, size, stop)
-    return bool(abs(end[3] - seat[3]) < 1e-4 and abs(end[0] - seat[0]) * size + hypot(*(end - seat)[1:3]) < 0.02)
+    return bool(
+        abs(end[3] - seat[3]) < 1e-4 and abs(end[0] - seat[0]) * size + hypot(*(end - seat)[1:3]) < 0.02
+    )
 
 
 @pytest.mark.parametrize("number", CASES)
@@ -158,12 +162,18 @@ def test_beyond_the_pass_lies_another_place(number):
 
 @pytest.mark.parametrize(
     ("order", "half_turn", "shift"),
-    [([2, 0, 3, 1], False, (0.0, 0.0)), ([0, 1, 2, 3], False, (8.0, -24.0)), ([0, 1, 2, 3], True, (90.0, 40.0))],
+    [
+        ([2, 0, 3, 1], False, (0.0, 0.0)),
+        ([0, 1, 2, 3], False, (8.0, -24.0)),
+        ([0, 1, 2, 3], True, (90.0, 40.0)),
+    ],
     ids=["renamed", "moved", "half turn"],
 )
 def test_pegs_named_moved_or_turned_say_the_same(order, half_turn, shift):
     solver, fixture, told = solved(1)
-    other = Solver(solver.workpiece, solver.toolkit).of(moved(fixture, order, half_turn, shift), with_cage=False)
+    other = Solver(solver.workpiece, solver.toolkit).of(
+        moved(fixture, order, half_turn, shift), with_cage=False
+    )
     assert figures(other) == pytest.approx(figures(told), abs=1e-8)
     for mirrored in (False, True):
         assert separations(other, mirrored) == pytest.approx(separations(told, mirrored), abs=1e-8)
@@ -200,7 +210,9 @@ def test_another_drawing_of_the_part_says_the_same():
     # Turned over about a line along the jaws' way, so that the jaws stay where they are: y to -y.
     pegs = tuple(Peg(peg.carrier, 0, 0, peg.x, -peg.y, 0, 0.0) for peg in fixture.pegs)
     flipped = Pose(180.0 - fixture.pose.theta_deg, fixture.pose.x, -fixture.pose.y)
-    over = Solver(part.turned_over, vise).of(Fixture("I", pegs, flipped, fixture.jaw_separation, {}), with_cage=False)
+    over = Solver(part.turned_over, vise).of(
+        Fixture("I", pegs, flipped, fixture.jaw_separation, {}), with_cage=False
+    )
     assert figures(over) == pytest.approx(figures(told), abs=1e-8)
     for mirrored in (False, True):
         assert separations(over, mirrored) == pytest.approx(separations(told, mirrored), abs=1e-8)
@@ -240,7 +252,12 @@ def pinwheel(size: float = 30.0, arm: float = 12.0) -> Workpiece:
     corners: list[tuple[float, float]] = []
     for k in range(4):
         c, s = round(cos(k * np.pi / 2)), round(sin(k * np.pi / 2))
-        for x, y in ((size / 2, -size / 2), (size / 2, 3.0), (size / 2 + arm, 3.0), (size / 2 + arm, size / 2)):
+        for x, y in (
+            (size / 2, -size / 2),
+            (size / 2, 3.0),
+            (size / 2 + arm, 3.0),
+            (size / 2 + arm, size / 2),
+        ):
             corners.append((c * x - s * y, s * x + c * y))
     return Workpiece.from_points("pinwheel", corners)
 
@@ -252,7 +269,9 @@ def test_a_square_pinwheel_sits_four_ways_at_one_reading():
     told = Solver(part, vise).of(fixture, with_cage=False)
     alike = [seat for seat in told.seats if abs(seat.difference) < 1e-7]
     assert len(alike) >= 4 and all(seat.kind == "fixture" for seat in alike)
-    turns = sorted((seat.pose.theta_deg - fixture.pose.theta_deg) % 360.0 for seat in alike if not seat.mirrored)
+    turns = sorted(
+        (seat.pose.theta_deg - fixture.pose.theta_deg) % 360.0 for seat in alike if not seat.mirrored
+    )
     assert {round(turn) % 90 for turn in turns} == {0}
     assert sum(seat.same_place for seat in told.seats) >= 4
     assert not any(seat.same_place and seat.mirrored for seat in told.seats)
@@ -282,7 +301,9 @@ def test_case_fixtures_have_a_part():
 def test_three_parallel_forces_are_found():
     """A round on one end of a bar, pressed beside its flat: the two pegs of a jaw have parallel normals at the seat or
     pass."""
-    bar = Workpiece.from_loops("bar", [[[0, 0, 0], [60, 0, 0], [60, 12, 0], [50, 12, 0], [34, 12, -0.5], [0, 12, 0]]])
+    bar = Workpiece.from_loops(
+        "bar", [[[0, 0, 0], [60, 0, 0], [60, 12, 0], [50, 12, 0], [34, 12, -0.5], [0, 12, 0]]]
+    )
     vise = Vise(10, 2, 2)
     pegs = [(LEFT, 0.0, 0.0), (LEFT, 0.0, 30.0), (RIGHT, 10.0, 10.0), (RIGHT, 20.0, 20.0)]
     solver = Solver(bar, vise)
@@ -315,7 +336,10 @@ def test_every_seat_lies_free_where_its_pose_says(number):
         assert obstacle.free(config) > -1e-6
         if seat.kind != "unsettled":
             assert sum(abs(d) < 1e-6 for d, _ in obstacle.near(config, 1e-3)) >= len(seat.contacts) >= 2
-    rights, lefts = obstacle.pegs[obstacle.right == 1.0, 0] + told.stop, obstacle.pegs[obstacle.right == 0.0, 0]
+    rights, lefts = (
+        obstacle.pegs[obstacle.right == 1.0, 0] + told.stop,
+        obstacle.pegs[obstacle.right == 0.0, 0],
+    )
     assert min(b - a for a in lefts for b in rights) == pytest.approx(solver.toolkit.gap, abs=1e-9)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from workhold.seating.sticking_friction import sticking_friction
+from workhold.seating.clamping import sticking_friction
 
 
 def balances(points, normals, right, friction):

@@ -17,21 +17,22 @@ from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.model.result import Result
 from workhold.model.seating import Seating
-from workhold.seating.closing_frame import ClosingFrame
 from workhold.seating.closing_simulation import simulate_closing
 from workhold.seating.contact_forces import contact_normals
 from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
-from workhold.seating.pattern import Pattern
+from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
 from workhold.seating.wall_equilibria import WallEquilibria
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 HOLED = Workpiece.from_loops(
-    "holed", [[[0, 0, 0], [80, 0, 0], [80, 70, 0], [0, 70, 0]], [[20, 20, 0], [60, 14, 0], [62, 50, 0], [26, 52, 0]]]
+    "holed",
+    [[[0, 0, 0], [80, 0, 0], [80, 70, 0], [0, 70, 0]], [[20, 20, 0], [60, 14, 0], [62, 50, 0], [26, 52, 0]]],
 )
 ROUNDED = Workpiece.from_loops(
-    "rounded", [[[0, 0, 0], [60, 8, 0.3], [60, 40, 0], [30, 50, 0], [0, 30, 0]], [[22, 22, -1.0], [38, 26, -1.0]]]
+    "rounded",
+    [[[0, 0, 0], [60, 8, 0.3], [60, 40, 0], [30, 50, 0], [0, 30, 0]], [[22, 22, -1.0], [38, 26, -1.0]]],
 )
 QUAD = Workpiece.from_loops("quad", [[[0, 0, 0], [70, 0, 0], [62, 30, 0], [12, 48, 0]]])
 ALONG, DOWN = ({"pitch": 20, "peg_radius": 3, "wall_offset": 10, "directions": [way]} for way in ("+x", "-y"))
@@ -70,11 +71,16 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
     most = sorted(by_pattern.values(), key=len)[-2:]
     for fixtures in most:
         pattern = Pattern.of(fixtures[0], result.toolkit)
-        turned = evolve(pattern, pegs=-pattern.pegs, right=1 - pattern.right).key() if name == "opening" else None
+        turned = (
+            evolve(pattern, pegs=-pattern.pegs, right=1 - pattern.right).key() if name == "opening" else None
+        )
         told = [solver.of(fixture, with_cage=False) for fixture in fixtures]
         for fixture, one in zip(fixtures, told, strict=True):
             [own] = [seat for seat in one.seats if seat.is_own]
-            assert own.jaw_separation == pytest.approx(fixture.jaw_separation, abs=1e-6) and abs(own.difference) < 1e-9
+            assert (
+                own.jaw_separation == pytest.approx(fixture.jaw_separation, abs=1e-6)
+                and abs(own.difference) < 1e-9
+            )
             assert abs((own.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0) < 1e-6
             assert (own.pose.x, own.pose.y) == pytest.approx((fixture.pose.x, fixture.pose.y), abs=1e-6)
             faces = [contact.face for contact in sorted(own.contacts, key=lambda c: c.peg)]
@@ -85,7 +91,8 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
         there = [
             row
             for row in solver.trees(pattern)[0].seats
-            if len(set(row[5:9])) == 4 and not any(touches[int(k)].corner for k in row[9:13] if k < len(touches))
+            if len(set(row[5:9])) == 4
+            and not any(touches[int(k)].corner for k in row[9:13] if k < len(touches))
         ]
         assert len(there) == len(fixtures) + len(by_pattern.get(turned, ()))
 
@@ -98,13 +105,17 @@ def test_every_seat_lies_free_where_its_pose_says(name):
     fixture, told = result[0], told_of(name, 0)
     assert len(told.seats) > 1 and any(seat.mirrored for seat in told.seats)
     # What is reached with what moves open by a millimetre.
-    rises = [told.clamping * (seat.jaw_separation - fixture.jaw_separation) for seat in told.seats if seat.is_wrong]
+    rises = [
+        told.clamping * (seat.jaw_separation - fixture.jaw_separation) for seat in told.seats if seat.is_wrong
+    ]
     assert len(told.wrong_within(1.0)) == sum(rise < 1.0 for rise in rises)
     for seat in told.seats:
         assert seat.difference == pytest.approx(seat.jaw_separation - fixture.jaw_separation, abs=1e-9)
         part = result.workpiece.turned_over if seat.mirrored else result.workpiece
         obstacle = Obstacle.about(part, fixture, result.toolkit)
-        config = np.array([np.radians(seat.pose.theta_deg), *seat.pose.apply(*part.center), seat.jaw_separation])
+        config = np.array(
+            [np.radians(seat.pose.theta_deg), *seat.pose.apply(*part.center), seat.jaw_separation]
+        )
         near = obstacle.near(config, np.inf)
         assert min(d for d, _ in near) > -1e-6
         slopes = np.array([g for d, g in near if abs(d) < 1e-6])
@@ -131,7 +142,9 @@ def comes_home(name: str, rank: int, seed: int, share: float, steps: int) -> boo
         if sign * (after[3] - seat[3]) < share * told.capture_opening and obstacle.free(after) >= 0.0:
             config = after
     end = closed(obstacle, config, size, -np.inf if told.stop is None else told.stop)
-    return bool(abs(end[3] - seat[3]) < 1e-4 and abs(end[0] - seat[0]) * size + hypot(*(end - seat)[1:3]) < 0.02)
+    return bool(
+        abs(end[3] - seat[3]) < 1e-4 and abs(end[0] - seat[0]) * size + hypot(*(end - seat)[1:3]) < 0.02
+    )
 
 
 @pytest.mark.parametrize("name", KITS)
@@ -182,7 +195,15 @@ def quarter_turned(fixture: Fixture, names: dict[str, str], quarters: int) -> Fi
     """A fixture and its plate turned by quarters."""
     c, s = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters % 4]
     pegs = tuple(
-        Peg(names.get(peg.carrier, peg.carrier), 0, 0, c * peg.x - s * peg.y, s * peg.x + c * peg.y, peg.face, 0.0)
+        Peg(
+            names.get(peg.carrier, peg.carrier),
+            0,
+            0,
+            c * peg.x - s * peg.y,
+            s * peg.x + c * peg.y,
+            peg.face,
+            0.0,
+        )
         for peg in fixture.pegs
     )
     at = fixture.pose
@@ -223,7 +244,9 @@ def test_an_opening_vise_is_a_closing_one_seen_from_its_other_jaw():
         places = np.array([[peg.x, peg.y] for peg in fixture.pegs])
         right = np.array([int(peg.carrier == "right") for peg in fixture.pegs])
         places[:, 0] -= right * fixture.jaw_separation
-        closing = Pattern(places, 1 - right, opening.radii, opening.stop, opening.widest, ClosingFrame(0, 1.0))
+        closing = Pattern(
+            places, 1 - right, opening.radii, opening.stop, opening.widest, ClosingFrame(0, 1.0)
+        )
         for one, other in zip(solver.trees(opening), solver.trees(closing), strict=True):
             assert len(one.seats) > 0
             assert one.seats[:, 3] == pytest.approx(other.seats[:, 3], abs=1e-8)
@@ -237,10 +260,14 @@ def test_a_plate_with_the_pegs_of_a_vise_says_the_same():
     result = workhold.design(WEDGE, vise, types="II", best=2)
     plate = Plate(pitch=20, peg_radius=3, directions=["-x"])
     for fixture in result:
-        pegs = tuple(evolve(peg, carrier="plate" if peg.carrier == "left" else "clamp -x") for peg in fixture.pegs)
+        pegs = tuple(
+            evolve(peg, carrier="plate" if peg.carrier == "left" else "clamp -x") for peg in fixture.pegs
+        )
         onto = Solver(WEDGE, plate).of(evolve(fixture, pegs=pegs), with_cage=False)
         told = Solver(WEDGE, vise).of(fixture, with_cage=False)
-        assert [told.capture_opening, told.way_out] == pytest.approx([onto.capture_opening, onto.way_out], abs=1e-9)
+        assert [told.capture_opening, told.way_out] == pytest.approx(
+            [onto.capture_opening, onto.way_out], abs=1e-9
+        )
         there = {round(seat.jaw_separation, 6) for seat in onto.seats}
         assert {round(seat.jaw_separation, 6) for seat in told.seats} <= there
         assert onto.stop is None or onto.stop < told.stop
@@ -249,24 +276,32 @@ def test_a_plate_with_the_pegs_of_a_vise_says_the_same():
 def test_a_clamp_stops_where_its_tip_meets_a_locator():
     """Before it, or behind it; and at the end of its stroke."""
     at = (("plate", 0, 0), ("plate", 40, 3), ("plate", 0, 40), ("clamp -x", 20, 0))
-    fixture = Fixture("clamp", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 20.0, {})
+    fixture = Fixture(
+        "clamp", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 20.0, {}
+    )
     pattern = Pattern.of(fixture, Plate(pitch=20, peg_radius=3, clamp_radius=4))
     assert (pattern.stop, pattern.widest) == pytest.approx((7.0, 40.0 - np.sqrt(49.0 - 9.0)))
     stroke = evolve(fixture, jaw_separation=-30.0)
     short = Pattern.of(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(5, 35)))
     assert short.stop == -35.0
-    assert short.key() == Pattern.of(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(7, 35))).key()
+    assert (
+        short.key() == Pattern.of(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(7, 35))).key()
+    )
 
 
 def test_a_disc_is_nowhere_located_by_a_clamp():
     disc = Workpiece.from_loops("disc", [[[-15, 0, 1], [15, 0, 1]]])
     plate = Plate(pitch=20, peg_radius=3, clamp_radius=5)
     at = (("plate", 0, 0), ("plate", 0, 20), ("plate", 40, 60), ("clamp -x", 40, 10))
-    fixture = Fixture("clamp", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
+    fixture = Fixture(
+        "clamp", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {}
+    )
     tree = Solver(disc, plate).trees(Pattern.of(fixture, plate))[0]
     assert len(tree.seats) == 0
     # Between two locators, its centre 15 + 3 from both; the tip 15 + 5 from it.
-    assert any(row[SEPARATION] == pytest.approx(np.sqrt(18.0**2 - 10.0**2) + 20.0 - 40.0) for row in tree.loose)
+    assert any(
+        row[SEPARATION] == pytest.approx(np.sqrt(18.0**2 - 10.0**2) + 20.0 - 40.0) for row in tree.loose
+    )
 
 
 @pytest.mark.parametrize(
@@ -275,7 +310,10 @@ def test_a_disc_is_nowhere_located_by_a_clamp():
         (Vise(8, 2, 0), "radius 0"),
         (Plate(pitch=8, peg_radius=2, clamp_radius=0), "radius 0"),
         (Vise(8, 2, 2, flat=(1, 1)), "round pegs"),
-        (Plate(pitch=8, peg_radius=2, clamps=2), "of one clamp: with two the part is put against its locators"),
+        (
+            Plate(pitch=8, peg_radius=2, clamps=2),
+            "of one clamp: with two the part is put against its locators",
+        ),
     ],
 )
 def test_what_is_not_told_is_refused_in_a_sentence(toolkit, message):
@@ -290,7 +328,9 @@ def test_a_part_put_above_a_fence_comes_home_and_none_is_put_into_it():
     (result, solver), told = listed(name), told_of(name, 0)
     fixture, at = result[0], result[0].pose
     off = min(0.3 * told.drop_room, 0.5)
-    played = simulate_closing(solver, fixture, told.seats, evolve(at, y=at.y + off), 0.5 * told.capture_opening)
+    played = simulate_closing(
+        solver, fixture, told.seats, evolve(at, y=at.y + off), 0.5 * told.capture_opening
+    )
     assert played.ending == "right"
     obstacle = Obstacle.about(result.workpiece, fixture, result.toolkit)
     for pose, travelled in zip(played.poses, played.travels, strict=True):
@@ -305,7 +345,9 @@ def test_a_part_slides_along_a_fence_under_the_clamp():
     plate = Workpiece.from_loops("plate", [[[0, 0, 0], [60, 0, 0], [60, 30, 0], [0, 30, 0]]])
     fence = Fence(**DOWN)
     at = (("plate", -100.0, 10.0), ("wall", 0.0, 0.0), ("wall", 1.0, 0.0), ("clamp -y", 0.0, 40.0))
-    fixture = Fixture("edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
+    fixture = Fixture(
+        "edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {}
+    )
     pattern = Pattern.of(fixture, fence)
     closing = Solver(plate, fence).closing(pattern, False)
     found = equilibria(closing.boundary, pattern, closing.size)
@@ -316,7 +358,9 @@ def test_a_part_slides_along_a_fence_under_the_clamp():
     assert sorted(round(row[SEPARATION], 6) for row in flat) == [-7.0, -7.0, 23.0, 23.0]
     every = np.split(found.loose.configs, found.loose.begins[1:-1])
     spans = [
-        (row[3], np.ptp(configs[:, 2])) for row, configs in zip(found.loose.rows, every, strict=True) if row[4] >= 3.0
+        (row[3], np.ptp(configs[:, 2]))
+        for row, configs in zip(found.loose.rows, every, strict=True)
+        if row[4] >= 3.0
     ]
     assert len(spans) == 4
     assert all(span == pytest.approx(60.0 if level < 0 else 30.0) for level, span in spans)
@@ -328,12 +372,16 @@ def test_a_disc_turns_on_a_fence(direction):
     fence = Fence(**{**DOWN, "directions": [direction]})
     tip = (40.0, 15.0) if direction == "-x" else (20.0, 40.0)
     at = (("plate", 0.0, 20.0), ("wall", 0.0, 0.0), ("wall", 1.0, 0.0), (f"clamp {direction}", *tip))
-    fixture = Fixture("edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
+    fixture = Fixture(
+        "edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {}
+    )
     tree = Solver(disc, fence).trees(Pattern.of(fixture, fence))[0]
     assert len(tree.seats) == 0 and len(tree.loose) >= 1
     ahead = np.sqrt(18.0**2 - 5.0**2)
     # Its centre 15 above the fence and 18 from the locator; the tip straight ahead, or above and to one side.
-    expected = ahead + 18.0 - 40.0 if direction == "-x" else 15.0 + np.sqrt(18.0**2 - (20.0 - ahead) ** 2) - 40.0
+    expected = (
+        ahead + 18.0 - 40.0 if direction == "-x" else 15.0 + np.sqrt(18.0**2 - (20.0 - ahead) ** 2) - 40.0
+    )
     assert any(row[SEPARATION] == pytest.approx(expected) for row in tree.loose)
 
 
@@ -341,7 +389,10 @@ def test_pegs_pressed_apart_in_a_slot_rest_at_its_ends():
     """Two contacts whose normals point at each other: S is largest with both pegs at the ends of the slot's middle line."""
     slotted = Workpiece.from_loops(
         "slotted",
-        [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]], [[35, 20, 0], [65, 20, 1], [65, 40, 0], [35, 40, 1]]],
+        [
+            [[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]],
+            [[35, 20, 0], [65, 20, 1], [65, 40, 0], [35, 40, 1]],
+        ],
     )
     vise = OpeningVise(pitch=10, columns=2, peg_radius=3, min_gap=6)
     at = (("left", 0, 0), ("left", 0, -200), ("right", 10, 0), ("right", 10, 200))

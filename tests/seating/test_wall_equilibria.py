@@ -11,7 +11,17 @@ from scipy.optimize import fsolve
 import workhold
 from workhold import Fence, Fixture, Peg, Pose, Workpiece
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.columns import CONTACTS, DOUBT, FORCE, MOTION, PEG, PIECE, RESIDUAL, SECOND, THETA
+from workhold.kernels.seating.columns import (
+    CONTACTS,
+    DOUBT,
+    FORCE,
+    MOTION,
+    PEG,
+    PIECE,
+    RESIDUAL,
+    SECOND,
+    THETA,
+)
 from workhold.seating.contact_forces import settle_on_wall
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
@@ -19,11 +29,13 @@ from workhold.seating.solver import Solver
 from workhold.seating.wall_equilibria import LOCATOR, TIP, WallEquilibria
 
 PART = Workpiece.from_loops(
-    "rounded", [[[0, 0, 0], [60, 8, 0.3], [60, 40, 0], [30, 50, 0], [0, 30, 0]], [[22, 22, -1.0], [38, 26, -1.0]]]
+    "rounded",
+    [[[0, 0, 0], [60, 8, 0.3], [60, 40, 0], [30, 50, 0], [0, 30, 0]], [[22, 22, -1.0], [38, 26, -1.0]]],
 )
 # With inner corners, in which the tip may be.
 NOTCHED = Workpiece.from_loops(
-    "notched", [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [48, 45, 0], [42, 28, 0], [30, 30, 0], [26, 52, 0.2], [0, 40, 0]]]
+    "notched",
+    [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [48, 45, 0], [42, 28, 0], [30, 30, 0], [26, 52, 0.2], [0, 40, 0]]],
 )
 # Of random parts on fences with a clamp of each direction.
 SEEDS = (0, 1, 6, 11, 27)
@@ -77,7 +89,9 @@ def separations(fence, piece, locator, tip, theta):
 def sides_of(fence, jaw):
     """Pieces of the locator (0) or the tip (1), and sides of arcs."""
     for number in range(*fence.boundary.parts[jaw]):
-        yield from ((number, side) for side in ((1.0, -1.0) if fence.boundary.rows[number, IS_ARC] else (1.0,)))
+        yield from (
+            (number, side) for side in ((1.0, -1.0) if fence.boundary.rows[number, IS_ARC] else (1.0,))
+        )
 
 
 def sampled(fence, step):
@@ -86,7 +100,10 @@ def sampled(fence, step):
     for piece, low, high in fence.runs:
         thetas = np.linspace(low, high, max(int((high - low) / step), 4) + 1)
         for locator in sides_of(fence, 0):
-            if np.isnan(separations(fence, piece, locator, locator, thetas)[0]).all() and not fence.is_upright:
+            if (
+                np.isnan(separations(fence, piece, locator, locator, thetas)[0]).all()
+                and not fence.is_upright
+            ):
                 continue
             for tip in sides_of(fence, 1):
                 s, _ = separations(fence, piece, locator, tip, thetas)
@@ -110,8 +127,15 @@ def golden(fence, piece, locator, tip, low, high, sign):
 
 def placed(part, toolkit, locator, tip):
     """A part on a fence with a locator and a tip at places in mm."""
-    at = (("plate", *locator), ("wall", 0.0, 0.0), ("wall", 1.0, 0.0), (f"clamp {toolkit.directions[0]}", *tip))
-    fixture = Fixture("edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
+    at = (
+        ("plate", *locator),
+        ("wall", 0.0, 0.0),
+        ("wall", 1.0, 0.0),
+        (f"clamp {toolkit.directions[0]}", *tip),
+    )
+    fixture = Fixture(
+        "edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {}
+    )
     closing = Solver(part, toolkit).closing(Pattern.of(fixture, toolkit), False)
     return WallEquilibria(closing.boundary, closing.pattern), closing
 
@@ -144,7 +168,9 @@ def random_fence(seed):
     """A random part on a fence, clamped along it or onto it."""
     random = np.random.default_rng(1000 + seed)
     way = ("+x", "-x", "+y", "-y")[seed % 4]
-    toolkit = Fence(pitch=20, peg_radius=3, wall_offset=10, directions=[way], clamp_radius=float(random.uniform(2, 6)))
+    toolkit = Fence(
+        pitch=20, peg_radius=3, wall_offset=10, directions=[way], clamp_radius=float(random.uniform(2, 6))
+    )
     locator, tip = random.uniform((-20.0, 10.0), (20.0, 50.0), (2, 2))
     # A clamp that lifts the part off the wall lifts it against a locator above it.
     locator[1] += 30.0 * (way == "+y")
@@ -219,7 +245,9 @@ def test_candidates_of_three_contacts_are_stationary(seed):
         if not np.isfinite(at).all() or abs(row[SECOND]) > 1e4:
             continue
         assert at[1] == pytest.approx(row[3], abs=1e-9)
-        assert (at[2] - at[0]) / (2.0 * step) == pytest.approx(0.0, abs=1e-3 * (1.0 + abs(row[SECOND])) * step * 100)
+        assert (at[2] - at[0]) / (2.0 * step) == pytest.approx(
+            0.0, abs=1e-3 * (1.0 + abs(row[SECOND])) * step * 100
+        )
         assert (at[2] - 2.0 * at[1] + at[0]) / step**2 == pytest.approx(row[SECOND], rel=1e-2, abs=1e-3)
         # Both on the wall and at the locator the part stays.
         ux, uy, _ = fence.half_plane
@@ -261,16 +289,22 @@ def test_the_tip_is_in_a_pocket_wherever_the_locator_touches_too(way):
                     on = np.abs((turn + pi) % (2 * pi) - pi) < row[HALF_EXTENT] - 0.01
                 else:
                     values = (qx - row[X]) * row[AXIS_Y] - (qy - row[Y]) * row[AXIS_X]
-                    on = np.abs((qx - row[X]) * row[AXIS_X] + (qy - row[Y]) * row[AXIS_Y]) < row[HALF_EXTENT] - 0.1
+                    on = (
+                        np.abs((qx - row[X]) * row[AXIS_X] + (qy - row[Y]) * row[AXIS_Y])
+                        < row[HALF_EXTENT] - 0.1
+                    )
                 for k in np.flatnonzero((values[1:] * values[:-1] < 0.0) & on[1:]):
                     y = uy * (off + hull[2]) - (s[k] * hull[0] + c[k] * hull[1])
                     if not ux and not any(
-                        np.isfinite(crossings(row, side, thetas[k : k + 1], ly - y)[0][0]) for side in (1.0, -1.0)
+                        np.isfinite(crossings(row, side, thetas[k : k + 1], ly - y)[0][0])
+                        for side in (1.0, -1.0)
                     ):
                         continue
                     same = (touched[:, PIECE] == number) & (touched[:, PIECE + 1] == len(rows) + piece)
                     same &= (touched[:, PIECE + 2 : PIECE + 4] == pieces).all(axis=1)
-                    assert (same & (np.abs(touched[:, THETA] - thetas[k]) < 2.0 * (thetas[1] - thetas[0]))).any()
+                    assert (
+                        same & (np.abs(touched[:, THETA] - thetas[k]) < 2.0 * (thetas[1] - thetas[0]))
+                    ).any()
                     count += 1
     assert count > 0 and len(touched) >= count
 

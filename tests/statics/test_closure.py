@@ -11,8 +11,8 @@ import pytest
 
 from closing_forces import clamping_force, null_vectors
 from workhold.conventions import LEAST_SPAN
-from workhold.kernels.contact.closure import minors
-from workhold.statics.wrenches import outward_normals
+from workhold.kernels.contact.rules import minors
+from workhold.statics.contact_matrix import outward_normals
 
 
 def contacts(random: Random) -> tuple[np.ndarray, np.ndarray]:

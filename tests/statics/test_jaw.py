@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from held import force_directions, held, load_wrench, plate_fixture
 from workhold.errors import InputError
-from workhold.model.load import Load
+from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.statics.jaw import jaw_stiffness, shared_forces
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import jaw_stiffness, load_cases, shared_forces
 
 Array = NDArray[np.float64]
 
@@ -65,11 +64,15 @@ def test_locked_forces_are_those_of_springs(result: Result, stiffness: float) ->
     jaw = inf if stiffness == 1e9 else stiffness
     for fixture in list(result)[:12]:
         point, angle = tuple(random.uniform(-20, 20, 2)), float(random.uniform(0, 360))
-        load = Load(points=[point], force=90, directions=(angle, angle), moment=float(random.uniform(-500, 500)))
+        load = Load(
+            points=[point], force=90, directions=(angle, angle), moment=float(random.uniform(-500, 500))
+        )
         wrenches, shares = force_directions(fixture, result.workpiece, result.toolkit.peg_radius)
         wrench = load_wrench(90, point, angle, load.moment)
         (case,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw=jaw)
-        (more,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw_force=1.1 * case.jaw_force, jaw=jaw)
+        (more,) = load_cases(
+            fixture, result.workpiece, result.toolkit, [load], jaw_force=1.1 * case.jaw_force, jaw=jaw
+        )
         assert more.keeps_contact
         pressed = springs(wrenches, shares, wrench, more.jaw_force, stiffness)
         assert pressed == pytest.approx(more.largest, rel=1e-5, abs=1e-5 * max(more.largest))
@@ -83,7 +86,9 @@ def test_the_manuals_plate() -> None:
     for direction, constant in ((0, 200), (180, 0)):
         push = Load(points=[(0, 0)], force=200, directions=(direction, direction))
         assert load_cases(fixture, plate, vise, [push])[0].needed.value == pytest.approx(100)
-        assert load_cases(fixture, plate, vise, [push], jaw="constant")[0].needed.value == pytest.approx(constant)
+        assert load_cases(fixture, plate, vise, [push], jaw="constant")[0].needed.value == pytest.approx(
+            constant
+        )
 
 
 def test_a_jaw_that_gives_way_is_between_the_two(result: Result) -> None:
@@ -98,13 +103,17 @@ def test_a_jaw_that_gives_way_is_between_the_two(result: Result) -> None:
     (soft, one), (constant, other) = case(1e-9), case("constant")
     assert soft == pytest.approx(constant, rel=1e-6) and one == pytest.approx(other)
     (stiff, one), (screw, other) = case(1e9), case("screw")
-    assert stiff == pytest.approx(screw, rel=1e-6) and one == pytest.approx(other) == pytest.approx(case("constant")[1])
+    assert stiff == pytest.approx(screw, rel=1e-6) and one == pytest.approx(other) == pytest.approx(
+        case("constant")[1]
+    )
 
 
 def test_friction_never_asks_for_more() -> None:
     """With friction a locked jaw needs no more than without."""
     plate, vise, fixture = plate_fixture()
-    (case,) = load_cases(fixture, plate, vise, [Load(points=[(0, 15)], force=200, directions=(0, 0))], friction=0.1)
+    (case,) = load_cases(
+        fixture, plate, vise, [Load(points=[(0, 15)], force=200, directions=(0, 0))], friction=0.1
+    )
     assert case.needed_with_friction == pytest.approx(75) == pytest.approx(case.needed.value)
 
 

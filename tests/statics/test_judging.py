@@ -9,11 +9,8 @@ import pytest
 
 from workhold import Workpiece
 from workhold.conventions import GENTLE_PEG, SMALL_FACE_POINTS, STRONG_POINTS, TILTED_POINTS
-from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.drawing.sheet_facts import cautions_of, edge_distances
-from workhold.model.diameter import outline_diameter
-from workhold.model.load import Load
+from workhold.drawing.scene import LengthUnit
+from workhold.drawing.sheet_facts import SheetDetails, cautions_of, edge_distances
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     JAW_FORCE_NEEDED,
@@ -23,11 +20,12 @@ from workhold.model.quality import (
     TILT,
     WARNINGS,
 )
+from workhold.model.requirements import Load
 from workhold.model.result import Result
+from workhold.model.workpiece import outline_diameter
 from workhold.statics.judging import Judging
 from workhold.statics.loads import load_cases
-from workhold.statics.lying import main_direction, tilts
-from workhold.statics.quality import quality_of
+from workhold.statics.quality import main_direction, quality_of, tilts
 
 SHEET = {"number": 1, "count": 1, "day": None, "result_hash": "", "version": ""}
 
@@ -37,12 +35,17 @@ def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
     loads = [Load(((5.0, 5.0),), 100.0), Load((), 0.0, moment=500.0)]
     quality = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)
     force = float(np.median(quality[:, JAW_FORCE_NEEDED]))
-    counts = quality_of(result.table, result.workpiece, result.toolkit, loads=loads, jaw_force=force)[:, WARNINGS]
+    counts = quality_of(result.table, result.workpiece, result.toolkit, loads=loads, jaw_force=force)[
+        :, WARNINGS
+    ]
     for fixture, count in zip(result, counts, strict=True):
         cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
         details = SheetDetails(**SHEET, jaw_force=force, loads=cases)  # type: ignore[arg-type]
         distances = edge_distances(fixture, result.workpiece, result.toolkit)
-        kinds = [caution.kind for caution in cautions_of(fixture, result.toolkit, distances, details, LengthUnit.mm())]
+        kinds = [
+            caution.kind
+            for caution in cautions_of(fixture, result.toolkit, distances, details, LengthUnit.mm())
+        ]
         assert len([kind for kind in kinds if kind not in ("unfit", "pose")]) == count
 
 
@@ -75,7 +78,9 @@ def test_the_penalty_is_the_sum_of_its_points(result: Result) -> None:
         (LOCATION_ERROR, 0.02, 1e-8, 1),
     ],
 )
-def test_a_figure_exactly_on_the_edge_costs_nothing(figure: int, edge: float, beyond: float, points: int) -> None:
+def test_a_figure_exactly_on_the_edge_costs_nothing(
+    figure: int, edge: float, beyond: float, points: int
+) -> None:
     """Points begin behind the edge; rounding in the tenth decimal does not count."""
     quality = np.zeros((4, 12))
     quality[:, [LOCATION_ERROR, SMALLEST_FACE]] = 0.02, 50.0
@@ -92,14 +97,16 @@ def test_the_main_direction_turns_with_the_part(turn: float) -> None:
     part = Workpiece.from_loops("bar", [[[z.real, z.imag, 0] for z in corners]])
     off = (main_direction(part) - turn + 45) % 90 - 45
     assert abs(off) < 1e-9
-    assert tilts(np.radians([-turn, 90 - turn, 30 - turn, -turn - 0.009]), main_direction(part)) == pytest.approx(
-        [0.0, 0.0, 30.0, 0.0], abs=1e-9
-    )
+    assert tilts(
+        np.radians([-turn, 90 - turn, 30 - turn, -turn - 0.009]), main_direction(part)
+    ) == pytest.approx([0.0, 0.0, 30.0, 0.0], abs=1e-9)
 
 
 def test_without_one_main_direction_the_drawing_decides() -> None:
     """A triangle of equal sides has three, a disc none."""
-    triangle = Workpiece.from_loops("triangle", [[[0, 0, 0], [40, 10, 0], [20 - 5 * 3**0.5, 5 + 20 * 3**0.5, 0]]])
+    triangle = Workpiece.from_loops(
+        "triangle", [[[0, 0, 0], [40, 10, 0], [20 - 5 * 3**0.5, 5 + 20 * 3**0.5, 0]]]
+    )
     disc = Workpiece.from_loops("disc", [[[-10, 0, 1], [10, 0, 1]]])
     assert main_direction(triangle) == main_direction(disc) == 0.0
 

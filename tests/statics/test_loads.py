@@ -16,8 +16,14 @@ from held import force_directions, held, load_wrench, plate_fixture
 from workhold.errors import InputError
 from workhold.fixels.vise import OpeningVise, Vise
 from workhold.model.fixture import Fixture
-from workhold.model.load import Load
-from workhold.model.quality import CLAMP_AMPLIFICATION, CLOSURE_MARGIN, END_DISTANCE, LOAD_REACTION, LOCATION_ERROR
+from workhold.model.quality import (
+    CLAMP_AMPLIFICATION,
+    CLOSURE_MARGIN,
+    END_DISTANCE,
+    LOAD_REACTION,
+    LOCATION_ERROR,
+)
+from workhold.model.requirements import Load
 from workhold.model.result import FixtureTable, Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
@@ -50,8 +56,12 @@ class TestHeld:
         random = np.random.default_rng(1)
         for fixture in result:
             point, direction = tuple(random.uniform(-20, 20, 2)), random.uniform(0, 360)
-            load = Load(points=[point], force=90, directions=(direction, direction), moment=random.uniform(-500, 500))
-            (case,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw_force=250, jaw="constant")
+            load = Load(
+                points=[point], force=90, directions=(direction, direction), moment=random.uniform(-500, 500)
+            )
+            (case,) = load_cases(
+                fixture, result.workpiece, result.toolkit, [load], jaw_force=250, jaw="constant"
+            )
             assert case.smallest == pytest.approx(case.largest, rel=1e-9, abs=1e-9)
             wrenches, shares = force_directions(fixture, result.workpiece, result.toolkit.peg_radius)
             wrench = load_wrench(90, point, direction, load.moment)
@@ -64,17 +74,23 @@ class TestHeld:
         path = [(-10.0, 3.0), (12.0, -4.0), (5.0, 9.0)]
         for fixture in list(result)[::5]:
             load = Load(points=path, force=90, directions=(200, 290), moment=-200)
-            (case,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw_force=100, jaw="constant")
+            (case,) = load_cases(
+                fixture, result.workpiece, result.toolkit, [load], jaw_force=100, jaw="constant"
+            )
             singles = [
                 Load(points=[point], force=90, directions=(angle, angle), moment=-200)
                 for point in (*path, (1.0, -0.5))
                 for angle in np.linspace(200, 290, 46)
             ]
-            cases = load_cases(fixture, result.workpiece, result.toolkit, singles, jaw_force=100, jaw="constant")
+            cases = load_cases(
+                fixture, result.workpiece, result.toolkit, singles, jaw_force=100, jaw="constant"
+            )
             forces = np.array([single.largest for single in cases])
             # Half a step of 2 degrees takes 1 - cos(1 degree) off a sinusoid, which is as large at most as the forces and
             # those that do not turn with the load, of the jaws and the moment.
-            (still,) = load_cases(fixture, result.workpiece, result.toolkit, [Load(moment=-200)], jaw_force=100)
+            (still,) = load_cases(
+                fixture, result.workpiece, result.toolkit, [Load(moment=-200)], jaw_force=100
+            )
             slack = 1.6e-4 * (np.abs(forces).max() + np.abs(still.largest).max())
             assert (forces.max(axis=0) <= np.array(case.largest) + 1e-9 * slack).all()
             assert (forces.max(axis=0) >= np.array(case.largest) - slack).all()
@@ -89,7 +105,9 @@ class TestHeld:
             (case,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw="constant")
             wrenches, shares = force_directions(fixture, result.workpiece, result.toolkit.peg_radius)
             there = load_wrench(60, case.needed.point, case.needed.direction, 90)
-            assert least_jaw_force(wrenches, shares, there) == pytest.approx(case.needed.value, rel=1e-6, abs=1e-6)
+            assert least_jaw_force(wrenches, shares, there) == pytest.approx(
+                case.needed.value, rel=1e-6, abs=1e-6
+            )
             other = load_wrench(60, load.points[random.integers(0, 2)], random.uniform(20, 200), 90)
             assert least_jaw_force(wrenches, shares, other) <= case.needed.value * (1 + 1e-6) + 1e-6
             # Told for just this jaw force, one peg is about to let go and all still touch.
@@ -97,7 +115,12 @@ class TestHeld:
             if case.needed.value > 0:
                 assert min(case.smallest) == pytest.approx(0.0, abs=1e-9 * max(case.largest))
                 (less,) = load_cases(
-                    fixture, result.workpiece, result.toolkit, [load], jaw_force=0.99 * case.jaw_force, jaw="constant"
+                    fixture,
+                    result.workpiece,
+                    result.toolkit,
+                    [load],
+                    jaw_force=0.99 * case.jaw_force,
+                    jaw="constant",
                 )
                 assert not less.keeps_contact and less.smallest[case.needed.peg] < 0
 
@@ -108,8 +131,12 @@ class TestHeld:
         for fixture in list(result)[::2]:
             angle, point = random.uniform(0, 360), (random.uniform(-9, 9), random.uniform(-9, 9))
             load = Load(points=[point], force=60, directions=(angle, angle), moment=90)
-            (case,) = load_cases(fixture, result.workpiece, result.toolkit, [load], friction=friction, jaw="constant")
-            wrenches, shares = force_directions(fixture, result.workpiece, result.toolkit.peg_radius, friction)
+            (case,) = load_cases(
+                fixture, result.workpiece, result.toolkit, [load], friction=friction, jaw="constant"
+            )
+            wrenches, shares = force_directions(
+                fixture, result.workpiece, result.toolkit.peg_radius, friction
+            )
             least = least_jaw_force(wrenches, shares, load_wrench(60, point, angle, 90))
             assert case.needed_with_friction == pytest.approx(least, rel=1e-6, abs=1e-4)
             assert case.needed_with_friction <= case.needed.value + 1e-6
@@ -118,13 +145,17 @@ class TestHeld:
         """Fine steps through the range nearly meet the figure and never pass it."""
         for fixture in list(result)[::10]:
             load = Load(points=[(4.0, 7.0)], force=60, directions=(20, 200))
-            steps = [Load(points=[(4.0, 7.0)], force=60, directions=(a, a)) for a in np.linspace(20, 200, 181)]
+            steps = [
+                Load(points=[(4.0, 7.0)], force=60, directions=(a, a)) for a in np.linspace(20, 200, 181)
+            ]
             case, *singles = load_cases(
                 fixture, result.workpiece, result.toolkit, [load, *steps], friction=0.15, jaw="constant"
             )
             worst = max(single.needed_with_friction or 0.0 for single in singles)
             assert case.needed_with_friction is not None
-            assert worst <= case.needed_with_friction + 1e-9 and worst >= case.needed_with_friction * 0.998 - 0.1
+            assert (
+                worst <= case.needed_with_friction + 1e-9 and worst >= case.needed_with_friction * 0.998 - 0.1
+            )
 
 
 def test_little_friction_adds_little_in_a_vise_that_opens() -> None:
@@ -158,12 +189,16 @@ def test_worked_example() -> None:
     (case,) = load_cases(fixture, plate, vise, [push], jaw_force=600, jaw="constant")
     assert case.largest == pytest.approx((400, 350, 350, 600)) and case.keeps_contact
     assert case.needed.value == pytest.approx(250) and case.reaction.value == pytest.approx(250)
-    (case,) = load_cases(fixture, plate, vise, [Load(points=[(0, 15)], force=200)], jaw_force=600, jaw="constant")
+    (case,) = load_cases(
+        fixture, plate, vise, [Load(points=[(0, 15)], force=200)], jaw_force=600, jaw="constant"
+    )
     assert case.needed.value == pytest.approx(200 * hypot(1.25, 0.5)) == pytest.approx(269.26, abs=0.005)
     assert min(case.needed.direction, 360 - case.needed.direction) == pytest.approx(21.80, abs=0.005)
     table = table_of(fixture, plate, vise)
     quality = quality_of(table, plate, vise, loads=[push])[0]
-    assert quality[CLOSURE_MARGIN] == pytest.approx(0.25) and quality[CLAMP_AMPLIFICATION] == pytest.approx(1.0)
+    assert quality[CLOSURE_MARGIN] == pytest.approx(0.25) and quality[CLAMP_AMPLIFICATION] == pytest.approx(
+        1.0
+    )
     assert quality[END_DISTANCE] == pytest.approx(7.0) and quality[LOAD_REACTION] == pytest.approx(250)
     assert quality[LOCATION_ERROR] == pytest.approx(hypot(0.074, 0.034)) == pytest.approx(0.081, abs=0.0005)
     text = re.sub(r"\s+", " ", PAGE.read_text())
@@ -182,7 +217,12 @@ def test_the_sign_of_loads() -> None:
     """A load is what acts on the part: pushed to the right, the right peg presses harder than the left one."""
     plate, vise, fixture = plate_fixture()
     (case,) = load_cases(
-        fixture, plate, vise, [Load(points=[(0, 0)], force=100, directions=(0, 0))], jaw_force=500, jaw="constant"
+        fixture,
+        plate,
+        vise,
+        [Load(points=[(0, 0)], force=100, directions=(0, 0))],
+        jaw_force=500,
+        jaw="constant",
     )
     left, _, _, right = case.largest
     assert right - left == pytest.approx(100)
@@ -195,7 +235,12 @@ def test_a_load_that_closes_a_vise_that_keeps_its_force_needs_none() -> None:
     """The jaw force needed is never negative."""
     plate, vise, fixture = plate_fixture()
     (case,) = load_cases(
-        fixture, plate, vise, [Load(points=[(0, 0)], force=100, directions=(180, 180))], friction=0.1, jaw="constant"
+        fixture,
+        plate,
+        vise,
+        [Load(points=[(0, 0)], force=100, directions=(180, 180))],
+        friction=0.1,
+        jaw="constant",
     )
     assert case.needed.value == 0 and case.needed_with_friction == 0 and case.keeps_contact
 

@@ -15,9 +15,7 @@ from held import contacts, force_directions, held, load_wrench
 from workhold import Plate, design
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distances
-from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
-from workhold.model.load import Load
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
@@ -27,9 +25,9 @@ from workhold.model.quality import (
     LOCATION_ERROR,
     WRENCH_RADIUS,
 )
+from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import FixtureTable, Result
-from workhold.model.tolerance import Tolerance
-from workhold.model.workpiece import Workpiece
+from workhold.model.workpiece import Workpiece, outline_diameter
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import quality_of
 
@@ -79,7 +77,9 @@ class TestHeld:
             moves = np.array([movement(fixture, result, points, peg) for peg in range(4)])
             faces = sorted({peg.face for peg in fixture.pegs})
             shares = np.array([[peg.face == face for peg in fixture.pegs] for face in faces], float)
-            generators = np.concatenate([tolerance.peg * moves, tolerance.face * np.tensordot(shares, moves, axes=1)])
+            generators = np.concatenate(
+                [tolerance.peg * moves, tolerance.face * np.tensordot(shares, moves, axes=1)]
+            )
             corners = np.array(list(product((-1.0, 1.0), repeat=len(generators))))
             worst = np.linalg.norm(np.tensordot(corners, generators, axes=1), axis=2).max()
             assert found == pytest.approx(worst, rel=2e-4)
@@ -97,7 +97,8 @@ class TestHeld:
         ]
         together = quality_of(result.table, result.workpiece, result.toolkit, loads=loads)[:, LOAD_REACTION]
         single = [
-            quality_of(result.table, result.workpiece, result.toolkit, loads=[load])[:, LOAD_REACTION] for load in loads
+            quality_of(result.table, result.workpiece, result.toolkit, loads=[load])[:, LOAD_REACTION]
+            for load in loads
         ]
         assert together == pytest.approx(np.max(single, axis=0), rel=1e-12)
         for k, fixture in enumerate(result):
@@ -182,7 +183,9 @@ def solved(fixture: Fixture, result: Result, off: int, error: float) -> Array:
             x, y = px + slides * z[3] - z[1], py - z[2]
             qx, qy = c * x + s * y, c * y - s * x
             if isinstance(segment, Arc):
-                away = segment.sign * (np.hypot(qx - segment.center[0], qy - segment.center[1]) - segment.radius)
+                away = segment.sign * (
+                    np.hypot(qx - segment.center[0], qy - segment.center[1]) - segment.radius
+                )
             else:
                 nx, ny = segment.normal()
                 away = (qx - segment.middle[0]) * nx + (qy - segment.middle[1]) * ny
@@ -244,7 +247,9 @@ def test_no_fixtures_no_figures() -> None:
 
 def test_figures_take_the_direction_of_the_fixtures_own_clamp() -> None:
     """Of a plate that was asked for several directions each fixture is measured as if its own had been the only one."""
-    part = Workpiece.from_loops("part", [[[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]])
+    part = Workpiece.from_loops(
+        "part", [[[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]]
+    )
     plate = Plate((20, 16), 3, directions=["-y", "-x", "+y"])
     result = design(part, plate, best=40)
     assert {fixture.direction for fixture in result} == {"-x", "-y"}

@@ -24,7 +24,10 @@ def closes(forces: Array) -> bool:
         return False
     # Scaled, every entry can be made 1 or more.
     return (
-        linprog(np.ones(len(forces)), A_eq=forces.T, b_eq=np.zeros(3), bounds=[(1.0, None)] * len(forces)).status == 0
+        linprog(
+            np.ones(len(forces)), A_eq=forces.T, b_eq=np.zeros(3), bounds=[(1.0, None)] * len(forces)
+        ).status
+        == 0
     )
 
 

@@ -13,11 +13,10 @@ import pytest
 
 from workhold import Result, Vise, design, load
 from workhold.listing.ranking import ranking_keys
-from workhold.model.load import Load
 from workhold.model.quality import FIGURES
-from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.verification import Verification, verify
-from workhold.verification.restrictions import broken_restriction
+from workhold.verification.placing import broken_restriction
 from workhold.verification.rules.hardware import ToolkitRules
 
 Verify = Callable[[Callable[[dict[str, Any]], object]], Verification]
@@ -41,13 +40,21 @@ def test_what_a_search_lists_keeps_what_was_asked(limited: Result) -> None:
     ("restrictions", "words"),
     [
         (lambda r: Restrictions(avoid=(r[0].pegs[2].face,)), "which is to be avoided"),
-        (lambda r: Restrictions(zones=(circle_zone(*r.workpiece.center, 500.0),)), "stands over a keep-out zone"),
-        (lambda r: Restrictions(angles=((r[0].pose.theta_deg + 0.01, r[0].pose.theta_deg + 1),)), "outside the angles"),
+        (
+            lambda r: Restrictions(zones=(circle_zone(*r.workpiece.center, 500.0),)),
+            "stands over a keep-out zone",
+        ),
+        (
+            lambda r: Restrictions(angles=((r[0].pose.theta_deg + 0.01, r[0].pose.theta_deg + 1),)),
+            "outside the angles",
+        ),
     ],
 )
 def test_a_restriction_that_is_broken_refutes(limited: Result, restrictions: Any, words: str) -> None:
     """The first fixture was found under other restrictions."""
-    outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, restrictions=restrictions(limited))))
+    outcome = verify(
+        attrs.evolve(limited, query=attrs.evolve(limited.query, restrictions=restrictions(limited)))
+    )
     assert any(item.index == 0 and words in item.reason for item in outcome.unproven)
 
 
@@ -77,7 +84,9 @@ def test_a_wrong_figure_refutes(limited: Result, number: int) -> None:
     """Each figure of quality is derived again."""
     quality = limited.table.quality.copy()
     # A figure that such fixtures do not have is wrong whatever it is.
-    quality[4, number] = np.nan_to_num(quality[4, number]) + 1e-6 * max(np.nan_to_num(quality[4, number]), 1.0)
+    quality[4, number] = np.nan_to_num(quality[4, number]) + 1e-6 * max(
+        np.nan_to_num(quality[4, number]), 1.0
+    )
     outcome = verify(attrs.evolve(limited, table=attrs.evolve(limited.table, quality=quality)))
     assert [item.index for item in outcome.unproven] == [4]
     assert FIGURES[number].words in outcome.unproven[0].reason
@@ -89,7 +98,9 @@ def test_a_wrong_order_is_a_fault(limited: Result) -> None:
     assert any("is better than the one before it" in fault for fault in outcome.faults)
 
 
-@pytest.mark.parametrize(("gap", "stands_over"), [(2.9, True), (3.2, True), (3.49, True), (3.51, False), (4.0, False)])
+@pytest.mark.parametrize(
+    ("gap", "stands_over"), [(2.9, True), (3.2, True), (3.49, True), (3.51, False), (4.0, False)]
+)
 def test_keep_out_zones_are_for_the_bodies_of_pegs(limited: Result, gap: float, stands_over: bool) -> None:
     """Bodies of radius 3.5 on pegs of radius 3: a round zone whose rim is between 3 and 3.5 mm from a peg's centre lies
     under its body, though not under the peg."""
@@ -98,11 +109,17 @@ def test_keep_out_zones_are_for_the_bodies_of_pegs(limited: Result, gap: float, 
     turn = complex(cos(theta), sin(theta))
     places = [complex(peg.x - fixture.pose.x, peg.y - fixture.pose.y) / turn for peg in fixture.pegs]
     # Away from the part, and so from the other pegs, which stand around it.
-    way = (places[0] - complex(*limited.workpiece.center)) / abs(places[0] - complex(*limited.workpiece.center))
+    way = (places[0] - complex(*limited.workpiece.center)) / abs(
+        places[0] - complex(*limited.workpiece.center)
+    )
     center = places[0] + (gap + 0.5) * way
     zone = circle_zone(center.real, center.imag, 0.5)
-    outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, restrictions=Restrictions(zones=(zone,)))))
-    told = any(item.index == 0 and "peg 1 stands over a keep-out zone" in item.reason for item in outcome.unproven)
+    outcome = verify(
+        attrs.evolve(limited, query=attrs.evolve(limited.query, restrictions=Restrictions(zones=(zone,))))
+    )
+    told = any(
+        item.index == 0 and "peg 1 stands over a keep-out zone" in item.reason for item in outcome.unproven
+    )
     assert told == stands_over
 
 
@@ -121,7 +138,11 @@ def test_two_neighbours_that_change_places(limited: Result, place: int) -> None:
 
 def test_other_keys_to_rank_by_are_a_fault(limited: Result) -> None:
     """What is first by one figure is not by another."""
-    for ranking in (("closure_margin",), ("end_distance", "location_error"), tuple(reversed(limited.query.ranking))):
+    for ranking in (
+        ("closure_margin",),
+        ("end_distance", "location_error"),
+        tuple(reversed(limited.query.ranking)),
+    ):
         outcome = verify(attrs.evolve(limited, query=attrs.evolve(limited.query, ranking=ranking)))
         assert len(outcome.faults) == 1, ranking
         assert ", ".join(ranking) in outcome.faults[0]

@@ -27,13 +27,17 @@ def way(toolkit: Toolkit, carrier: str) -> tuple[float, float]:
 @pytest.mark.parametrize("kind", [Vise, OpeningVise])
 def test_the_jaws_of_a_vise(kind: type[Vise]) -> None:
     """The right jaw's first column is a separation beyond the left jaw's last, and its rows are higher by the offset."""
-    vise = kind((8, 9.5), 3, 2, rows=7, min_gap=5, max_opening=40, row_offset=1.5, body_radius=2.5, blocked=["L-B3"])
+    vise = kind(
+        (8, 9.5), 3, 2, rows=7, min_gap=5, max_opening=40, row_offset=1.5, body_radius=2.5, blocked=["L-B3"]
+    )
     hardware = ToolkitRules(vise)
     assert place(vise, "left", 2, 4) == (16.0, 38.0) and way(vise, "left") == (0.0, 0.0)
     assert place(vise, "right", 1, 4) == (24.0, 39.5) and way(vise, "right") == (1.0, 0.0)
     left, right = hardware.lattices
     assert right.travel is not None and (right.travel.least, right.travel.most) == (5, 40)
-    assert {(jaw.columns, jaw.rows, jaw.peg_radius, jaw.body_radius) for jaw in (left, right)} == {(3, 7, 2, 2.5)}
+    assert {(jaw.columns, jaw.rows, jaw.peg_radius, jaw.body_radius) for jaw in (left, right)} == {
+        (3, 7, 2, 2.5)
+    }
     assert [(holes.column, holes.row) for holes in left.blocked] == [(1, 2)] and right.blocked == ()
     assert (hardware.clamps, hardware.wall, hardware.from_lowest) == (0, None, ())
     assert hardware.largest_radius == 2 and hardware.names == ("peg 1", "peg 2", "peg 3", "peg 4")
@@ -53,7 +57,11 @@ def test_clamps_on_a_plate_and_beside_a_fence(wall: float | None, clamps: int) -
         else:
             toolkit = Fence((20, 16), 3, wall_offset=wall, directions=directions, **fields)  # type: ignore[arg-type]
         hardware, first = ToolkitRules(toolkit), wall or 0.0
-        assert place(toolkit, "plate", 2, 3) == place(toolkit, f"clamp {direction}", 2, 3) == (40.0, 48.0 + first)
+        assert (
+            place(toolkit, "plate", 2, 3)
+            == place(toolkit, f"clamp {direction}", 2, 3)
+            == (40.0, 48.0 + first)
+        )
         assert way(toolkit, f"clamp {direction}") == expected and way(toolkit, "plate") == (0.0, 0.0)
         (lattice,), tip = hardware.lattices, hardware.tips[direction]
         assert (lattice.columns, lattice.rows, lattice.peg_radius, tip.peg_radius) == (7, 5, 3, 2.5)
@@ -71,7 +79,10 @@ def test_clamps_stand_in_order_and_on_lines_that_count_from_the_first_hole() -> 
     locators = [Peg("plate", k, 0, 20.0 * k, 0.0, k, 0.1) for k in range(3)]
     pair = Pair((0.0, 0.0), (0.0, 1.0), ((0.0, 0.0),) * 5, 1)
     plate = Plate(20, 3, clamps=2, directions=[("-x", "-x")])
-    for rows, words in (((0, 2), []), ((2, 0), ["its clamps are not in the order of directions, lines and faces"])):
+    for rows, words in (
+        ((0, 2), []),
+        ((2, 0), ["its clamps are not in the order of directions, lines and faces"]),
+    ):
         clamps = [Peg("clamp -x", 0, row, 0.0, 20.0 * row, 3, 0.1) for row in rows]
         fixture = Fixture("clamp2", (*locators, *clamps), Pose(0.0, 0.0, 0.0), 0.0, {}, "-x -x", pair)
         assert [found.reason for found in ToolkitRules(plate).asked_findings(fixture)] == words

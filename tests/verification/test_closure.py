@@ -16,9 +16,8 @@ from hypothesis import given
 from closing_forces import null_vectors
 from strategies import seeds
 from workhold import Vise
-from workhold.verification.balls import Point
-from workhold.verification.closure import Balance, closure_findings, minors, span
-from workhold.verification.contacts import BallPose
+from workhold.verification.ball_geometry import Point
+from workhold.verification.contacts import Balance, BallPose, closure_findings, minors, span
 from workhold.verification.rules.hardware import ToolkitRules
 
 # The part as it is drawn.
@@ -103,7 +102,9 @@ def test_the_span_is_that_of_wrenches_whose_moments_are_over_the_length_of_the_p
             for k, ((x, y), (n, m)) in enumerate(ways)
         ]
         balance = Balance.of(contacts, UPRIGHT, 1)  # type: ignore[arg-type]
-        words = [found.reason for found in closure_findings(balance, length, HARDWARE.names, HARDWARE.slack_words)]
+        words = [
+            found.reason for found in closure_findings(balance, length, HARDWARE.names, HARDWARE.slack_words)
+        ]
         assert any("their wrenches span only" in reason for reason in words) == (not spans)
 
 
@@ -128,9 +129,13 @@ def test_minors_and_span_are_the_exact_ones(seed: int) -> None:
     balls hold the rational numbers, and are no wider than rounding."""
     random = Random(seed)
     normals = [random.choice(DIRECTIONS) for _ in range(4)]
-    places = [(Fraction(random.randint(-400, 400), 8), Fraction(random.randint(-400, 400), 8)) for _ in range(4)]
+    places = [
+        (Fraction(random.randint(-400, 400), 8), Fraction(random.randint(-400, 400), 8)) for _ in range(4)
+    ]
     length = random.choice([0.125, 3.0, 40.0, 1024.0])
-    wrenches = [(*n, (q[0] * n[1] - q[1] * n[0]) / Fraction(length)) for q, n in zip(places, normals, strict=True)]
+    wrenches = [
+        (*n, (q[0] * n[1] - q[1] * n[0]) / Fraction(length)) for q, n in zip(places, normals, strict=True)
+    ]
     exact = [determinant(list(three)) for three in reversed(list(combinations(wrenches, 3)))]
     vector = minors([balls(q) for q in places], [balls(n) for n in normals])
     for number, (entry, minor) in enumerate(zip(vector, exact, strict=True)):

@@ -32,7 +32,12 @@ def part(loop: Loop) -> Workpiece:
 def fixture(count: int, first: int | None = None) -> Fixture:
     """The fixture on a part of ``count`` vertices; its first peg is on face ``first`` instead of the last one."""
     faces = (count - 1 if first is None else first, count - 3, count - 7, count - 5)
-    places = (("left", 0, 0.0, 0.0), ("left", 1, 0.0, 20.0), ("right", 0, 40.0, 0.0), ("right", 1, 40.0, 20.0))
+    places = (
+        ("left", 0, 0.0, 0.0),
+        ("left", 1, 0.0, 20.0),
+        ("right", 0, 40.0, 0.0),
+        ("right", 1, 40.0, 20.0),
+    )
     pegs = [Peg(jaw, 0, row, x, y, face, 5 / 6) for (jaw, row, x, y), face in zip(places, faces, strict=True)]  # type: ignore[arg-type]
     return Fixture("I", tuple(pegs), Pose(0.0, 0.0, 0.0), 40.0, {"closure_margin": 0.25})  # type: ignore[arg-type]
 
@@ -76,7 +81,14 @@ def rounded(far: float) -> Loop:
 def wedged(far: float) -> Loop:
     """The peg comes to touch a level face as well where its own face is trimmed, ``far`` mm past the foot."""
     level = -5 - 0.6 * far
-    return [[(25 - 4 * level) / 3, level, 0], [-20, level, 0], [-20, -15, 0], [29, -15, 0], [29, -2, 0], *UPPER]
+    return [
+        [(25 - 4 * level) / 3, level, 0],
+        [-20, level, 0],
+        [-20, -15, 0],
+        [29, -15, 0],
+        [29, -2, 0],
+        *UPPER,
+    ]
 
 
 def slotted(wide: float) -> Loop:
@@ -143,7 +155,9 @@ def test_a_slot_as_wide_as_the_peg(wide: float, verdict: str) -> None:
     assert is_listed(slotted(wide)) == (verdict == "proven")
 
 
-@pytest.mark.parametrize(("margin", "verdict"), [(3.0, "proven"), (3.0 - 2e-9, "proven"), (3.0 + 2e-9, "refuted")])
+@pytest.mark.parametrize(
+    ("margin", "verdict"), [(3.0, "proven"), (3.0 - 2e-9, "proven"), (3.0 + 2e-9, "refuted")]
+)
 def test_margins_to_corners_and_to_wedges(margin: float, verdict: str) -> None:
     """Exactly the margin from such an end is far enough: at least means at least."""
     for loop in (cornered(3.0), wedged(3.0)):
@@ -152,7 +166,9 @@ def test_margins_to_corners_and_to_wedges(margin: float, verdict: str) -> None:
         assert verdict == "proven" or "nearer than 3 mm to the end of its feature" in outcome.reason
 
 
-@pytest.mark.parametrize(("margin", "verdict"), [(3.0, "proven"), (3.0 + 5e-10, "proven"), (3.0 + 2e-9, "refuted")])
+@pytest.mark.parametrize(
+    ("margin", "verdict"), [(3.0, "proven"), (3.0 + 5e-10, "proven"), (3.0 + 2e-9, "refuted")]
+)
 def test_margins_to_tangent_joints(margin: float, verdict: str) -> None:
     """Exactly the margin from a tangent joint is far enough."""
     loop = rounded(3.0)

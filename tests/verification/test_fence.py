@@ -17,14 +17,13 @@ import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fence, Query, Result, Workpiece, answer, design
 from workhold.completeness import verify as verify_completely
-from workhold.model.load import Load
-from workhold.model.proof import AT_AN_EDGE, Undecided
-from workhold.model.restrictions import Restrictions, circle_zone
-from workhold.search.pin_contacts import PinContacts
+from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold.model.search_report import AT_AN_EDGE, Undecided
+from workhold.search.wall_contacts import PinContacts
 from workhold.search.wall_search import WallSearch
 from workhold.verification import Verification, verify, verify_fixture
+from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallPose as Balls
-from workhold.verification.outline import BallOutline
 from workhold.verification.rules.wall import flush_findings, wall_contacts
 from workhold.verification.undecided import undecided_faults
 
@@ -114,10 +113,18 @@ def moved(data: Data, by: int) -> None:
     [
         (lambda d: d["fixtures"][0]["wall"]["from"].__setitem__(0, 1.0), "from where the part touches"),
         (lambda d: d["fixtures"][0]["wall"]["to"].__setitem__(1, 0.01), "from where the part touches"),
-        (lambda d: d["fixtures"][0]["wall"]["forces"].__setitem__(1, 0.1), "the force of the fence at its right end"),
-        (lambda d: d["fixtures"][0]["wall"]["segments"].__setitem__(0, 4), "the fence at its left end touches face"),
         (
-            lambda d: d["fixtures"][0]["pose"].__setitem__("theta_deg", d["fixtures"][0]["pose"]["theta_deg"] + 0.01),
+            lambda d: d["fixtures"][0]["wall"]["forces"].__setitem__(1, 0.1),
+            "the force of the fence at its right end",
+        ),
+        (
+            lambda d: d["fixtures"][0]["wall"]["segments"].__setitem__(0, 4),
+            "the fence at its left end touches face",
+        ),
+        (
+            lambda d: d["fixtures"][0]["pose"].__setitem__(
+                "theta_deg", d["fixtures"][0]["pose"]["theta_deg"] + 0.01
+            ),
             "touch",
         ),
         (lambda d: raised(d, 1.0), "the y of"),
@@ -135,11 +142,15 @@ def moved(data: Data, by: int) -> None:
         (lambda d: d["fixtures"].__setitem__(1, d["fixtures"][0]), "it is the same as fixture 1"),
     ],
 )
-def test_what_is_wrong_is_refuted_by_name(edited: Callable[[Edit], Verification], edit: Edit, words: str) -> None:
+def test_what_is_wrong_is_refuted_by_name(
+    edited: Callable[[Edit], Verification], edit: Edit, words: str
+) -> None:
     """One edit of a true file each."""
     outcome = edited(edit)
     assert not outcome.holds
-    assert any(words in item.reason for item in outcome.unproven), [item.reason for item in outcome.unproven][:3]
+    assert any(words in item.reason for item in outcome.unproven), [item.reason for item in outcome.unproven][
+        :3
+    ]
 
 
 @pytest.mark.parametrize(
@@ -152,7 +163,9 @@ def test_what_is_wrong_is_refuted_by_name(edited: Callable[[Edit], Verification]
         (lambda d: d["toolkit"].pop("wall_offset"), "wall_offset"),
     ],
 )
-def test_contradictions_of_the_head_are_told(edited: Callable[[Edit], Verification], edit: Edit, words: str) -> None:
+def test_contradictions_of_the_head_are_told(
+    edited: Callable[[Edit], Verification], edit: Edit, words: str
+) -> None:
     """As faults, or as a file that cannot be verified."""
     try:
         outcome = edited(edit)
@@ -258,7 +271,17 @@ def test_a_foot_lower_than_the_two_that_the_part_is_said_to_lie_on_is_refuted() 
 
 def test_a_foot_beyond_the_ends_that_are_told_is_found() -> None:
     """Ends at the outer feet leave none beyond; with the right one at the middle foot the third is."""
-    feet = [[0, 0, 0], [8, 0, 0], [8, 4, 0], [24, 4, 0], [24, 0, 0], [32, 0, 0], [32, 4, 0], [48, 4, 0], [48, 0, 0]]
+    feet = [
+        [0, 0, 0],
+        [8, 0, 0],
+        [8, 4, 0],
+        [24, 4, 0],
+        [24, 0, 0],
+        [32, 0, 0],
+        [32, 4, 0],
+        [48, 4, 0],
+        [48, 0, 0],
+    ]
     workpiece = part([*feet, [56, 0, 0], [50, 30, 0], [4, 34, 0]])
     outline, pose = BallOutline.of(workpiece), Balls.of(arb(0), arb(0), arb(0), arb(0))
     left, right = wall_contacts([outline.faces[0], outline.faces[8]], outline, pose)

@@ -14,11 +14,9 @@ from attrs import evolve
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fence, InputError, Result, design
-from workhold.listing.clamped_seats import undecided_pairs
-from workhold.model.load import Load
-from workhold.model.notes import no_pair_note
-from workhold.model.proof import Undecided
-from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.listing.seats import undecided_pairs
+from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold.model.search_report import Undecided, no_pair_note
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.repeats import Seen
 from workhold.verification.rules.hardware import ToolkitRules
@@ -62,11 +60,18 @@ def test_a_part_that_is_never_held_has_a_note_that_follows(loop: Any, toolkit: F
         (BLOCK, fence(rows=None, columns=None), {"listing": "all"}),
         (ANGLE, fence(clamp_radius=5, travel=(4, 30), directions=ALL), {}),
         (ANGLE, fence(travel=(6, 26), rows=3), {"listing": "all", "contact_margin": 0.5}),
-        (EAR, fence(clamp_radius=2, columns=4), {"loads": [Load(((25.0, 10.0),), 200.0)], "jaw_force": 300.0}),
+        (
+            EAR,
+            fence(clamp_radius=2, columns=4),
+            {"loads": [Load(((25.0, 10.0),), 200.0)], "jaw_force": 300.0},
+        ),
         (
             ANGLE,
             fence(),
-            {"restrictions": Restrictions((3,), (circle_zone(41.3, 23.0, 3.0),), ((-100.0, 95.0),)), "best": 12},
+            {
+                "restrictions": Restrictions((3,), (circle_zone(41.3, 23.0, 3.0),), ((-100.0, 95.0),)),
+                "best": 12,
+            },
         ),
     ],
 )
@@ -109,10 +114,19 @@ def plus(values: Any, place: Any, by: float) -> None:
     ("edit", "words"),
     [
         (lambda f: plus(f["pegs"][0]["force"], 1, 1e-5), "the force of the locator under clamp 2"),
-        (lambda f: plus(f["wall"]["forces"][0], 0, 1e-5), "the force of the fence at its left end under clamp 1"),
-        (lambda f: plus(f["wall"]["forces"][1], 1, 1e-5), "the force of the fence at its right end under clamp 2"),
+        (
+            lambda f: plus(f["wall"]["forces"][0], 0, 1e-5),
+            "the force of the fence at its left end under clamp 1",
+        ),
+        (
+            lambda f: plus(f["wall"]["forces"][1], 1, 1e-5),
+            "the force of the fence at its right end under clamp 2",
+        ),
         (lambda f: plus(f["wall"]["from"], 0, 1e-3), "from where the part touches"),
-        (lambda f: f["wall"]["segments"].reverse() or plus(f["wall"]["segments"], 0, 1), "the fence at its left end"),
+        (
+            lambda f: f["wall"]["segments"].reverse() or plus(f["wall"]["segments"], 0, 1),
+            "the fence at its left end",
+        ),
         (lambda f: plus(f["pose"], "y", 1e-4), "away from touching face"),
         (lambda f: f.update(pairs=f["pairs"] + 1), "pairs of clamps, and there are"),
         (lambda f: f.update(pairs=f["pairs"] - 1), "pairs of clamps, and there are"),
@@ -120,7 +134,10 @@ def plus(values: Any, place: Any, by: float) -> None:
         (lambda f: plus(f["quality"], "location_error", 1e-6), "its location error is"),
         (lambda f: plus(f["quality"], "smallest_face", 1e-4), "its smallest face is"),
         (lambda f: plus(f["quality"], "wrench_radius", 1e-6), "its wrench radius is"),
-        (lambda f: f["pegs"].reverse(), "its pegs are not one locator, the two ends of the fence and then two clamps"),
+        (
+            lambda f: f["pegs"].reverse(),
+            "its pegs are not one locator, the two ends of the fence and then two clamps",
+        ),
         (lambda f: plus(f["pegs"][0], "row", 1), "the y of the locator"),
         (lambda f: f["pegs"][1].update(segment=f["pegs"][0]["segment"]), "clamp 1 is"),
         (lambda f: plus(f["pegs"][2], "y", 3e-6), "clamp 2"),
@@ -202,7 +219,9 @@ def test_rows_count_from_the_wall(results: dict[str, Result]) -> None:
     assert highest >= 2
     low = evolve(results["best"].toolkit, rows=highest)
     ruling = verify_fixture(first, results["best"].workpiece, low)
-    assert ruling.verdict == "refuted" and f"is in row {highest} of a plate with {highest} rows" in ruling.reason
+    assert (
+        ruling.verdict == "refuted" and f"is in row {highest} of a plate with {highest} rows" in ruling.reason
+    )
     under = (evolve(first.pegs[0], row=-1), *first.pegs[1:])
     ruling = verify_fixture(evolve(first, pegs=under), results["best"].workpiece, results["best"].toolkit)
     assert ruling.verdict == "refuted" and "the locator is in row -1" in ruling.reason

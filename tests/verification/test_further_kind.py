@@ -19,13 +19,11 @@ from attrs import evolve, frozen
 
 from workhold import Fixture, InputError, Workpiece
 from workhold.fixels.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
-from workhold.geometry.intersect import distance_to_segment
-from workhold.geometry.segment import Line
+from workhold.geometry.segment import Line, distance_to_segment
 from workhold.verification import Ruling, verify_fixture
-from workhold.verification.order import rank
-from workhold.verification.patterns import stance
+from workhold.verification.judging import rank
 from workhold.verification.reading import fixtures_of
-from workhold.verification.repeats import Seen
+from workhold.verification.repeats import Seen, stance
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seating_contacts import stop_of
 
@@ -112,7 +110,9 @@ def on_faces(item: Data, workpiece: Workpiece) -> Data:
         point = cos(turn) * dx + sin(turn) * dy, cos(turn) * dy - sin(turn) * dx
         touched = [f for f in workpiece.faces if distance_to_segment(point, f.segment) < 1e-6]
         flush = [
-            f.number for f in touched if isinstance(f.segment, Line) and abs(f.segment.normal()[0] + sin(turn)) < 1e-6
+            f.number
+            for f in touched
+            if isinstance(f.segment, Line) and abs(f.segment.normal()[0] + sin(turn)) < 1e-6
         ]
         numbers.append(min(flush or [f.number for f in touched]))
     return item["wall"] | {"segments": numbers}
@@ -173,7 +173,9 @@ NUMBERS: list[tuple[Edit, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("edit", "words"), NUMBERS, ids=[f"{n} {words}" for n, (_, words) in enumerate(NUMBERS)])
+@pytest.mark.parametrize(
+    ("edit", "words"), NUMBERS, ids=[f"{n} {words}" for n, (_, words) in enumerate(NUMBERS)]
+)
 def test_a_number_that_is_another_one_is_found(known: Known, edit: Edit, words: str) -> None:
     """In some fixtures of the set, each of which is refuted, most of them for that number."""
     rulings = []
@@ -202,7 +204,8 @@ def test_columns_and_rows_are_there_and_counted(known: Known) -> None:
         assert known.ruling(item, columns=columns + 1, rows=rows + 1).verdict == "proven"
         if columns:
             assert (
-                f"is in column {columns} of a jaw with {columns} columns" in known.ruling(item, columns=columns).reason
+                f"is in column {columns} of a jaw with {columns} columns"
+                in known.ruling(item, columns=columns).reason
             )
         if rows:
             assert f"is in row {rows} of a jaw with {rows} rows" in known.ruling(item, rows=rows).reason
@@ -275,7 +278,10 @@ def test_the_same_fixture_is_known_again(known: Known) -> None:
         shifted(other, 2, 3, pitch)
         other["pegs"].reverse()
         assert seen.find(known.read(other)) == number
-        assert rank(known.read(item), hardware)[2] == [*item["wall"]["segments"], *(p["segment"] for p in item["pegs"])]
+        assert rank(known.read(item), hardware)[2] == [
+            *item["wall"]["segments"],
+            *(p["segment"] for p in item["pegs"]),
+        ]
         fixture = known.read(item)
         turned = evolve(fixture, pose=evolve(fixture.pose, theta_deg=fixture.pose.theta_deg + 180.0))
         assert seen.find(turned) is None
@@ -288,7 +294,9 @@ def test_its_seating_knows_where_it_stops_and_which_pegs_stand_alike(known: Know
         fixture = known.read(item)
         assert stop_of(fixture.pegs, known.toolkit, fixture.jaw_separation) == pytest.approx(3.0)
         here = stance(fixture, known.toolkit)
-        assert here.anchor == (0.0, 0.0) and here.apart == pytest.approx(min((p["x"], p["y"]) for p in item["pegs"])[1])
+        assert here.anchor == (0.0, 0.0) and here.apart == pytest.approx(
+            min((p["x"], p["y"]) for p in item["pegs"])[1]
+        )
         (first, second) = ((peg["column"], peg["row"]) for peg in item["pegs"])
         step = second[0] - first[0], second[1] - first[1]
         alike.setdefault(here.key, []).append((step, here.apart))
@@ -300,6 +308,8 @@ def test_what_is_on_something_else_is_not_read(known: Known) -> None:
     item = deepcopy(known.items[0])
     with pytest.raises(InputError, match="its type is not flat"):
         known.read(item | {"type": "I"})
-    item["pegs"][0] = {key: value for key, value in item["pegs"][0].items() if key != "role"} | {"jaw": "left"}
+    item["pegs"][0] = {key: value for key, value in item["pegs"][0].items() if key != "role"} | {
+        "jaw": "left"
+    }
     with pytest.raises(InputError, match="a peg's jaw is not wall or jaw"):
         known.read(item)

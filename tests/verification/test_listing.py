@@ -108,7 +108,11 @@ def test_a_key_given_twice_is_refused(widget_result: Result, tmp_path: Path) -> 
     path = tmp_path / "r.json"
     write_result(widget_result, path)
     text = path.read_text(encoding="utf-8")
-    for twice in ('"counts": {"I": 0, "II": 0}, "counts"', '"complete": false, "complete"', '"force": 1, "force"'):
+    for twice in (
+        '"counts": {"I": 0, "II": 0}, "counts"',
+        '"complete": false, "complete"',
+        '"force": 1, "force"',
+    ):
         key = twice.rpartition(" ")[2]
         path.write_text(text.replace(key, twice, 1), encoding="utf-8")
         with pytest.raises(InputError, match="is given twice"):

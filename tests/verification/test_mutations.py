@@ -15,9 +15,8 @@ from undecided_examples import as_undecided
 from workhold import InputError, Plate, Query, Result, Vise, Workpiece, answer
 from workhold.files.result.writer import write_result
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.load import Load
-from workhold.model.notes import undecided_note
-from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold.model.search_report import undecided_note
 from workhold.verification import verify_file
 
 Data = dict[str, Any]
@@ -113,7 +112,9 @@ def wedge_result(toolkit: Toolkit) -> Result:
     asked = Restrictions((), (circle_zone(200.0, 200.0, 3.0),), ((-170.0, 185.0),))
     loads = [Load(((10.0, 5.0),), 100.0, (20.0, 70.0), 3.0, "cutter")]
     ranking = ("location_error", "load_reaction", "closure_margin")
-    result = answer(Query(wedge, toolkit, contact_margin=0.25, restrictions=asked, ranking=ranking, loads=loads))
+    result = answer(
+        Query(wedge, toolkit, contact_margin=0.25, restrictions=asked, ranking=ranking, loads=loads)
+    )
     assert result.proof is not None and len(result) > 6
     counts = {"candidates": result.proof.candidates + 1, "escalated": max(result.proof.escalated, 1)}
     proof = attrs.evolve(result.proof, undecided=(as_undecided(result[0]),), **counts)

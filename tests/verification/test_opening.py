@@ -69,4 +69,7 @@ def test_a_file_names_its_toolkit(tmp_path: Path, kind: str, reason: str) -> Non
     path.write_text(json.dumps(data))
     outcome = verify_file(path)
     assert [item.reason for item in outcome.unproven] == [reason]
-    assert "the key ranking is missing" in outcome.faults and "the key toolkit.blocked is missing" in outcome.faults
+    assert (
+        "the key ranking is missing" in outcome.faults
+        and "the key toolkit.blocked is missing" in outcome.faults
+    )

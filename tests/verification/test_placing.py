@@ -22,7 +22,9 @@ def circle_and_tangent(z: arb_mat) -> tuple[arb_mat, arb_mat]:
 
 @pytest.mark.parametrize("bits", [64, 128, 256, 512])
 @pytest.mark.parametrize(("start", "expected"), [((4.2, 2.7), (4, 3)), ((-3.0, -3.0), (-4, -3))])
-def test_a_zero_is_enclosed_to_the_precision(bits: int, start: tuple[float, float], expected: tuple[int, int]) -> None:
+def test_a_zero_is_enclosed_to_the_precision(
+    bits: int, start: tuple[float, float], expected: tuple[int, int]
+) -> None:
     with ctx.workprec(bits):
         zero = certified_zero(circle_and_line, start)
         assert zero is not None

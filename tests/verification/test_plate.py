@@ -18,15 +18,13 @@ from strategies import random_outline
 from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import as_undecided
 from workhold import Fixture, InputError, Plate, Pose, Query, Result, answer, design
-from workhold.listing.ways import joined_ways
-from workhold.model.load import Load
-from workhold.model.notes import no_fixture_notes, undecided_note
-from workhold.model.proof import GIVEN_UP, Undecided
-from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.listing.results import joined_ways
+from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold.model.search_report import GIVEN_UP, Undecided, no_fixture_notes, undecided_note
 from workhold.verification import Verification, verify, verify_file, verify_fixture
+from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallPose as Balls
-from workhold.verification.order import rank
-from workhold.verification.outline import BallOutline
+from workhold.verification.judging import rank
 from workhold.verification.repeats import Seen
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.undecided import undecided_faults
@@ -35,7 +33,16 @@ Data = dict[str, Any]
 Edit = Callable[[Data], object]
 
 NOTCHED = [[0, 0, 0], [58, 0, 0], [58, 26, 0], [44, 40, 0], [20, 40, 0.3], [0, 40, 0]]
-POCKETED = [[0, 0, 0], [70, 0, 0], [76, 44, 0], [52, 44, 0], [52, 20, 0], [24, 20, 0], [20, 44, 0], [-3, 44, 0]]
+POCKETED = [
+    [0, 0, 0],
+    [70, 0, 0],
+    [76, 44, 0],
+    [52, 44, 0],
+    [52, 20, 0],
+    [24, 20, 0],
+    [20, 44, 0],
+    [-3, 44, 0],
+]
 LIMITED = Plate((20, 16), 3, columns=7, rows=7, clamp_radius=4, travel=(4, 26), directions=("-x", "+y"))
 
 
@@ -112,7 +119,9 @@ def bolted_elsewhere(fixture: Data, holes: int) -> None:
     """The clamp bolted so many holes farther from its tip; everything moved so that the lowest numbers are 0."""
     axis = 0 if fixture["direction"][1] == "x" else 1
     fixture["pegs"][3]["hole"][axis] += holes * (1 if fixture["direction"][0] == "-" else -1)
-    numbers = [peg[("column", "row")[axis]] for peg in fixture["pegs"][:3]] + [fixture["pegs"][3]["hole"][axis]]
+    numbers = [peg[("column", "row")[axis]] for peg in fixture["pegs"][:3]] + [
+        fixture["pegs"][3]["hole"][axis]
+    ]
     shifted(fixture, *((-min(numbers), 0) if axis == 0 else (0, -min(numbers))))
 
 
@@ -137,16 +146,26 @@ BROKEN: list[tuple[Callable[[Data], object], str]] = [
     (lambda f: f["pegs"][0].update(segment=f["pegs"][3]["segment"]), "locator 1 is"),
     (lambda f: f["pegs"][0].update(force=f["pegs"][0]["force"] + 1e-5), "the force of locator 1 is"),
     (lambda f: f["pegs"][3].update(force=f["pegs"][3]["force"] + 1e-5), "the force of the clamp is"),
-    (lambda f: f["pose"].update(theta_deg=f["pose"]["theta_deg"] + 2e-6), "degrees from the one that touches"),
+    (
+        lambda f: f["pose"].update(theta_deg=f["pose"]["theta_deg"] + 2e-6),
+        "degrees from the one that touches",
+    ),
     (lambda f: f["pose"].update(x=f["pose"]["x"] + 3e-6), "mm away from touching face"),
-    (lambda f: f["quality"].update(closure_margin=f["quality"]["closure_margin"] + 1e-6), "its closure margin is"),
+    (
+        lambda f: f["quality"].update(closure_margin=f["quality"]["closure_margin"] + 1e-6),
+        "its closure margin is",
+    ),
     (lambda f: bolted_elsewhere(f, 2), "beyond the 26 mm of its stroke"),
     (lambda f: bolted_elsewhere(f, -2), "nearer than the 4 mm of its stroke"),
 ]
 
 
-@pytest.mark.parametrize(("edit", "words"), BROKEN, ids=[f"{n} {words}" for n, (_, words) in enumerate(BROKEN)])
-def test_what_is_broken_by_hand_is_named(edited: Any, data: Data, edit: Callable[[Data], object], words: str) -> None:
+@pytest.mark.parametrize(
+    ("edit", "words"), BROKEN, ids=[f"{n} {words}" for n, (_, words) in enumerate(BROKEN)]
+)
+def test_what_is_broken_by_hand_is_named(
+    edited: Any, data: Data, edit: Callable[[Data], object], words: str
+) -> None:
     """Of one fixture of those whose clamp moves in -x; the others stay proven."""
     outcome = edited(lambda content: edit(fixture_with(content, "-x")))
     first = data["fixtures"].index(fixture_with(data, "-x"))
@@ -175,7 +194,9 @@ TOOLKITS: list[tuple[Data, str]] = [
 def test_another_plate(edited: Any, fields: Data, words: str) -> None:
     """What is listed does not stand on it, and the sentence says why."""
     outcome = edited(lambda content: content["toolkit"].update(fields))
-    assert any(words in item.reason and item.verdict == "refuted" for item in outcome.unproven), outcome.unproven
+    assert any(words in item.reason and item.verdict == "refuted" for item in outcome.unproven), (
+        outcome.unproven
+    )
 
 
 @pytest.mark.parametrize(
@@ -187,7 +208,10 @@ def test_another_plate(edited: Any, fields: Data, words: str) -> None:
         (lambda f: f["pegs"][3].pop("hole"), "the key hole is missing"),
         (lambda f: f["pegs"][3].update(hole=[1]), "is not a column and a row"),
         (lambda f: f["pegs"][3].update(hole=[1, 0.5]), "row is 0.5, not a whole number"),
-        (lambda f: f["pegs"][3].update(row=f["pegs"][3]["row"] + 1), "the row of its clamp is not that of its hole"),
+        (
+            lambda f: f["pegs"][3].update(row=f["pegs"][3]["row"] + 1),
+            "the row of its clamp is not that of its hole",
+        ),
         (lambda f: f["pegs"][1].update(role="stop"), "neither locator nor clamp"),
         (lambda f: f["pegs"][1].pop("column"), "the key column is missing"),
         (lambda f: f["pegs"].pop(), "it does not have four pegs"),
@@ -221,7 +245,9 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
     assert told(lambda content: None) == ""
     assert "counts say 41 fixtures of type clamp" in told(lambda content: content["counts"].update(clamp=41))
     assert "found says 5 fixtures" in told(lambda content: content["found"].update(clamp=5))
-    assert "is the same as fixture 1" in told(lambda content: content["fixtures"].append(content["fixtures"][0]))
+    assert "is the same as fixture 1" in told(
+        lambda content: content["fixtures"].append(content["fixtures"][0])
+    )
     assert "is better than the one before it" in told(lambda content: content["fixtures"].reverse())
     assert "candidates, but" in told(lambda content: content["proof"].update(verified=3))
     wrong = no_fixture_notes(LIMITED.wording)[3]
@@ -233,14 +259,30 @@ def as_listed(fixture: Fixture, bolted: bool) -> Data:
     """A fixture in the form of the result file, for the independent checker."""
     direction = fixture.direction or ""
     pegs = [
-        {"role": "locator", "column": p.column, "row": p.row, "x": p.x, "y": p.y, "segment": p.face, "force": p.force}
+        {
+            "role": "locator",
+            "column": p.column,
+            "row": p.row,
+            "x": p.x,
+            "y": p.y,
+            "segment": p.face,
+            "force": p.force,
+        }
         for p in fixture.pegs[:3]
     ]
     clamp = fixture.pegs[3]
     line = {"row": clamp.row} if direction[1] == "x" else {"column": clamp.column}
     hole = [clamp.column, clamp.row] if bolted else None
     pegs.append(
-        line | {"role": "clamp", "hole": hole, "x": clamp.x, "y": clamp.y, "segment": clamp.face, "force": clamp.force}
+        line
+        | {
+            "role": "clamp",
+            "hole": hole,
+            "x": clamp.x,
+            "y": clamp.y,
+            "segment": clamp.face,
+            "force": clamp.force,
+        }
     )
     pose = {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y}
     return {"type": "clamp", "direction": direction, "pegs": pegs, "pose": pose}
@@ -344,7 +386,9 @@ def test_a_clamp_that_would_have_to_pull_is_refuted() -> None:
     for fixture in fixtures:
         clamp = attrs.evolve(fixture.pegs[3], carrier="clamp +x")
         pegs = (*fixture.pegs[:3], clamp)
-        other = attrs.evolve(fixture, pegs=pegs, direction="+x", jaw_separation=-fixture.jaw_separation, quality={})
+        other = attrs.evolve(
+            fixture, pegs=pegs, direction="+x", jaw_separation=-fixture.jaw_separation, quality={}
+        )
         assert verify_fixture(fixture, workpiece, plate).verdict == "proven"
         assert "the clamp does not push the part" in verify_fixture(other, workpiece, turned).reason
         assert "which is not asked for" in verify_fixture(other, workpiece, plate).reason
@@ -367,14 +411,19 @@ def test_a_clamp_keeps_its_distance_from_locators(
     """A locator of 2 mm beside the body from hole G1 at x = 60 to the tip at 50, before the tip and behind the hole."""
     hardware = ToolkitRules(Plate((10, pitch_y), 2, clamp_radius=radius, travel=(0, 30)))
     pegs = [workhold.Peg("plate", k, 40, 0.0, 0.0, 0, 1.0) for k in (0, 1)]
-    pegs += [workhold.Peg("plate", column, row, 0.0, 0.0, 0, 1.0), workhold.Peg("clamp -x", 6, 0, 50.0, 0.0, 0, 1.0)]
+    pegs += [
+        workhold.Peg("plate", column, row, 0.0, 0.0, 0, 1.0),
+        workhold.Peg("clamp -x", 6, 0, 50.0, 0.0, 0, 1.0),
+    ]
     fixture = Fixture("clamp", tuple(pegs), Pose(0.0, 0.0, 0.0), -10.0, {}, "-x")
     outline = BallOutline.of(part([[x + 500.0, y, b] for x, y, b in NOTCHED]))
     contacts = [hardware.contact(peg, outline.faces[0]) for peg in pegs]
     at = Balls.of(arb(0), arb(0), arb(0), arb(-10))
     said = [found.reason for found in hardware.standing_findings(fixture, contacts, at, outline)]
     # It could be bolted at its tip, in F1.
-    assert [reason for reason in said if "locator 3" in reason] == [reason for reason in said if "meets" in reason]
+    assert [reason for reason in said if "locator 3" in reason] == [
+        reason for reason in said if "meets" in reason
+    ]
     assert any("meets locator 3" in reason for reason in said) == meets, said
 
 
@@ -382,9 +431,13 @@ def test_the_order_is_that_of_the_plate_turned_to_the_clamp() -> None:
     """A clamp along -y on one pitch stands in the order of one along -x on the other."""
     workpiece = part(NOTCHED)
     upright, lying = Plate((14, 20), 3, directions="-y"), Plate((20, 14), 3, directions="-x")
-    one, other = ([rank(f, ToolkitRules(plate)) for f in design(workpiece, plate)] for plate in (upright, lying))
+    one, other = (
+        [rank(f, ToolkitRules(plate)) for f in design(workpiece, plate)] for plate in (upright, lying)
+    )
     assert len(one) == len(other) > 10
-    for ((_, kind, *holes), angle, faces), ((_, second, *others), theta, touched) in zip(one, other, strict=True):
+    for ((_, kind, *holes), angle, faces), ((_, second, *others), theta, touched) in zip(
+        one, other, strict=True
+    ):
         assert (kind, second) == (2, 0)
         assert (holes, faces) == (others, touched)
         assert angle == pytest.approx(theta, abs=1e-9)
@@ -400,7 +453,9 @@ def test_undecided_entries_are_real_places(result: Result) -> None:
     for fixture in result:
         entry = as_undecided(fixture)
         assert faults(entry) == []
-        assert "is no place where" in faults(attrs.evolve(entry, theta_deg=(entry.theta_deg + 1e-3) % 360.0))[0]
+        assert (
+            "is no place where" in faults(attrs.evolve(entry, theta_deg=(entry.theta_deg + 1e-3) % 360.0))[0]
+        )
         # Two locators on one face, or on parallel ones, may slide together, and the third one then fits in other holes, too.
         square = abs((fixture.pose.theta_deg + 45.0) % 90.0 - 45.0) < 1e-6
         slides = square or len(set(entry.faces[:3])) < 3

@@ -10,7 +10,7 @@ import pytest
 
 from workhold import Fence, Fixture, Peg, Pose, Result, Vise
 from workhold.verification import repeats
-from workhold.verification.order import rank
+from workhold.verification.judging import rank
 from workhold.verification.repeats import Key, Place, Seen
 from workhold.verification.rules.hardware import ToolkitRules
 
@@ -18,7 +18,9 @@ from workhold.verification.rules.hardware import ToolkitRules
 def shifted(fixture: Fixture, rows: int) -> Fixture:
     """The fixture moved up by rows of 8 mm."""
     pegs = [attrs.evolve(peg, row=peg.row + rows, y=peg.y + 8.0 * rows) for peg in fixture.pegs]
-    return attrs.evolve(fixture, pegs=tuple(pegs), pose=attrs.evolve(fixture.pose, y=fixture.pose.y + 8.0 * rows))
+    return attrs.evolve(
+        fixture, pegs=tuple(pegs), pose=attrs.evolve(fixture.pose, y=fixture.pose.y + 8.0 * rows)
+    )
 
 
 def renamed(fixture: Fixture) -> Fixture:
@@ -64,7 +66,11 @@ def test_not_the_same(widget_result: Result) -> None:
     fixture = widget_result[0]
     right = [attrs.evolve(peg, x=peg.x + 5.0 * (peg.carrier == "right")) for peg in fixture.pegs]
     wider = attrs.evolve(fixture, pegs=tuple(right), jaw_separation=fixture.jaw_separation + 5.0)
-    assert [seen.add(k, f) for k, f in enumerate((fixture, moved(fixture, 0.01), wider))] == [None, None, None]
+    assert [seen.add(k, f) for k, f in enumerate((fixture, moved(fixture, 0.01), wider))] == [
+        None,
+        None,
+        None,
+    ]
     assert seen.add(3, moved(fixture, 1e-8)) == 0
 
 
@@ -130,7 +136,9 @@ def test_a_half_turn_leaves_the_place_in_the_order_as_it_is(widget_result: Resul
     rules, looked_at = ToolkitRules(widget_result.toolkit), 0
     for fixture in widget_result:
         if fixture.type == "I":
-            (holes, angle, faces), (others, theta, touched) = (rank(f, rules) for f in (fixture, half_turned(fixture)))
+            (holes, angle, faces), (others, theta, touched) = (
+                rank(f, rules) for f in (fixture, half_turned(fixture))
+            )
             assert (holes, faces) == (others, touched) and angle == pytest.approx(theta, abs=1e-9)
             looked_at += len(set(faces[:2]) ^ set(faces[2:])) > 0
     assert looked_at > 3

@@ -15,19 +15,19 @@ from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpie
 from workhold.completeness import first_other
 from workhold.fixels.carrier import WALL
 from workhold.seating.solver import Solver
-from workhold.verification.claims import claim_of
-from workhold.verification.listing import Listing, read_listing
-from workhold.verification.order import order_faults
-from workhold.verification.outline import BallOutline
-from workhold.verification.part_in_floats import FloatOutline
-from workhold.verification.patterns import pattern_faults, stance
+from workhold.verification.ball_geometry import BallOutline
+from workhold.verification.judging import order_faults
+from workhold.verification.listing import Listing, claim_of, read_listing
+from workhold.verification.repeats import pattern_faults, stance
 from workhold.verification.seating import Judged, SeatingJudge
-from workhold.verification.seating_contacts import stop_of, touching_wall
+from workhold.verification.seating_contacts import FloatOutline, stop_of, touching_wall
 from workhold.verification.verify import not_shown
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 # With an arc, an inner corner and loose rest.
-NOTCH = Workpiece.from_loops("notch", [[[0, 0, 0], [60, 0, 0], [60, 25, 0.3], [35, 30, 0], [35, 45, 0], [0, 45, 0]]])
+NOTCH = Workpiece.from_loops(
+    "notch", [[[0, 0, 0], [60, 0, 0], [60, 25, 0.3], [35, 30, 0], [35, 45, 0], [0, 45, 0]]]
+)
 VISE = Vise(pitch=20, columns=2, peg_radius=3)
 NOTCH_VISE = Vise(15, 2, 2)
 PLATE = Plate(pitch=20, peg_radius=3, columns=6, rows=6)
@@ -183,7 +183,9 @@ def stepped(fixture: Any, toolkit: Any) -> Any:
     (px, py), pegs = toolkit.carriers[0].pitch, []
     for peg in fixture.pegs:
         moved = attrs.evolve(peg, x=peg.x + 2 * px, y=peg.y + rows * py)
-        pegs.append(moved if peg.is_on_wall else attrs.evolve(moved, column=peg.column + 2, row=peg.row + rows))
+        pegs.append(
+            moved if peg.is_on_wall else attrs.evolve(moved, column=peg.column + 2, row=peg.row + rows)
+        )
     pose = attrs.evolve(fixture.pose, x=fixture.pose.x + 2 * px, y=fixture.pose.y + rows * py)
     return attrs.evolve(fixture, pegs=tuple(pegs), pose=pose)
 
@@ -204,7 +206,9 @@ def test_what_stands_on_the_same_pegs_is_told_of_every_toolkit(part: Workpiece, 
         return list(pattern_faults([attrs.evolve(first, seating=claim), *others], query))
 
     assert not faults(told)
-    missing = [faults(told | {"seats": [one for one in told["seats"] if one is not seat]}) for seat in told["seats"]]
+    missing = [
+        faults(told | {"seats": [one for one in told["seats"] if one is not seat]}) for seat in told["seats"]
+    ]
     assert sum(map(bool, missing)) >= 2, "the fixture itself, and another"
     assert all("stands on the pegs of fixture 1" in words for found in missing for words in found)
 
@@ -225,7 +229,9 @@ def test_a_search_compares_what_a_file_alone_cannot_show(result: Result, tmp_pat
     assert workhold.verify(path, complete=True).holds
     text = path.read_text()
     fields = result.seating[1].as_fields()
-    path.write_text(text.replace(f'"way_out": {fields["way_out"]}', f'"way_out": {fields["way_out"] + 0.5}', 1))
+    path.write_text(
+        text.replace(f'"way_out": {fields["way_out"]}', f'"way_out": {fields["way_out"] + 0.5}', 1)
+    )
     assert path.read_text() != text and workhold.verify(path).holds
     outcome = workhold.verify(path, complete=True)
     assert any("another way_out of the seating" in words for words in outcome.faults)
@@ -281,7 +287,9 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
     listing = written(solved(BOWED, FENCE), tmp_path / "r.json")
     judge, fixture = SeatingJudge(listing.query), listing.fixtures[0]
     fields = fixture.seating.fields
-    own = next(seat for seat, told in zip(fields["seats"], fixture.seating.told.seats, strict=True) if told.is_own)
+    own = next(
+        seat for seat, told in zip(fields["seats"], fixture.seating.told.seats, strict=True) if told.is_own
+    )
 
     def faults(**changes: Any) -> list[str]:
         return list(Judged(judge, fixture, fixture.seating).seat_faults(own | changes, own))
@@ -289,16 +297,22 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
     assert not faults()
     for off in (-1e-3, 1e-3):
         words = faults(pose=own["pose"] | {"y": own["pose"]["y"] + off})
-        assert {"has peg 1 not where it is said to touch", "has peg 2 not where it is said to touch"} <= set(words)
+        assert {"has peg 1 not where it is said to touch", "has peg 2 not where it is said to touch"} <= set(
+            words
+        )
         assert ("has the part in the fence" in words) == (off < 0.0)
     # Its lowest point would be beyond its end, which is at the corner.
     arcs = Workpiece.from_loops("arcs", [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, 0]]])
     pose = {"theta_deg": 0.0, "x": 0.0, "y": 0.0}
     for theta, is_inside in ((0.0, False), (-80.0, True), (-90.0, True), (-150.0, False)):
-        touched = touching_wall(BallOutline.of(arcs), {"peg": 1, "face": 1}, pose | {"theta_deg": theta}, False)
+        touched = touching_wall(
+            BallOutline.of(arcs), {"peg": 1, "face": 1}, pose | {"theta_deg": theta}, False
+        )
         assert touched.is_inside == is_inside, theta
     ends = {one["peg"]: one for one in own["contacts"] if one["peg"] in (1, 2)}
-    exchanged = [ends[3 - one["peg"]] | {"peg": one["peg"]} if one["peg"] in ends else one for one in own["contacts"]]
+    exchanged = [
+        ends[3 - one["peg"]] | {"peg": one["peg"]} if one["peg"] in ends else one for one in own["contacts"]
+    ]
 
     def exchange(edited: Fields) -> None:
         next(seat for seat in edited["seats"] if seat == own)["contacts"] = exchanged
@@ -319,7 +333,9 @@ def test_the_lowest_point_of_a_part_is_that_of_its_box(mirrored: bool) -> None:
     part = BOWED.turned_over if mirrored else BOWED
     for theta in range(0, 360, 7):
         low = part.placed(Pose(theta, 3.0, 5.0)).bounds[1]
-        assert rough.lowest({"theta_deg": theta, "x": 3.0, "y": 5.0}, mirrored) == pytest.approx(low, abs=1e-9)
+        assert rough.lowest({"theta_deg": theta, "x": 3.0, "y": 5.0}, mirrored) == pytest.approx(
+            low, abs=1e-9
+        )
 
 
 def test_what_stops_a_clamp_or_jaws() -> None:

@@ -11,11 +11,8 @@ from hypothesis import given
 
 from strategies import outlines, seeds
 from workhold import Workpiece
-from workhold.geometry.intersect import distance_to_segment
-from workhold.geometry.segment import Arc, Line
-from workhold.verification.balls import exact_point
-from workhold.verification.outline import BallOutline
-from workhold.verification.sides import ArcSide, arc_side, line_side
+from workhold.geometry.segment import Arc, Line, distance_to_segment
+from workhold.verification.ball_geometry import ArcSide, BallOutline, arc_side, exact_point, line_side
 
 
 def holds(ball: arb, value: float, tolerance: float = 1e-9) -> bool:

@@ -55,12 +55,17 @@ def counted(result: Result, case: Symmetric) -> dict[str, int]:
 
 
 @pytest.mark.parametrize(("name", "kind", "listing"), CASES)
-def test_search_verification_and_trying_each_rotation_count_alike(name: str, kind: str, listing: str | None) -> None:
+def test_search_verification_and_trying_each_rotation_count_alike(
+    name: str, kind: str, listing: str | None
+) -> None:
     """So it is of all fixtures and of the best; of these sets are counted where no others were found, else of all."""
     case = PARTS[name]
     result = full(name, kind, listing)
     assert result.found == result.counts and result.distinct == counted(result, case)
-    for one in (result, *(answer(evolve(result.query, best=best)) for best in {1, len(result) // 2} if best > 0)):
+    for one in (
+        result,
+        *(answer(evolve(result.query, best=best)) for best in {1, len(result) // 2} if best > 0),
+    ):
         outcome = verify(one)
         assert (outcome.proven, outcome.faults) == (len(one), ())
         assert one.distinct == (counted(one, case) if one.found == one.counts else result.distinct)
@@ -101,8 +106,12 @@ def test_rotations_are_those_that_the_part_was_made_with(name: str) -> None:
         assert complex(*point) == pytest.approx(case.kept, abs=1e-9)
 
 
-@pytest.mark.parametrize(("off", "order", "is_certain"), [(1e-7, 2, True), (1.5e-6, 2, False), (2e-5, 1, True)])
-def test_a_symmetry_that_a_drawing_nearly_has_is_no_fault_either_way(off: float, order: int, is_certain: bool) -> None:
+@pytest.mark.parametrize(
+    ("off", "order", "is_certain"), [(1e-7, 2, True), (1.5e-6, 2, False), (2e-5, 1, True)]
+)
+def test_a_symmetry_that_a_drawing_nearly_has_is_no_fault_either_way(
+    off: float, order: int, is_certain: bool
+) -> None:
     """A corner that is off by a thousandth of a micrometre may be meant or not, so nothing is said of the sets."""
     part = Workpiece.from_loops("box", [[(0, 0, 0), (50 + off, 0, 0), (60, 30, 0), (10, 30, 0)]])
     turning = Turning.of(part)

@@ -143,7 +143,13 @@ def test_all_fixtures_moved_by_one_row_still_hold(verified: Verify) -> None:
 
 @pytest.mark.parametrize(
     ("key", "value"),
-    [("peg_radius", 2.9), ("pitch", [8.00001, 8.0]), ("row_offset", 0.001), ("min_gap", 500.0), ("max_opening", 8.5)],
+    [
+        ("peg_radius", 2.9),
+        ("pitch", [8.00001, 8.0]),
+        ("row_offset", 0.001),
+        ("min_gap", 500.0),
+        ("max_opening", 8.5),
+    ],
 )
 def test_another_vise(verified: Verify, key: str, value: object) -> None:
     assert verified(lambda data: data["vise"].update({key: value})).refuted > 0
@@ -178,7 +184,9 @@ def test_columns_and_rows_beyond_the_vise(verified: Verify) -> None:
 
     outcome = verified(edit)
     assert outcome.refuted == 12
-    assert all("is in row -1 of a jaw with rows from 0 upward" in fixture.reason for fixture in outcome.unproven)
+    assert all(
+        "is in row -1 of a jaw with rows from 0 upward" in fixture.reason for fixture in outcome.unproven
+    )
 
 
 def test_another_workpiece(verified: Verify) -> None:

@@ -17,21 +17,19 @@ from flint import arb
 import workhold
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fixture, InputError, Plate, Query, Result, Workpiece, design
-from workhold.listing.clamped_seats import undecided_pairs
+from workhold.listing.seats import undecided_pairs
 from workhold.model.fixture import Pair, Peg
-from workhold.model.load import Load
-from workhold.model.notes import no_pair_note
-from workhold.model.proof import AT_AN_EDGE, Undecided
-from workhold.model.restrictions import Restrictions, circle_zone
+from workhold.model.requirements import Load, Restrictions, circle_zone
+from workhold.model.search_report import AT_AN_EDGE, Undecided, no_pair_note
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.account import too_few_contacts
+from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallContact
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.listing import listing_of
-from workhold.verification.outline import BallOutline
 from workhold.verification.repeats import Seen
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.rules.stroke import WAYS, Stroke, clamp_place
+from workhold.verification.rules.travel import WAYS, Stroke, clamp_place
 from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
 from workhold.verification.seat_clamps import SeatClamp, Standing
 from workhold.verification.undecided import undecided_faults
@@ -56,13 +54,20 @@ def plate(**fields: Any) -> Plate:
     [
         (BLOCK, plate(), {}),
         (BLOCK, plate(), {"listing": "all"}),
-        (BLOCK, plate(clamp_radius=5, travel=(4, 30), directions=[("-x", "-x"), ("-y", "+y"), ("-x", "+y")]), {}),
+        (
+            BLOCK,
+            plate(clamp_radius=5, travel=(4, 30), directions=[("-x", "-x"), ("-y", "+y"), ("-x", "+y")]),
+            {},
+        ),
         (ANGLE, plate(travel=(6, 26)), {"listing": "all", "contact_margin": 0.5}),
         (EAR, plate(clamp_radius=2), {"loads": [Load(((25.0, 10.0),), 200.0)], "jaw_force": 300.0}),
         (
             ANGLE,
             plate(columns=5, rows=5),
-            {"restrictions": Restrictions((3,), (circle_zone(40.0, 23.0, 3.0),), ((-100.0, 95.0),)), "best": 30},
+            {
+                "restrictions": Restrictions((3,), (circle_zone(40.0, 23.0, 3.0),), ((-100.0, 95.0),)),
+                "best": 30,
+            },
         ),
     ],
 )
@@ -173,7 +178,9 @@ def test_contacts_make_no_more_seats_and_pairs_than_there_can_be(
     assert few == (max(found, pairs) > 10 or seats > 2)
 
 
-@pytest.mark.parametrize(("edit", "words"), BROKEN, ids=[f"{n} {words}" for n, (_, words) in enumerate(BROKEN)])
+@pytest.mark.parametrize(
+    ("edit", "words"), BROKEN, ids=[f"{n} {words}" for n, (_, words) in enumerate(BROKEN)]
+)
 def test_what_is_broken_by_hand_is_named(edited: Any, edit: Callable[[Data], object], words: str) -> None:
     """Of the first fixture; the others stay proven."""
     outcome = edited(lambda content: edit(content["fixtures"][0]))
@@ -213,14 +220,18 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
 
     assert told(lambda content: None) == told(lambda content: None, "all") == ""
     assert "seats says 3, but found says" in told(lambda content: content.update(seats=3))
-    assert "pairs says 12, but the fixtures listed stand for" in told(lambda content: content.update(pairs=12))
+    assert "pairs says 12, but the fixtures listed stand for" in told(
+        lambda content: content.update(pairs=12)
+    )
     assert "the key seats is missing" in told(lambda content: content.pop("seats"))
     assert "it has the seat and the directions of fixture 1" in told(
         lambda content: content["fixtures"].__setitem__(11, content["fixtures"][0])
     )
     assert "the one before it" in told(lambda content: content["fixtures"].reverse(), "all")
     assert "fixtures were found" in told(lambda content: content["proof"].update(verified=2))
-    assert "but the fixtures listed are at" in told(lambda content: content.update(seats=content["seats"] - 1), "all")
+    assert "but the fixtures listed are at" in told(
+        lambda content: content.update(seats=content["seats"] - 1), "all"
+    )
     assert "pairs says 5, but found says" in told(lambda content: content.update(pairs=5), "all")
     assert "it is the same as fixture 1" in told(
         lambda content: content["fixtures"].append(content["fixtures"][0]), "all"
@@ -238,7 +249,12 @@ def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
     less = len(result) - 1
     counts = {"clamp2": less}
     short = attrs.evolve(
-        result, table=result.table.take(kept), found=counts, distinct={"clamp2": 1}, pairs=less, query=result.query
+        result,
+        table=result.table.take(kept),
+        found=counts,
+        distinct={"clamp2": 1},
+        pairs=less,
+        query=result.query,
     )
     faults = [fault for fault in verify(short).faults if not fault.startswith("distinct")]
     assert len(faults) == 1 and "pairs of clamps at the seat of fixture" in faults[0]
@@ -270,7 +286,9 @@ def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) ->
 def standing(fixture: Fixture, workpiece: Workpiece, toolkit: Plate) -> Standing:
     """The seat of a fixture, at its pose as it is written."""
     rules, outline = ToolkitRules(toolkit), BallOutline.of(workpiece)
-    pose = Balls.of(arb(fixture.pose.theta_deg) * arb.pi() / 180, arb(fixture.pose.x), arb(fixture.pose.y), arb(0))
+    pose = Balls.of(
+        arb(fixture.pose.theta_deg) * arb.pi() / 180, arb(fixture.pose.x), arb(fixture.pose.y), arb(0)
+    )
     locators = [rules.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs[:3]]
     return Standing.of(fixture, locators, pose, Query(workpiece, toolkit), rules, outline)
 
@@ -300,7 +318,11 @@ def test_a_clamp_that_holds_alone_needs_no_other() -> None:
     toolkit = Plate((20, 20), 3, columns=8, rows=6, clamps=2, directions=[("-x", "-y")])
     looked_at = 0
     for fixture in single[:40]:
-        if fixture.direction != "-x" or min(peg.column for peg in fixture.pegs[:3]) or min(p.row for p in fixture.pegs):
+        if (
+            fixture.direction != "-x"
+            or min(peg.column for peg in fixture.pegs[:3])
+            or min(p.row for p in fixture.pegs)
+        ):
             continue
         seat = standing(fixture, workpiece, toolkit)
         assert fixture.pegs[3].place is not None
@@ -308,7 +330,9 @@ def test_a_clamp_that_holds_alone_needs_no_other() -> None:
         second = next(seat.clamps("-y"), None)
         if second is None:
             continue
-        first = attrs.evolve(second, direction="-x", line=alone.row, face=alone.face, tip=(arb(alone.x), arb(alone.y)))
+        first = attrs.evolve(
+            second, direction="-x", line=alone.row, face=alone.face, tip=(arb(alone.x), arb(alone.y))
+        )
         ruling = verify_fixture(with_clamps(fixture, first, second), workpiece, toolkit)
         assert ruling.verdict == "refuted"
         assert "clamp 1 holds the part without the other" in ruling.reason, ruling
@@ -321,7 +345,9 @@ def test_a_clamp_that_holds_alone_needs_no_other() -> None:
 def test_clamps_that_touch_each_other_are_none() -> None:
     """Two tips side by side on one face, nearer than both their radii."""
     workpiece = part(BLOCK)
-    thin = Plate((20, 10), 3, columns=6, rows=8, clamps=2, clamp_radius=4.9, directions=[("-x", "-x"), ("-x", "-y")])
+    thin = Plate(
+        (20, 10), 3, columns=6, rows=8, clamps=2, clamp_radius=4.9, directions=[("-x", "-x"), ("-x", "-y")]
+    )
     fat = attrs.evolve(thin, clamp_radius=5.1, peg_radius=3)
     words = []
     for toolkit in (thin, fat):

@@ -10,8 +10,7 @@ import pytest
 from undecided_examples import as_undecided
 from workhold import OpeningVise, Query, Result, Workpiece
 from workhold.model.fixture import Fixture
-from workhold.model.notes import undecided_note
-from workhold.model.proof import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
+from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided, undecided_note
 from workhold.verification import verify
 from workhold.verification.undecided import undecided_faults
 
@@ -65,7 +64,12 @@ def test_other_faces_and_holes(widget_result: Result, key: str, peg: int) -> Non
         for change in (1, -1):
             numbers = list(getattr(entry, key))
             numbers[peg] += change
-            assert faults(attrs.evolve(entry, **{key: tuple(numbers)}), widget_result), (entry, key, peg, change)
+            assert faults(attrs.evolve(entry, **{key: tuple(numbers)}), widget_result), (
+                entry,
+                key,
+                peg,
+                change,
+            )
 
 
 def test_chords_that_are_none(widget_result: Result) -> None:
@@ -117,7 +121,9 @@ def test_what_is_undecided_need_not_be_a_solution(
     faces: Any, columns: Any, rows: Any, theta: float, reach: float
 ) -> None:
     """It may miss one by as much as pegs move within its range of orientations, and by no more."""
-    holes = [[[x - r, y, 1], [x + r, y, 1]] for x, y, r in ((26, 24, 9), (78, 23, 11), (85, 55, 10), (14, 66, 11))]
+    holes = [
+        [[x - r, y, 1], [x + r, y, 1]] for x, y, r in ((26, 24, 9), (78, 23, 11), (85, 55, 10), (14, 66, 11))
+    ]
     part = Workpiece.from_loops("plate", [[[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]], *holes])
     query = Query(part, OpeningVise(pitch=10, columns=4, peg_radius=3))
     entry = Undecided("II", faces, columns, rows, theta, NEARLY_DOUBLE, reach)

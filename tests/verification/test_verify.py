@@ -15,7 +15,7 @@ from fixture_sets import vise_of
 from strategies import outlines, vises
 from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
 from workhold.files.result.writer import write_result
-from workhold.verification import fixture_proof, verify, verify_file, verify_fixture
+from workhold.verification import verify, verify_file, verify_fixture
 
 RING = [
     [[30.0, 0.0, 1.0], [-30.0, 0.0, 1.0]],
@@ -51,7 +51,9 @@ WEDGE = [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]
         (WEDGE, Vise(pitch=15, columns=1, peg_radius=0)),
     ],
 )
-def test_everything_a_search_lists_is_proven(part: str | list[list[list[float]]], vise: Vise, tmp_path: Path) -> None:
+def test_everything_a_search_lists_is_proven(
+    part: str | list[list[list[float]]], vise: Vise, tmp_path: Path
+) -> None:
     workpiece = load(part) if isinstance(part, str) else Workpiece.from_loops("part", part)
     result = design(workpiece, vise)
     write_result(result, tmp_path / "result.json")
@@ -142,10 +144,10 @@ def test_opening_the_vise_is_not_closing_it() -> None:
 def test_a_precision_that_is_too_low_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 20 bits nothing about contacts can be shown, and nothing false is."""
     result = design(Workpiece.from_loops("wedge", WEDGE), Vise(pitch=15, columns=1, peg_radius=2))
-    monkeypatch.setattr(fixture_proof, "PRECISIONS", (20,))
+    monkeypatch.setattr(verify, "PRECISIONS", (20,))
     low = verify(result)
     assert (low.proven, low.refuted) == (0, 0)
-    monkeypatch.setattr(fixture_proof, "PRECISIONS", (20, 200))
+    monkeypatch.setattr(verify, "PRECISIONS", (20, 200))
     high = verify(result)
     assert high.proven == len(result)
     assert high.bits == 200

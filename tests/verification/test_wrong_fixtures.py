@@ -118,7 +118,9 @@ def test_neighbours_of_fixtures(name: str) -> None:
     for _ in range(300):
         before = result[random.randrange(len(result))]
         holes = neighbour(random, before, vise, faces)
-        start = np.array([np.radians(before.pose.theta_deg), before.pose.x, before.pose.y, before.jaw_separation])
+        start = np.array(
+            [np.radians(before.pose.theta_deg), before.pose.x, before.pose.y, before.jaw_separation]
+        )
         z = None if holes is None else solved(workpiece, vise, holes, start)
         if holes is None or z is None:
             continue
@@ -133,7 +135,9 @@ def test_neighbours_of_fixtures(name: str) -> None:
         assert ruling.verdict == ("refuted" if faults else "proven"), (fixture, faults, ruling)
         seen[ruling.verdict] += 1
         seen.update(
-            word for word in ("past the end", "enters", "do not hold", "does not clamp") if word in ruling.reason
+            word
+            for word in ("past the end", "enters", "do not hold", "does not clamp")
+            if word in ruling.reason
         )
     assert seen["proven"] >= 10
     assert seen["refuted"] >= 40

@@ -25,7 +25,9 @@ def reverse_proxy(upstream: str, prefix: str) -> Iterator[str]:
                 self.send_error(404)
                 return
             body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
-            headers = [(k, v) for k, v in self.headers.items() if k.lower() not in ("connection", "x-forwarded-for")]
+            headers = [
+                (k, v) for k, v in self.headers.items() if k.lower() not in ("connection", "x-forwarded-for")
+            ]
             headers.append(("X-Forwarded-For", self.headers.get("X-Pretend", self.client_address[0])))
             with httpx.stream(
                 self.command, upstream + self.path[len(prefix) :], headers=headers, content=body, timeout=None

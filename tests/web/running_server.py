@@ -12,8 +12,7 @@ import httpx
 from attrs import define
 
 from workhold.files.part.load import load
-from workhold.web.guard import Hosts
-from workhold.web.limits import Limits
+from workhold.web.guard import Hosts, Limits
 from workhold.web.serve import Server, bound_socket, make_server
 from workhold.web.state import ServerState
 
@@ -116,7 +115,9 @@ def running_server(
         with httpx.Client(base_url=f"http://{host}:{port}", timeout=PATIENCE) as client:
             running = RunningServer(server, client, (host, port))
             state = running.state
-            running.wait_until(lambda: state.searchers.ready.is_set() and state.desks.ready.is_set(), START_PATIENCE)
+            running.wait_until(
+                lambda: state.searchers.ready.is_set() and state.desks.ready.is_set(), START_PATIENCE
+            )
             yield running
     finally:
         server.should_exit = True

@@ -29,7 +29,13 @@ def test_no_request_brings_out_a_mistake(server: RunningServer, job: str, name: 
     operation = OPERATIONS[name]
 
     @given(data=st.data(), exists=st.booleans())
-    @settings(max_examples=12, derandomize=True, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+    @settings(
+        max_examples=12,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
     def holds(data: Any, exists: bool) -> None:
         case = data.draw(operation.as_strategy())
         if exists and "name" in case.path_parameters and operation.method.upper() != "DELETE":

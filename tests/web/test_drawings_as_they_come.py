@@ -31,7 +31,15 @@ REMEDIES = (
 )
 CASES = [(kind, drawing) for kind, several in DRAWINGS.items() for drawing in several]
 # Of each kind one that asks for something.
-TRIED = {"unit-1.svg", "circle-1.dxf", "layers-4-4.dxf", "parts-1.svg", "gap-1-0.16.dxf", "cam-1.dxf", "ellipse-1.dxf"}
+TRIED = {
+    "unit-1.svg",
+    "circle-1.dxf",
+    "layers-4-4.dxf",
+    "parts-1.svg",
+    "gap-1-0.16.dxf",
+    "cam-1.dxf",
+    "ellipse-1.dxf",
+}
 TRIED |= {"chords-3.dxf"}
 
 
@@ -101,10 +109,23 @@ def test_the_command_says_what_to_add_and_leads_to_a_sheet(drawing: Drawing, tmp
     path.write_bytes(drawing.content)
     result, sheet = tmp_path / "result.json", tmp_path / "sheet.pdf"
     vise = vise_for(drawing.width or 60, drawing.height or 50)
-    words = ["--pitch", vise["pitch"][0], "--columns", 1, "--peg-radius", vise["peg_radius"], "--best", 1, "--list", 0]
+    words = [
+        "--pitch",
+        vise["pitch"][0],
+        "--columns",
+        1,
+        "--peg-radius",
+        vise["peg_radius"],
+        "--best",
+        1,
+        "--list",
+        0,
+    ]
     added: list[str] = []
     for _ in range(5):
-        outcome = CliRunner().invoke(app, [str(word) for word in ("design", path, *words, "--out", result, *added)])
+        outcome = CliRunner().invoke(
+            app, [str(word) for word in ("design", path, *words, "--out", result, *added)]
+        )
         if outcome.exit_code == 0:
             break
         assert outcome.exit_code == 2, outcome.output

@@ -10,9 +10,8 @@ from running_server import LONG, RunningServer, request
 
 from family_parts import shop_parts
 from workhold import Query, Vise
-from workhold.family.family import Asked, family_of
-from workhold.family.file import family_text
-from workhold.family.losses import RANKINGS
+from workhold.family.family import Asked, family_of, family_text
+from workhold.family.members import RANKINGS
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -39,11 +38,20 @@ def job(server: RunningServer) -> str:
 
 def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> None:
     state = server.client.get(job).json()
-    assert (state["kind"], state["state"], state["fraction"], state["complete"]) == ("family", "done", 1.0, True)
+    assert (state["kind"], state["state"], state["fraction"], state["complete"]) == (
+        "family",
+        "done",
+        1.0,
+        True,
+    )
     answer = server.client.get(f"{job}/family").json()
     vise = Vise(pitch=10, columns=1, peg_radius=3)
-    family = family_of([Asked(part.name, Query(part, vise, ranking=RANKINGS[1])) for part in PARTS], threads=1)
-    assert [(one["setups"], one["loss"]) for one in answer["points"]] == [(p.setups, p.loss) for p in family.points]
+    family = family_of(
+        [Asked(part.name, Query(part, vise, ranking=RANKINGS[1])) for part in PARTS], threads=1
+    )
+    assert [(one["setups"], one["loss"]) for one in answer["points"]] == [
+        (p.setups, p.loss) for p in family.points
+    ]
     assert [one["pegs_moved"] for one in answer["points"]] == [plan.moved for plan in family.plans]
     assert len(family.points) > 1
     for one, plan in zip(answer["points"], family.plans, strict=True):
@@ -60,7 +68,9 @@ def test_curve_and_sheets_are_made(server: RunningServer, job: str) -> None:
     assert curve.headers["content-type"].startswith("image/svg+xml") and "3 parts" in curve.text
     sheets = server.client.get(f"{job}/family/sheets.svg", params={"unit": "inch", "date": "2026-03-31"})
     assert (
-        "Set-up 1 of" in sheets.text and "2026-03-31" in sheets.text and all(part.name in sheets.text for part in PARTS)
+        "Set-up 1 of" in sheets.text
+        and "2026-03-31" in sheets.text
+        and all(part.name in sheets.text for part in PARTS)
     )
     assert sheets.text.count("Set-up 1 of 1") and "Set-up 1 of 2" not in sheets.text
     more = server.client.get(f"{job}/family/sheets.svg", params={"setups": 2})

@@ -36,7 +36,9 @@ def test_every_answer_has_the_headers(server: RunningServer, path: str) -> None:
         assert headers["cache-control"] == "no-store"
 
 
-@pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "127.0.0.1.evil.example", "10.0.0.1", "", "[::2]"])
+@pytest.mark.parametrize(
+    "host", ["evil.example", "evil.example:80", "127.0.0.1.evil.example", "10.0.0.1", "", "[::2]"]
+)
 def test_other_names_are_refused(server: RunningServer, host: str) -> None:
     refused(server.client.get("/api/about", headers={"Host": host}))
 
@@ -86,7 +88,9 @@ def test_compressed_requests_are_not_unpacked(server: RunningServer) -> None:
 
 def test_a_gigabyte_is_refused_before_it_is_sent(server: RunningServer) -> None:
     with socket.create_connection(server.address, timeout=PATIENCE) as connection:
-        connection.sendall(b"POST /api/parts HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000000\r\n\r\n")
+        connection.sendall(
+            b"POST /api/parts HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000000\r\n\r\n"
+        )
         assert b" 413 " in connection.recv(200)
 
 
@@ -100,7 +104,9 @@ def test_a_body_without_a_length_is_cut_off(server: RunningServer) -> None:
             yield bytes(1 << 16)
 
     try:
-        answer = server.client.post("/api/jobs", content=endless(), headers={"Content-Type": "application/json"})
+        answer = server.client.post(
+            "/api/jobs", content=endless(), headers={"Content-Type": "application/json"}
+        )
         refused(answer, 413)
     except (httpx.WriteError, httpx.RemoteProtocolError, httpx.ReadError):
         # The server stopped listening in the middle of it, and the client never looked at the answer.
@@ -111,5 +117,7 @@ def test_a_body_without_a_length_is_cut_off(server: RunningServer) -> None:
 @pytest.mark.parametrize("length", ["-1", "x", "9" * 30])
 def test_lengths_that_are_none_are_refused(server: RunningServer, length: str) -> None:
     with socket.create_connection(server.address, timeout=PATIENCE) as connection:
-        connection.sendall(f"POST /api/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: {length}\r\n\r\n".encode())
+        connection.sendall(
+            f"POST /api/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: {length}\r\n\r\n".encode()
+        )
         assert connection.recv(200).split(b" ")[1] in (b"400", b"413")

@@ -16,13 +16,12 @@ from running_server import LONG, PATIENCE, SQUARE, VISE, WIDGET, RunningServer, 
 from test_parts import refused
 
 from workhold.files.part.load import load
-from workhold.files.result.csv import write_result_csv_to
+from workhold.files.result.fixture_text import write_result_csv_to
 from workhold.files.result.writer import write_result_to
 from workhold.fixels.vise import Vise
-from workhold.model.load import Load
 from workhold.model.quality import FIGURES
+from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
-from workhold.model.tolerance import Tolerance
 from workhold.search.design import design
 from workhold.statics.loads import load_cases
 
@@ -85,12 +84,16 @@ def test_downloads_are_the_files_the_program_writes(server: RunningServer, job: 
 
 def test_pages_join_to_the_whole_list(server: RunningServer, job: str) -> None:
     whole = rows(server, job)
-    pages = [row for offset in range(0, len(whole) + 50, 50) for row in rows(server, job, offset=offset, limit=50)]
+    pages = [
+        row for offset in range(0, len(whole) + 50, 50) for row in rows(server, job, offset=offset, limit=50)
+    ]
     assert pages == whole
 
 
 # Those of loads and of two clamps are of other searches.
-@pytest.mark.parametrize("key", [one.key for one in FIGURES if one.unit != "N" and one.key != "clamp_freedom"])
+@pytest.mark.parametrize(
+    "key", [one.key for one in FIGURES if one.unit != "N" and one.key != "clamp_freedom"]
+)
 @pytest.mark.parametrize("descending", [False, True])
 def test_lists_are_sorted_by_any_figure(server: RunningServer, job: str, key: str, descending: bool) -> None:
     listed = rows(server, job, sort=key, descending=descending)
@@ -106,12 +109,24 @@ def test_filters_keep_exactly_what_they_say(server: RunningServer, job: str) -> 
     turned = rows(server, job, angle="-20..45")
     assert turned == [row for row in whole if row["theta_deg"] >= 340 or row["theta_deg"] <= 45] != []
     some = server.client.get(f"{job}/fixtures", params={"type": "I", "face": 9, "limit": 3}).json()
-    assert len(some["rows"]) == 3 and some["total"] == sum(row["type"] == "I" and 9 in row["faces"] for row in whole)
+    assert len(some["rows"]) == 3 and some["total"] == sum(
+        row["type"] == "I" and 9 in row["faces"] for row in whole
+    )
 
 
 @pytest.mark.parametrize(
     "query",
-    ["limit=0", "limit=5000", "offset=-1", "sort=beauty", "type=III", "angle=10", "angle=5..1", "angle=a..b", "face=x"],
+    [
+        "limit=0",
+        "limit=5000",
+        "offset=-1",
+        "sort=beauty",
+        "type=III",
+        "angle=10",
+        "angle=5..1",
+        "angle=a..b",
+        "face=x",
+    ],
 )
 def test_queries_that_mean_nothing_are_refused(server: RunningServer, job: str, query: str) -> None:
     refused(server.client.get(f"{job}/fixtures?{query}"))
@@ -158,11 +173,16 @@ def test_loads_are_answered_as_by_the_program(server: RunningServer, job: str, r
     assert told["smallest"] == pytest.approx(list(case.smallest)) and told["largest"] == pytest.approx(
         list(case.largest)
     )
-    assert told["needed"]["value"] == pytest.approx(case.needed.value) and told["needed"]["peg"] == case.needed.peg
+    assert (
+        told["needed"]["value"] == pytest.approx(case.needed.value)
+        and told["needed"]["peg"] == case.needed.peg
+    )
     assert told["needed_with_friction"] == pytest.approx(case.needed_with_friction)
 
 
-def test_those_that_resist_best_are_first_of_a_search_ranked_by_the_reaction(server: RunningServer, job: str) -> None:
+def test_those_that_resist_best_are_first_of_a_search_ranked_by_the_reaction(
+    server: RunningServer, job: str
+) -> None:
     best = server.client.post(f"{job}/resist", json={"loads": [LOAD]}).json()["best"]
     ranked = server.done(request(loads=[LOAD], ranking=["load_reaction"]))
     expected = [row["quality"]["load_reaction"] for row in rows(server, ranked, limit=10)]
@@ -206,7 +226,13 @@ def test_papers_are_made_and_the_same_each_time(
 
 def test_the_sheet_has_the_loads_jaw_and_sizes_of_its_address(server: RunningServer, job: str) -> None:
     """A force pushed on the page, the jaw force, what the jaw is, thickness, dowel: all stand on the sheet."""
-    load = {"name": "pushed", "points": [[1.0, 2.0]], "force": 150.0, "directions": [30.0, 30.0], "moment": 0.0}
+    load = {
+        "name": "pushed",
+        "points": [[1.0, 2.0]],
+        "force": 150.0,
+        "directions": [30.0, 30.0],
+        "moment": 0.0,
+    }
     query = {
         "loads": json.dumps([load]),
         "jaw_force": 750,
@@ -237,7 +263,10 @@ def test_the_sheet_has_the_loads_jaw_and_sizes_of_its_address(server: RunningSer
         params = {"loads": json.dumps([load]), "jaw_force": 750, "jaw": jaw}
         sheet = server.client.get(f"{job}/fixtures/1/sheet.svg", params=params).text
         forces[jaw] = " ".join(re.findall(r">([^<>]+)</text>", sheet))
-    assert "a jaw that keeps its force" in forces["constant"] and "a jaw that keeps its force" not in forces["screw"]
+    assert (
+        "a jaw that keeps its force" in forces["constant"]
+        and "a jaw that keeps its force" not in forces["screw"]
+    )
 
 
 def test_warnings_are_the_sentences_of_the_sheet(server: RunningServer, job: str) -> None:
@@ -245,9 +274,9 @@ def test_warnings_are_the_sentences_of_the_sheet(server: RunningServer, job: str
     load = json.dumps([{**LOAD, "force": 5000.0}])
     for rank in (1, 4, 9):
         told = server.client.get(f"{job}/fixtures/{rank}/warnings").json()["warnings"]
-        more = server.client.get(f"{job}/fixtures/{rank}/warnings", params={"loads": load, "jaw_force": 1}).json()[
-            "warnings"
-        ]
+        more = server.client.get(
+            f"{job}/fixtures/{rank}/warnings", params={"loads": load, "jaw_force": 1}
+        ).json()["warnings"]
         assert {one["kind"] for one in more} == {one["kind"] for one in told} | {"load"}
         sheet = server.client.get(f"{job}/fixtures/{rank}/sheet.svg").text
         words = " ".join(re.findall(r">([^<>]+)</text>", sheet))
@@ -264,7 +293,9 @@ def test_warnings_of_what_cannot_be_are_refused(server: RunningServer, job: str,
     refused(server.client.get(f"{job}/fixtures/1/sheet.svg?{query}"))
 
 
-@pytest.mark.parametrize("query", ["sheet.pdf?paper=a3", "sheet.pdf?unit=foot", "sheet.pdf?date=today", "sheet.exe"])
+@pytest.mark.parametrize(
+    "query", ["sheet.pdf?paper=a3", "sheet.pdf?unit=foot", "sheet.pdf?date=today", "sheet.exe"]
+)
 def test_papers_that_there_are_not_are_refused(server: RunningServer, job: str, query: str) -> None:
     refused(server.client.get(f"{job}/fixtures/1/{query}"))
 
@@ -323,7 +354,9 @@ def test_restrictions_ranking_and_tolerance_are_heeded(server: RunningServer) ->
         {"unknown": 1},
     ],
 )
-def test_searches_that_cannot_be_are_refused_before_they_begin(server: RunningServer, change: dict[str, Any]) -> None:
+def test_searches_that_cannot_be_are_refused_before_they_begin(
+    server: RunningServer, change: dict[str, Any]
+) -> None:
     before = len(server.state.jobs.by_name)
     refused(server.client.post("/api/jobs", json=request(**change)))
     assert len(server.state.jobs.by_name) == before
@@ -331,7 +364,10 @@ def test_searches_that_cannot_be_are_refused_before_they_begin(server: RunningSe
 
 def test_no_fixture_is_explained(server: RunningServer, job: str) -> None:
     url = server.done(
-        {"workpiece": {"name": "s", "loops": [SQUARE]}, "toolkit": {"pitch": [50, 50], "columns": 1, "peg_radius": 3}}
+        {
+            "workpiece": {"name": "s", "loops": [SQUARE]},
+            "toolkit": {"pitch": [50, 50], "columns": 1, "peg_radius": 3},
+        }
     )
     state = server.client.get(url).json()
     assert state["found"] == 0 and state["notes"]
@@ -360,7 +396,11 @@ def test_all_kinds_are_compared_and_others_refused(server: RunningServer) -> Non
 
 
 def test_toolkits_are_compared(server: RunningServer) -> None:
-    toolkits = [{**VISE, "title": "one"}, {**VISE, "pitch": [12, 12], "title": "two"}, {**VISE, "pitch": [500, 500]}]
+    toolkits = [
+        {**VISE, "title": "one"},
+        {**VISE, "pitch": [12, 12], "title": "two"},
+        {**VISE, "pitch": [500, 500]},
+    ]
     url = server.done({"workpiece": WIDGET, "toolkits": toolkits}, "/api/explore")
     state = server.client.get(url).json()
     assert [row["title"] for row in state["table"]] == ["one", "two", ""]
@@ -394,7 +434,15 @@ def test_a_deleted_job_is_gone_and_its_worker_free(server: RunningServer) -> Non
     assert server.client.get(waiting).json()["state"] == "queued"
     assert server.client.delete(url).status_code == 204
     assert server.client.delete(url).status_code == 204
-    for path in ("", "/events", "/fixtures", "/fixtures/1", "/result.json", "/explanation", "/fixtures/1/sheet.pdf"):
+    for path in (
+        "",
+        "/events",
+        "/fixtures",
+        "/fixtures/1",
+        "/result.json",
+        "/explanation",
+        "/fixtures/1/sheet.pdf",
+    ):
         refused(server.client.get(url + path), 404)
     assert server.outcome(waiting)["state"] == "done"
 

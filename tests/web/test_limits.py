@@ -48,7 +48,9 @@ def test_large_files_and_requests_are_refused(small: RunningServer) -> None:
 
 def test_parts_of_many_segments_are_refused(small: RunningServer) -> None:
     many = [[k, 0, 0] for k in range(20)] + [[10, 10, 0]]
-    assert "21 segments" in refused(small.client.post("/api/parts/check", json={"name": "m", "loops": [many]}))
+    assert "21 segments" in refused(
+        small.client.post("/api/parts/check", json={"name": "m", "loops": [many]})
+    )
     refused(small.client.post("/api/jobs", json=request(workpiece={"name": "m", "loops": [many]})))
 
 

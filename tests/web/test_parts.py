@@ -10,7 +10,7 @@ import pytest
 from running_server import SQUARE, WIDGET, RunningServer
 
 from workhold.files.part.load import builtin_parts, read_workpiece
-from workhold.files.toolkit.presets import load_toolkit, preset_names
+from workhold.files.toolkit_file import load_toolkit, preset_names
 from workhold.fixels.kinds import toolkit_of
 from workhold.model.quality import FIGURES
 
@@ -50,7 +50,9 @@ def test_every_builtin_part_is_listed_and_read(server: RunningServer) -> None:
         assert [face["number"] for face in answer["faces"]] == [face.number for face in workpiece.faces]
 
 
-@pytest.mark.parametrize("name", ["nothing", "..%2F..%2Fetc%2Fpasswd", "%2Fetc%2Fpasswd", "widget.json", "con%00"])
+@pytest.mark.parametrize(
+    "name", ["nothing", "..%2F..%2Fetc%2Fpasswd", "%2Fetc%2Fpasswd", "widget.json", "con%00"]
+)
 def test_only_builtin_names_are_parts(server: RunningServer, name: str) -> None:
     refused(server.client.get(f"/api/parts/{name}"), 404)
 
@@ -110,7 +112,10 @@ def test_a_files_name_is_never_a_path(server: RunningServer, name: str) -> None:
         (b"<svg xmlns='http://www.w3.org/2000/svg'/>", "none.svg"),
         (b"ISO-10303-21;garbage", "part.step"),
         (b"\xff\xfe\x00" * 50, "part.json"),
-        (json.dumps({"units": "mm", "loops": [[[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]]}).encode(), "bow.json"),
+        (
+            json.dumps({"units": "mm", "loops": [[[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]]}).encode(),
+            "bow.json",
+        ),
     ],
 )
 def test_what_is_no_part_is_refused_in_a_sentence(server: RunningServer, content: bytes, name: str) -> None:
@@ -167,14 +172,23 @@ def test_figures_are_all_told(server: RunningServer) -> None:
 
 
 def test_there_is_nothing_elsewhere(server: RunningServer) -> None:
-    for path in ("/static/../limits.py", "/static/%2e%2e/limits.py", "/static/", "/api/none", "/docs", "/etc/passwd"):
+    for path in (
+        "/static/../limits.py",
+        "/static/%2e%2e/limits.py",
+        "/static/",
+        "/api/none",
+        "/docs",
+        "/etc/passwd",
+    ):
         refused(server.client.get(path), 404)
     refused(server.client.put("/api/parts"), 405)
 
 
 def survey(server: RunningServer, content: bytes, name: str, **query: Any) -> dict[str, Any]:
     """What a file leaves open."""
-    answer = server.client.post("/api/parts/survey", content=content, headers={"X-Filename": name}, params=query)
+    answer = server.client.post(
+        "/api/parts/survey", content=content, headers={"X-Filename": name}, params=query
+    )
     assert answer.status_code == 200, answer.text
     told: dict[str, Any] = answer.json()
     return told

@@ -15,10 +15,10 @@ from test_parts import refused
 
 import workhold
 from workhold import Plate, Vise, Workpiece
-from workhold.model.notes import by_hand_note
 from workhold.model.result import Result
+from workhold.model.search_report import by_hand_note
 from workhold.model.seating import Seating
-from workhold.web.seating import ClosingForm, ClosingOrder, close
+from workhold.web.fixture_tasks import ClosingForm, ClosingOrder, close
 from workhold.web.worker import Order
 
 CORNERS = [[0, 0, 0], [70, 0, 0], [25, 55, 0]]
@@ -65,7 +65,10 @@ def test_figures_and_sentences_are_the_programs(server: RunningServer, place: st
     assert told.seats[answer["own"]].is_own
     off = [abs(answer["seats"][k]["difference"]) for k in answer["nearest"]]
     assert off == sorted(off) and len(off) == fields["wrong_seats"]
-    assert answer["captions"][answer["own"]] == [f"S = {told.seats[answer['own']].jaw_separation:.3f} mm", "right"]
+    assert answer["captions"][answer["own"]] == [
+        f"S = {told.seats[answer['own']].jaw_separation:.3f} mm",
+        "right",
+    ]
     assert answer["done"] == "Opened"
     assert all(sentence.endswith(".") for sentence in (*answer["steps"], *answer["words"]))
     inches = server.client.get(f"{place}/seating", params={"unit": "inch"}).json()
@@ -87,7 +90,10 @@ def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer,
     for asked in ({"opening": 1.0}, {"foolproof": True}, {"seating": 0}, {"seating": 3, "opening": -1}):
         refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, toolkit=VISE, **asked)), 400)
     for asked in ({"opening": 1.0}, {"foolproof": True}):
-        refused(server.client.post("/api/jobs", json=request(workpiece=WEDGE, toolkit=plate, seating=3, **asked)), 400)
+        refused(
+            server.client.post("/api/jobs", json=request(workpiece=WEDGE, toolkit=plate, seating=3, **asked)),
+            400,
+        )
 
 
 def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) -> None:
@@ -109,7 +115,9 @@ def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) ->
     assert "put against its locators by hand" in answer.text
 
 
-def test_a_closing_comes_home_from_the_cage(server: RunningServer, place: str, result: Result, told: Seating) -> None:
+def test_a_closing_comes_home_from_the_cage(
+    server: RunningServer, place: str, result: Result, told: Seating
+) -> None:
     """A way from where the part was put to where the fixture has it; the jaws only close."""
     opening = 0.5 * (told.capture_opening or 0.0)
     asked = {**put(result, 1.0, 0.4 * opening, 0.0), "opening": opening}
@@ -131,7 +139,9 @@ def test_a_closing_ends_in_the_wrong_seat_that_it_is_put_over(
         index, seat = next(
             (k, one)
             for k, one in enumerate(told.seats)
-            if one.is_wrong and one.mirrored == mirrored and (one.depth or 0.0) > max(-one.difference, 0.0) + 0.02
+            if one.is_wrong
+            and one.mirrored == mirrored
+            and (one.depth or 0.0) > max(-one.difference, 0.0) + 0.02
         )
         pose = {"theta_deg": seat.pose.theta_deg, "x": seat.pose.x, "y": seat.pose.y, "turned_over": mirrored}
         asked = {**pose, "opening": max(seat.difference, 0.0) + 0.01, "unit": "inch"}
@@ -141,8 +151,12 @@ def test_a_closing_ends_in_the_wrong_seat_that_it_is_put_over(
         assert f"{off} than when it is right." in answer["words"]
 
 
-def test_a_part_beside_the_pegs_is_told_to_slip_out(server: RunningServer, place: str, result: Result) -> None:
-    answer = server.client.post(f"{place}/closing", json={**put(result, 0.0, 0.0, 900.0), "opening": 3.0}).json()
+def test_a_part_beside_the_pegs_is_told_to_slip_out(
+    server: RunningServer, place: str, result: Result
+) -> None:
+    answer = server.client.post(
+        f"{place}/closing", json={**put(result, 0.0, 0.0, 900.0), "opening": 3.0}
+    ).json()
     assert (answer["ending"], answer["seat"]) == ("outside", None) and "slips out" in answer["words"]
 
 
@@ -157,12 +171,19 @@ def test_a_part_beside_the_pegs_is_told_to_slip_out(server: RunningServer, place
         ({"unit": "foot"}, 400),
     ],
 )
-def test_bad_starts_are_refused(server: RunningServer, place: str, result: Result, change: Any, status: int) -> None:
-    refused(server.client.post(f"{place}/closing", json={**put(result, 0, 0, 0), "opening": 1.0, **change}), status)
+def test_bad_starts_are_refused(
+    server: RunningServer, place: str, result: Result, change: Any, status: int
+) -> None:
+    refused(
+        server.client.post(f"{place}/closing", json={**put(result, 0, 0, 0), "opening": 1.0, **change}),
+        status,
+    )
 
 
 def test_a_peg_in_the_part_is_told_by_its_hole(server: RunningServer, place: str, result: Result) -> None:
-    sentence = refused(server.client.post(f"{place}/closing", json={**put(result, 0.0, -15.0, 0.0), "opening": 0.1}))
+    sentence = refused(
+        server.client.post(f"{place}/closing", json={**put(result, 0.0, -15.0, 0.0), "opening": 0.1})
+    )
     assert "stands in the part there" in sentence and any(peg.hole in sentence for peg in result[1].pegs)
 
 
@@ -184,7 +205,9 @@ def test_few_seatings_are_kept_of_a_job(server: RunningServer, place: str, told:
     job = server.state.jobs.by_name[place.split("/")[3]]
     assert server.client.get(f"{place}/seating").status_code == 200
     kept = job.seatings[(job.revision, 2)]
-    assert server.client.get(f"{place}/seating").status_code == 200 and job.seatings[(job.revision, 2)] is kept
+    assert (
+        server.client.get(f"{place}/seating").status_code == 200 and job.seatings[(job.revision, 2)] is kept
+    )
     for number in range(100):
         job.keep_seating((-1, number), told)
     assert len(job.seatings) < 100 and (-1, 99) in job.seatings and (-1, 0) not in job.seatings
@@ -195,7 +218,9 @@ def test_the_sheet_of_the_page_tells_it_when_asked(server: RunningServer, place:
     assert "Will it end up there?" not in server.client.get(f"{place}/sheet.svg").text
 
 
-def test_a_closing_that_nobody_waits_for_is_not_begun(server: RunningServer, place: str, result: Result) -> None:
+def test_a_closing_that_nobody_waits_for_is_not_begun(
+    server: RunningServer, place: str, result: Result
+) -> None:
     """Who hangs up while the desk is busy leaves its queue, and the next one is answered."""
     assert server.client.get(f"{place}/seating").status_code == 200
     body = json.dumps({**put(result, 1.0, 1.0, 0.0), "opening": 3.0}).encode()

@@ -16,7 +16,7 @@ import pytest
 from running_server import PATIENCE
 
 from workhold.cli.main import app
-from workhold.cli.serve_command import FIRST_RUN
+from workhold.cli.serving_commands import FIRST_RUN
 
 COMMAND = [sys.executable, "-m", "workhold", "serve"]
 
@@ -41,7 +41,9 @@ def test_it_serves_and_leaves_nothing_behind(ending: signal.Signals) -> None:
     assert found, line + process.stderr.read()
     about = httpx.get(f"{found[0]}api/about", timeout=PATIENCE).json()
     assert about["limits"]["seconds"] == 77.0
-    children = [int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+    children = [
+        int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    ]
     assert children
     process.send_signal(ending)
     assert process.wait(PATIENCE) == {signal.SIGINT: 0, signal.SIGKILL: -signal.SIGKILL}[ending]

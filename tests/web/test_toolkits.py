@@ -10,8 +10,8 @@ import pytest
 from attrs import fields_dict
 from running_server import WIDGET, RunningServer, request
 
-from workhold.files.toolkit.presets import load_toolkit, preset_names
-from workhold.fixels.directions import DIRECTIONS
+from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
 from workhold.fixels.plate import Plate
 from workhold.web.forms import JobForm
@@ -89,7 +89,9 @@ def test_fixtures_of_a_plate_are_told_apart_by_their_direction(server: RunningSe
         page = server.client.get(f"{url}/fixtures", params={"type": name, "limit": 1000}).json()
         totals[name] = page["total"]
         titles = {row["title"] for row in page["rows"]}
-        assert titles == {"Clamp −x", "Clamp −y"} if name == "clamp" else {name.capitalize().replace("-", "−")}
+        assert (
+            titles == {"Clamp −x", "Clamp −y"} if name == "clamp" else {name.capitalize().replace("-", "−")}
+        )
     assert totals["clamp"] == totals["clamp -x"] + totals["clamp -y"] == state["listed"]
     assert totals["clamp -x"] and totals["clamp -y"]
     assert server.client.get(f"{url}/fixtures", params={"type": "I"}).status_code == 400
@@ -116,7 +118,10 @@ def test_what_would_help_says_which_fields_change(server: RunningServer) -> None
     assert changes
     for fields in changes:
         assert (
-            server.client.get(server.done(request(workpiece=RECTANGLE, toolkit={**vise, **fields}))).json()["found"] > 0
+            server.client.get(server.done(request(workpiece=RECTANGLE, toolkit={**vise, **fields}))).json()[
+                "found"
+            ]
+            > 0
         )
 
 
@@ -141,7 +146,10 @@ def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer)
 
 def test_a_fence_is_answered_with_its_bar_and_the_contacts_on_it(server: RunningServer) -> None:
     """The ends of the contact are numbered among the pegs, after the locator; a corner tells that it is one."""
-    shape = {**RECTANGLE, "loops": [[[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]]}
+    shape = {
+        **RECTANGLE,
+        "loops": [[[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]],
+    }
     vise = {"kind": "edge", "pitch": [10, 10], "peg_radius": 3, "wall_offset": 5}
     url = server.done(request(workpiece=shape, toolkit=vise))
     (row, *_) = server.client.get(f"{url}/fixtures", params={"limit": 5}).json()["rows"]

@@ -18,8 +18,7 @@ from running_server import LONG, PATIENCE, RunningServer, arriving, request, run
 
 from workhold.cli.main import app
 from workhold.web import serve
-from workhold.web.guard import Hosts
-from workhold.web.limits import Limits, usual_memory
+from workhold.web.guard import Hosts, Limits, usual_memory
 from workhold.web.pool import BusyError, Pool, Task
 
 T = TypeVar("T")
@@ -136,7 +135,9 @@ def drips(shared: RunningServer, stack: ExitStack, address: str) -> socket.socke
     return one
 
 
-def test_slow_uploads_of_one_client_leave_places_for_others(shared: RunningServer, other: httpx.Client) -> None:
+def test_slow_uploads_of_one_client_leave_places_for_others(
+    shared: RunningServer, other: httpx.Client
+) -> None:
     """Files that arrive byte by byte take no more places than one client has; the next of it is told so."""
     head = f"POST /api/parts HTTP/1.1\r\nHost: 127.0.0.1:{shared.address[1]}\r\nContent-Length: 1000\r\n\r\nx"
     with ExitStack() as stack:
@@ -149,7 +150,9 @@ def test_slow_uploads_of_one_client_leave_places_for_others(shared: RunningServe
         refused = [one.recv(200).split(b"\r\n")[0] for one in slow[2:]]
         assert all(b"429" in line for line in refused)
         body = b'{"name": "square", "units": "mm", "loops": [[[0,0,0],[30,0,0],[30,30,0],[0,30,0]]]}'
-        assert other.post("/api/parts", content=body, headers={"X-Filename": "square.json"}).status_code == 200
+        assert (
+            other.post("/api/parts", content=body, headers={"X-Filename": "square.json"}).status_code == 200
+        )
 
 
 def test_idle_connections_of_one_client_leave_some_for_others(
@@ -203,10 +206,16 @@ def test_a_token_lets_in_who_has_it() -> None:
                 assert answer.status_code == 401
                 assert "token" in answer.json()["error"]
             assert fresh.post("/api/jobs?token=secret-of-the-shop", json=request()).status_code == 401
-            assert fresh.get("/api/about", headers={"Authorization": "Bearer secret-of-the-shop"}).status_code == 200
+            assert (
+                fresh.get("/api/about", headers={"Authorization": "Bearer secret-of-the-shop"}).status_code
+                == 200
+            )
             welcome = fresh.get("/?token=secret-of-the-shop")
             assert welcome.status_code == 303 and welcome.headers["location"] == "./"
-            assert "HttpOnly" in welcome.headers["set-cookie"] and "SameSite=Strict" in welcome.headers["set-cookie"]
+            assert (
+                "HttpOnly" in welcome.headers["set-cookie"]
+                and "SameSite=Strict" in welcome.headers["set-cookie"]
+            )
             assert fresh.get("/api/about").status_code == 200
 
 

@@ -33,7 +33,9 @@ def tell(pid: int, what: signal.Signals) -> None:
 def test_a_killed_worker_fails_its_search_only(pair: RunningServer) -> None:
     # One client never has all workers.
     with pair.client_from("127.0.0.2") as other:
-        clients = {client.post("/api/jobs", json=LONG).json()["url"]: client for client in (pair.client, other)}
+        clients = {
+            client.post("/api/jobs", json=LONG).json()["url"]: client for client in (pair.client, other)
+        }
         for url in clients:
             pair.state_when(url, lambda state: state["state"] == "running")
         tell(pids(pair)[0], signal.SIGKILL)

@@ -13,7 +13,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.constraints import Complex
+from workhold.algebra.resultants import Complex
 from workhold.contact.frame import Frame
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, RISES, ROW_SLACK
 from workhold.kernels.base.feature import (
@@ -28,8 +28,8 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
-from workhold.kernels.contact import closure, record
-from workhold.statics.wrenches import outward_normals
+from workhold.kernels.contact import record, rules
+from workhold.statics.contact_matrix import outward_normals
 
 __all__ = ["SimultaneousContacts", "fourth_pegs", "joined", "records_of", "row_points"]
 
@@ -102,12 +102,16 @@ def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: fl
     inside = within_ends(rows[held.feature], held.center, margin, radius[:, None])
     held = held.take(np.asarray(inside.all(axis=1)))
     along = (held.center * np.exp(-1j * held.psi)[:, None]).real
-    gap = along[:, held.standing :].min(axis=1, initial=np.inf) - along[:, : held.standing].max(axis=1, initial=-np.inf)
+    gap = along[:, held.standing :].min(axis=1, initial=np.inf) - along[:, : held.standing].max(
+        axis=1, initial=-np.inf
+    )
     clear = np.asarray(gap >= frame.gap - GAP_SLACK - 8.0 * length * held.reach)
     held, along = held.take(clear), along[clear]
     points = np.stack([held.center.real, held.center.imag], axis=-1)
     held_rows = rows[held.feature][..., :SEGMENT_LENGTH]
-    good = may_close(held, held_rows, outward_normals(held_rows, points), points, length, frame.toolkit.clamping)
+    good = may_close(
+        held, held_rows, outward_normals(held_rows, points), points, length, frame.toolkit.clamping
+    )
     out = np.zeros((len(held.psi), record.RECORD_LENGTH))
     out[:, record.STANDING] = held.standing
     out[:, record.FEATURES : record.FEATURES + 4] = held.feature
@@ -130,10 +134,12 @@ def may_close(
     """
     radius = 4.0 * length * held.reach
     curvature = np.where(
-        held_rows[..., IS_ARC] == 0.0, 0.0, 1.0 / np.where(held_rows[..., RADIUS] == 0.0, 1.0, held_rows[..., RADIUS])
+        held_rows[..., IS_ARC] == 0.0,
+        0.0,
+        1.0 / np.where(held_rows[..., RADIUS] == 0.0, 1.0, held_rows[..., RADIUS]),
     )
     swing = radius * curvature.max(axis=1, initial=0.0)
-    band = 20.0 * swing + 4.0 * radius / length + closure.ROUNDING
+    band = 20.0 * swing + 4.0 * radius / length + rules.ROUNDING
     minors = wrench_minors(points, normals, length)
     minors = minors * np.where(minors.max(axis=1) >= -minors.min(axis=1), 1.0, -1.0)[:, None]
     size = np.abs(minors).sum(axis=1)
@@ -149,7 +155,7 @@ def may_close(
 def wrench_minors(points: Array, normals: Array, length: float) -> Array:
     """Null vectors of four contacts' wrenches (n, (q - c) x n / L), not scaled: their signed 3x3 minors (Cramer's rule).
 
-    Not ``kernels.contact.closure.minors``: the algebra is a second opinion and asks for closure by itself.
+    Not ``kernels.contact.rules.minors``: the algebra is a second opinion and asks for closure by itself.
 
     Parameters
     ----------

@@ -1,7 +1,11 @@
-"""The paper's own algorithm: generate candidate quartets and pegs, solve their polynomials, test (paper, section 3).
+"""The paper's own algorithm: generate candidate quartets and pegs, solve their polynomials, test (section 3).
 
-It serves what the paper is about: two carriers alike, of which a half turn makes the other, with two pegs on each or with
-three and one. Its left and right pegs, Types I and II are those of the frame of the search.
+It serves what the paper is about: two carriers alike, of which a half turn makes the other, with two pegs on
+each or with three and one. Its left and right pegs, Types I and II are those of the frame of the search.
+
+A system is undecided when its resultant vanishes at every orientation although no known reason applies
+(``sliding_pairs``), or when its roots cannot be separated at 1,024 bits. Only fixtures with these pegs on
+these faces may then be missing, and the user is told of them.
 """
 
 from __future__ import annotations
@@ -13,12 +17,11 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
+from workhold.algebra.candidates import Systems, are_parallel, peg_pairs, type_one_systems, type_two_systems
 from workhold.algebra.conditions import SimultaneousContacts, fourth_pegs, records_of
 from workhold.algebra.conditions import joined as together
-from workhold.algebra.constraints import ContactSystems
-from workhold.algebra.poses import peg_centers, poses_at
-from workhold.algebra.quartets import Systems, are_parallel, type_one_systems, type_two_systems
-from workhold.algebra.roots import orientations
+from workhold.algebra.poses import orientations, peg_centers, poses_at
+from workhold.algebra.resultants import ContactSystems
 from workhold.algebra.sliding_pairs import (
     alike,
     alike_orientations,
@@ -26,19 +29,50 @@ from workhold.algebra.sliding_pairs import (
     three_and_one_sliding_pairs,
     two_and_two_sliding_pairs,
 )
-from workhold.algebra.undecided import undecided_notes
-from workhold.algebra.wedges import peg_pairs
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_CENTER
 from workhold.errors import InputError
 from workhold.kernels.base.feature import SEGMENT_LENGTH
-from workhold.listing.listed import Work, listed_result
-from workhold.listing.ways import joined_ways
+from workhold.listing.results import Work, joined_ways, listed_result
 from workhold.model.query import Query
 from workhold.model.result import Result
 
-__all__ = ["answer_by_algebra"]
+__all__ = ["answer_by_algebra", "undecided_notes"]
+
+# Systems named; the others are counted.
+MOST_NAMED = 20
+
+
+def undecided_notes(undecided: Sequence[Systems], faces: NDArray[np.int64]) -> Iterator[str]:
+    """One sentence for each undecided system.
+
+    Parameters
+    ----------
+    faces : (F,) number of each feature's face.
+    """
+    sentences = [
+        f"Undecided: {in_words(faces[feature].tolist(), column.tolist(), row.tolist())}."
+        for systems in undecided
+        for feature, column, row in zip(systems.feature, systems.column, systems.row, strict=True)
+    ]
+    yield from sentences[:MOST_NAMED]
+    if len(sentences) > MOST_NAMED:
+        yield f"Undecided: {len(sentences) - MOST_NAMED} more systems of pegs and faces."
+
+
+def in_words(faces: list[int], columns: list[int], rows: list[int]) -> str:
+    """Three left pegs, or two left and two right ones, with the faces they touch.
+
+    Columns count from the first peg of the same jaw, rows from the first peg of all.
+    """
+    jaws = ["left"] * 3 if len(faces) == 3 else ["left", "left", "right", "right"]
+    words = [
+        f"{jaw} column {column:+d}, row {row:+d} on face {face}"
+        for jaw, column, row, face in zip(jaws, columns, rows, faces, strict=True)
+    ]
+    return "pegs in " + "; ".join(words)
+
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -104,7 +138,9 @@ class ResultantSolver:
         # Systems of three pegs are those of the standing pegs alone.
         standing = 2 if systems.feature.shape[1] == 4 else 3
         center = peg_centers(contacts, poses) * self.diameter
-        return SimultaneousContacts(standing, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center)
+        return SimultaneousContacts(
+            standing, chosen.feature, chosen.column, chosen.row, poses.psi, poses.reach, center
+        )
 
     def orientations(self, contacts: ContactSystems, case: Case, systems: Systems) -> tuple[IntArray, Array]:
         """Indices of systems and their orientations in radians."""
@@ -139,7 +175,9 @@ def three_meet_in_a_point(systems: Systems, rows: Array) -> NDArray[np.bool_]:
     """Which systems have three concentric arcs: their normals meet, and never close."""
     center = rows[systems.feature, 1] + 1j * rows[systems.feature, 2]
     arc = rows[systems.feature, 0] != 0.0
-    same = (np.abs(center[:, :, None] - center[:, None, :]) <= SAME_CENTER) & arc[:, :, None] & arc[:, None, :]
+    same = (
+        (np.abs(center[:, :, None] - center[:, None, :]) <= SAME_CENTER) & arc[:, :, None] & arc[:, None, :]
+    )
     return np.asarray((same.sum(axis=2) >= 3).any(axis=1))
 
 
@@ -171,7 +209,9 @@ def by_case(stream: Iterable[Systems], rows: Array) -> Iterator[tuple[Systems, C
 
 def joined(parts: list[Systems]) -> Systems:
     """Several sets of systems as one."""
-    return Systems(*(np.concatenate([getattr(p, n) for p in parts]) for n in ("feature", "column", "row", "sectors")))
+    return Systems(
+        *(np.concatenate([getattr(p, n) for p in parts]) for n in ("feature", "column", "row", "sectors"))
+    )
 
 
 def refuse_unlike(frame: Frame) -> None:
@@ -203,7 +243,9 @@ def stages(solver: ResultantSolver, arrangements: Sequence[str]) -> Iterator[Arr
             yield solver.fixtures(solver.solve(batch, case))
 
 
-def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel: Event | None = None) -> Result:
+def answer_by_algebra(
+    query: Query, *, progress: Progress | None = None, cancel: Event | None = None
+) -> Result:
     """Finds every fixture that a query asks for as the paper does, by resultants.
 
     Parameters
@@ -240,6 +282,10 @@ def answer_by_algebra(query: Query, *, progress: Progress | None = None, cancel:
         if cancel is not None and cancel.is_set():
             complete = False
             break
-    statistics = {"features": len(problem.rows), **solver.counts, "undecided": sum(map(len, solver.undecided))}
+    statistics = {
+        "features": len(problem.rows),
+        **solver.counts,
+        "undecided": sum(map(len, solver.undecided)),
+    }
     result = listed_result(problem, records, Work(complete, statistics), cancel=cancel)
     return evolve(result, notes=(*result.notes, *undecided_notes(solver.undecided, problem.faces)))

@@ -12,7 +12,7 @@ from attrs import frozen
 from flint import acb, acb_poly, ctx
 from numpy.typing import NDArray
 
-from workhold.algebra.constraints import ContactSystems
+from workhold.algebra.resultants import ContactSystems
 from workhold.conventions import REFINED
 
 __all__ = ["Laurent", "exact_resultant", "exact_roots"]
@@ -199,7 +199,9 @@ def with_square(ring: LaurentTriple, double: list[Laurent]) -> Laurent:
     return total
 
 
-def exact_resultant(contacts: ContactSystems, case: tuple[int, int], free_of_separation: bool = False) -> acb_poly:
+def exact_resultant(
+    contacts: ContactSystems, case: tuple[int, int], free_of_separation: bool = False
+) -> acb_poly:
     """The resultant of one system that has an arc, times a power of z, at the precision of ``flint.ctx``."""
     system = System.of(contacts)
     second = system.pair(1)
@@ -231,7 +233,9 @@ def spread(polynomial: acb_poly, precision: int) -> acb_poly:
     kept = [k for k, size in enumerate(sizes) if size > change]
     if not kept:
         return acb_poly([])
-    return acb_poly([values[k] + acb(change / (k + 1.7), change / (k + 2.3)) for k in range(kept[0], kept[-1] + 1)])
+    return acb_poly(
+        [values[k] + acb(change / (k + 1.7), change / (k + 2.3)) for k in range(kept[0], kept[-1] + 1)]
+    )
 
 
 def exact_roots(

@@ -1,13 +1,33 @@
-r"""Eliminating the separation and phi: the resultants whose roots are the orientations (paper, sections 4 and 5.2).
+"""Contact constraints and their resultants, whose roots are the orientations (paper, sections 4 to 4.4 and 5.2).
 
-A resultant is never written out as a polynomial of symbols. It is evaluated at as many orientations as it has
-coefficients, from closed formulas for the small resultants in w. Its coefficients follow by a discrete Fourier transform.
-They make a Laurent polynomial in z = exp(i psi) of span -d ... d, a polynomial of degree 2 d in t = tan(psi / 2).
+The points (pegs) are mapped onto the features. They are turned by the orientation psi and moved so that the
+characteristic point, the first peg, stays on the characteristic circle, the first feature, at the angle phi.
+The paper writes this with t = tan(psi / 2) and u = tan(phi / 2). Here the same is written with
 
-Ranges of the exponents of z, from the constraints' formulas, bound d (Newton polygons; D. Bernstein 1975). They give
-the numbers of complex solutions of general systems, below the degrees of the paper's Table 2:
+    z = exp(i psi) = (1 + i t) / (1 - i t),    w = exp(i phi) = (1 + i u) / (1 - i u):
 
-    lines | lines 4,  line arc | lines 8,  arcs | lines 10,  line arc | line arc 14,  arcs | line arc 16,  arcs | arcs 16.
+a change of variables of degree one, so polynomials keep their degrees and their real roots, which move from
+the line to the unit circle. Nothing is at infinity there (psi = pi is z = -1). The factors 1 + t^2 and 1 +
+u^2 that the paper's denominators leave behind are z = 0 and z = infinity. Those drop out of a Laurent
+polynomial by themselves.
+
+A point x maps to C + R w + z x, with C, R the characteristic circle. A point of the right jaw maps to C + R w
++ z (x + s), with s the separation, the paper's sigma. At a fixed z a constraint is a polynomial in w and s,
+real when |w| = 1:
+
+    w_0 + 2 Re(w_1 w)                                   a trigonometric polynomial in phi.
+    s^2 square + s linear(w) + constant(w)              a constraint with such polynomials as coefficients.
+
+The separation and phi are eliminated by resultants. A resultant is never written out as a polynomial of
+symbols. It is evaluated at as many orientations as it has coefficients, from closed formulas for the small
+resultants in w. Its coefficients follow by a discrete Fourier transform. They make a Laurent polynomial in z
+= exp(i psi) of span -d ... d, a polynomial of degree 2 d in t = tan(psi / 2).
+
+Ranges of the exponents of z, from the constraints' formulas, bound d (Newton polygons; D. Bernstein 1975).
+They give the numbers of complex solutions of general systems, below the degrees of the paper's Table 2:
+
+    lines | lines 4,  line arc | lines 8,  arcs | lines 10,
+    line arc | line arc 14,  arcs | line arc 16,  arcs | arcs 16.
 
     Three left pegs: 2, 4, 6, 6 with 0, 1, 2, 3 arcs.
 """
@@ -17,22 +37,168 @@ from __future__ import annotations
 from math import tau
 
 import numpy as np
+from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.constraints import (
-    Complex,
-    ContactSystems,
-    TrigPolynomial,
-    circle_constraint,
-    circle_difference,
-    line_constraint,
-    pair_constraint,
-)
 from workhold.conventions import COINCIDENT
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, RADIUS, X, Y
 
-__all__ = ["PAPER_DEGREES", "TRUE_DEGREES", "coefficients", "degree_bound", "have_no_separation", "resultant"]
+__all__ = [
+    "PAPER_DEGREES",
+    "TRUE_DEGREES",
+    "ContactSystems",
+    "TrigPolynomial",
+    "circle_constraint",
+    "circle_difference",
+    "coefficients",
+    "degree_bound",
+    "have_no_separation",
+    "line_constraint",
+    "pair_constraint",
+    "resultant",
+]
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+BoolArray = NDArray[np.bool_]
+
+
+@define(frozen=True, eq=False)
+class TrigPolynomial:
+    """middle + 2 Re(first w): a trigonometric polynomial of degree one in phi, one at each of (N, M) values of z."""
+
+    middle: Array
+    first: Complex
+
+    def at(self, w: Complex) -> Array:
+        """The values at points w of the unit circle."""
+        return np.asarray(self.middle + 2.0 * (self.first * w).real)
+
+
+@define(frozen=True, eq=False)
+class ContactSystems:
+    """N systems of pegs and features in the form the constraints use.
+
+    Parameters
+    ----------
+    rows : (N, K, 10) feature rows.
+    point : (N, K) pegs as complex numbers from the first peg, right pegs with the separation left out, in mm.
+    """
+
+    rows: Array
+    point: Complex
+
+    @property
+    def middle(self) -> Complex:
+        """A point of each line, or the centre of each circle, (N, K)."""
+        return np.asarray(self.rows[..., X] + 1j * self.rows[..., Y])
+
+    @property
+    def normal(self) -> Complex:
+        """Unit normals of lines (N, K); without meaning for circles."""
+        return np.asarray(self.rows[..., AXIS_Y] - 1j * self.rows[..., AXIS_X])
+
+    @property
+    def radius(self) -> Array:
+        """Radii (N, K), 0 for lines."""
+        return np.asarray(self.rows[..., RADIUS])
+
+    def take(self, which: NDArray[np.int64] | BoolArray) -> ContactSystems:
+        """The systems of an index array or mask."""
+        return ContactSystems(self.rows[which], self.point[which])
+
+    def misfit(self, k: int, m: int) -> Array:
+        """How far arcs k and m are from sliding, (N,); infinite where one of them is a line.
+
+        It is by how much their radii differ, or by how much their centres' distance differs from their pegs' distance.
+        """
+        arcs = (self.rows[:, k, 0] != 0.0) & (self.rows[:, m, 0] != 0.0)
+        apart = np.abs(self.middle[:, m] - self.middle[:, k])
+        step = np.abs(self.point[:, m] - self.point[:, k])
+        off = np.maximum(np.abs(self.radius[:, k] - self.radius[:, m]), np.abs(apart - step))
+        return np.where(arcs, off, np.inf)
+
+    def sliding_pairs(self, k: int, m: int) -> BoolArray:
+        """Which systems have equal arcs k and m whose centres are exactly as far apart as their pegs, (N,).
+
+        There is one orientation, z0, at which one of the two contacts implies the other. Both sides of the constraint
+        between them then have the factor z - z0.
+        """
+        return np.asarray(self.misfit(k, m) <= COINCIDENT)
+
+    def centers_apart(self, k: int, m: int, psi: Array) -> tuple[Array, Complex]:
+        """z x + D of pegs k and m, as length (N, M) times direction: x the step from k to m, D from centre m to centre k.
+
+        Where the arcs slide, the length (with a sign) and the direction are exact right through the coincidence.
+        There z x + D = x (z - z0), and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) / 2).
+        """
+        step = (self.point[:, m] - self.point[:, k])[:, None]
+        between = (self.middle[:, k] - self.middle[:, m])[:, None]
+        plain = np.exp(1j * psi) * step + between
+        zero = np.angle(-between * np.conj(step))
+        length = np.where(
+            self.sliding_pairs(k, m)[:, None], 2.0 * np.abs(step) * np.sin((psi - zero) / 2.0), 1.0
+        )
+        along = 1j * step / np.abs(step) * np.exp(0.5j * (psi + zero))
+        return length, np.where(self.sliding_pairs(k, m)[:, None], along, plain)
+
+
+def line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Array, TrigPolynomial]:
+    """h (equation 2) or h_sigma (equation 4) of peg k on a line: (factor of the separation, the rest).
+
+    Parameters
+    ----------
+    psi : (N, M) orientations in radians.
+    """
+    z, normal = np.exp(1j * psi), contacts.normal[:, k, None]
+    start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
+    first = np.conj(normal) * contacts.radius[:, 0, None] / 2.0
+    return (np.conj(normal) * z).real, TrigPolynomial(
+        (np.conj(normal) * start).real, np.broadcast_to(first, z.shape)
+    )
+
+
+def circle_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[TrigPolynomial, TrigPolynomial]:
+    """g (equation 3) or g_sigma (equation 5) of peg k on a circle: (factor of the separation, the rest); its square: 1."""
+    z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
+    start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
+    linear = TrigPolynomial(2.0 * (np.conj(z) * start).real, radius * np.conj(z))
+    square = np.abs(start) ** 2 + (radius - contacts.radius[:, k, None]) * (
+        radius + contacts.radius[:, k, None]
+    )
+    return linear, TrigPolynomial(square, radius * np.conj(start))
+
+
+def pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynomial:
+    """h or g of peg k of the first peg's jaw, where all N features k are of one kind; z - z0 is divided out of g."""
+    if contacts.rows[0, k, 0] == 0.0:
+        return line_constraint(contacts, k, psi)[1]
+    length, apart = contacts.centers_apart(0, k, psi)
+    sliding_pairs = contacts.sliding_pairs(0, k)[:, None]
+    radius, other = contacts.radius[:, 0, None], contacts.radius[:, k, None]
+    plain = np.abs(apart) ** 2 + (radius - other) * (radius + other)
+    return TrigPolynomial(
+        np.where(sliding_pairs, length, plain), np.asarray(radius * np.conj(apart), np.complex128)
+    )
+
+
+def circle_difference(contacts: ContactSystems, k: int, m: int, psi: Array) -> tuple[Array, TrigPolynomial]:
+    """g_sigma of peg m less that of peg k: the square of the separation cancels, so that it is linear in it like h_sigma.
+
+    Returns
+    -------
+    (factor of the separation, the rest), with z - z0 divided out where the arcs slide
+    """
+    z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
+    _, apart = contacts.centers_apart(k, m, psi)
+    one = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
+    two = (contacts.middle[:, 0] - contacts.middle[:, m])[:, None] + z * contacts.point[:, m, None]
+    radius_k, radius_m = contacts.radius[:, k, None], contacts.radius[:, m, None]
+    middle = (apart * np.conj(one + two)).real + (radius_k - radius_m) * (radius_k + radius_m)
+    return 2.0 * (np.conj(z) * apart).real, TrigPolynomial(
+        middle, np.asarray(radius * np.conj(apart), np.complex128)
+    )
+
 
 # (arcs on the left, arcs on the right) of Type I; (arcs on the left, -1) of Type II.
 PAPER_DEGREES = {
@@ -94,7 +260,9 @@ def without_separation(
     )
 
 
-def resultant_with_square(ring: TrigPolynomial, double: tuple[Array, Complex, Complex]) -> tuple[Array, Array]:
+def resultant_with_square(
+    ring: TrigPolynomial, double: tuple[Array, Complex, Complex]
+) -> tuple[Array, Array]:
     """Resultant in w of a trigonometric polynomial and of c0 + 2 Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
 
     It is \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, without division. The
@@ -159,7 +327,9 @@ def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tu
     if right == 0:
         return resultant_of_rings(second, lines_without_separation(contacts, psi))
     factor, rest = circle_difference(contacts, 2, 3, psi) if right == 2 else line_constraint(contacts, 3, psi)
-    value, size = resultant_with_square(second, without_separation(factor, rest, *circle_constraint(contacts, 2, psi)))
+    value, size = resultant_with_square(
+        second, without_separation(factor, rest, *circle_constraint(contacts, 2, psi))
+    )
     free = have_no_separation(contacts)[:, None] & (right == 2)
     # Where the separation is not in the difference at all, the difference alone takes the place of the resultant in it.
     plain_value, plain_size = resultant_of_rings(second, rest)
@@ -177,7 +347,9 @@ def triple_resultant(contacts: ContactSystems, second: TrigPolynomial, psi: Arra
 def lines_without_separation(contacts: ContactSystems, psi: Array) -> TrigPolynomial:
     """h_sigma of pegs 3 and 4 with the separation eliminated."""
     (one, rest_one), (two, rest_two) = line_constraint(contacts, 2, psi), line_constraint(contacts, 3, psi)
-    return TrigPolynomial(one * rest_two.middle - two * rest_one.middle, one * rest_two.first - two * rest_one.first)
+    return TrigPolynomial(
+        one * rest_two.middle - two * rest_one.middle, one * rest_two.first - two * rest_one.first
+    )
 
 
 def have_no_separation(contacts: ContactSystems) -> NDArray[np.bool_]:
@@ -186,7 +358,9 @@ def have_no_separation(contacts: ContactSystems) -> NDArray[np.bool_]:
     return np.asarray(concentric & (np.abs((contacts.point[:, 2] - contacts.point[:, 3]).real) <= COINCIDENT))
 
 
-def coefficients(contacts: ContactSystems, case: tuple[int, int], bound: int | None = None) -> tuple[Complex, Array]:
+def coefficients(
+    contacts: ContactSystems, case: tuple[int, int], bound: int | None = None
+) -> tuple[Complex, Array]:
     """Coefficients of the resultants: (N, 2 d + 1) of z^-d ... z^d, and (N,) the size of the terms they come from."""
     bound = degree_bound(case) if bound is None else bound
     count = 2 * bound + 1

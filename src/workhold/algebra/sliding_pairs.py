@@ -21,10 +21,9 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
+from workhold.algebra.candidates import PegPairs, are_parallel, sector_of
 from workhold.algebra.conditions import STEEPEST, SimultaneousContacts, row_points
-from workhold.algebra.constraints import Complex, ContactSystems
-from workhold.algebra.quartets import are_parallel
-from workhold.algebra.wedges import PegPairs, sector_of
+from workhold.algebra.resultants import Complex, ContactSystems
 from workhold.contact.frame import Frame
 from workhold.conventions import (
     COINCIDENT,
@@ -85,7 +84,9 @@ def sliding_pairs_of(pairs: PegPairs, scaled: Array, frame: Frame, diameter: flo
     diameter : that size in mm.
     """
     step = (pairs.column * frame.lattice.pitch_x + 1j * pairs.row * frame.lattice.pitch_y) / diameter
-    contacts = ContactSystems(scaled[np.stack([pairs.tail, pairs.head], axis=1)], np.stack([0.0 * step, step], axis=1))
+    contacts = ContactSystems(
+        scaled[np.stack([pairs.tail, pairs.head], axis=1)], np.stack([0.0 * step, step], axis=1)
+    )
     between, rows = contacts.middle[:, 1] - contacts.middle[:, 0], contacts.rows
     misfit = contacts.misfit(0, 1)
     arcs = np.flatnonzero(misfit <= SPARE * COINCIDENT)
@@ -112,9 +113,13 @@ def reach_of(sliding_pair: SlidingPair, row: Array, point: Complex, step: comple
     step : from the first peg to the second, turned by the orientation, in mm.
     slope : how much farther the contacts move than the pegs turn, see :func:`row_points`.
     """
-    normal = row[AXIS_Y] - 1j * row[AXIS_X] if row[IS_ARC] == 0.0 else (point - row[X] - 1j * row[Y]) / row[RADIUS]
+    normal = (
+        row[AXIS_Y] - 1j * row[AXIS_X] if row[IS_ARC] == 0.0 else (point - row[X] - 1j * row[Y]) / row[RADIUS]
+    )
     arm = np.maximum(np.abs((np.conj(normal) * step).imag), abs(step) / STEEPEST)
-    return np.asarray(np.clip(2.0 * sliding_pair.error / arm * slope, LEAST_SLIDING_REACH, MOST_SLIDING_REACH))
+    return np.asarray(
+        np.clip(2.0 * sliding_pair.error / arm * slope, LEAST_SLIDING_REACH, MOST_SLIDING_REACH)
+    )
 
 
 def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
@@ -149,7 +154,9 @@ def steepness(size: float, across: float) -> float:
     return min(3.0 * size / max(across, size / STEEPEST), STEEPEST)
 
 
-def line_meets_circle(point: complex, tangent: complex, center: complex, radius: float) -> list[tuple[complex, float]]:
+def line_meets_circle(
+    point: complex, tangent: complex, center: complex, radius: float
+) -> list[tuple[complex, float]]:
     """Where a line through a point meets a circle; a tangent one does not (a double contact carries no force)."""
     off = (point - center) * tangent.conjugate()
     if abs(off.imag) >= radius:
@@ -207,7 +214,9 @@ def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArr
     first = ceil((height - frame.lattice.row_offset - middle - reach) / pitch - ROW_SLACK)
     last = floor((height - frame.lattice.row_offset - middle + reach) / pitch + ROW_SLACK)
     line = np.arange(first, last + 1)
-    index, point, slope = row_points(row, np.full(len(line), psi), height - frame.lattice.row_offset - line * pitch)
+    index, point, slope = row_points(
+        row, np.full(len(line), psi), height - frame.lattice.row_offset - line * pitch
+    )
     return line[index], point, slope
 
 
@@ -222,7 +231,9 @@ def three_and_one_sliding_pairs(
         a, b, own = int(pairs.tail[i]), int(pairs.head[i]), z * step_of(pairs, i, frame)
         for c, column, row in third_pegs(pairs, a):
             spread = (0, int(pairs.column[i]), column)
-            if (column, row) in ((0, 0), (int(pairs.column[i]), int(pairs.row[i]))) or max(spread) - min(spread) > most:
+            if (column, row) in ((0, 0), (int(pairs.column[i]), int(pairs.row[i]))) or max(spread) - min(
+                spread
+            ) > most:
                 continue
             third = z * complex(column * frame.lattice.pitch_x, row * frame.lattice.pitch_y)
             for point, slope in meets(rows[a], rows[c], third):

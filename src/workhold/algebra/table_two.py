@@ -13,11 +13,19 @@ from math import tau
 import numpy as np
 from attrs import frozen
 
-from workhold.algebra.constraints import ContactSystems
-from workhold.algebra.poses import Poses, poses_at
-from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, coefficients
-from workhold.algebra.roots import hard_roots
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SEGMENT_LENGTH, SIGN, X, Y
+from workhold.algebra.poses import Poses, hard_roots, poses_at
+from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, ContactSystems, coefficients
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    IS_ARC,
+    RADIUS,
+    SEGMENT_LENGTH,
+    SIGN,
+    X,
+    Y,
+)
 
 __all__ = ["Row", "random_contacts", "table_two"]
 
@@ -64,9 +72,9 @@ def random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSyst
     random = np.random.default_rng(seed)
     left, right = case
     pegs = 3 if right < 0 else 4
-    arcs = np.array([1.0] * left + [0.0] * ((3 if right < 0 else 2) - left) + [1.0] * right + [0.0] * (2 - right))[
-        :pegs
-    ]
+    arcs = np.array(
+        [1.0] * left + [0.0] * ((3 if right < 0 else 2) - left) + [1.0] * right + [0.0] * (2 - right)
+    )[:pegs]
     rows = np.zeros((count, pegs, SEGMENT_LENGTH))
     angle = random.uniform(0.0, tau, (count, pegs))
     rows[..., IS_ARC], rows[..., HALF_EXTENT], rows[..., SIGN] = arcs, 1.0, 1.0

@@ -20,9 +20,8 @@ from typing import Any
 
 from attrs import define, evolve, field
 
-from workhold.batch.queues import Watcher
 from workhold.batch.store import Store
-from workhold.batch.tasks import Outcome, Task, done
+from workhold.batch.tasks import Outcome, Task, Watcher, done
 from workhold.batch.workers import deaf_children
 from workhold.errors import InputError
 
@@ -110,7 +109,7 @@ class ClusterWorkers:
             self.watcher.told(f"The worker at {told.get('worker')} is lost.{again}")
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """See :class:`workhold.batch.queues.Queue`."""
+        """See :class:`workhold.batch.tasks.Queue`."""
         finished: SimpleQueue[Any] = SimpleQueue()
         pending: dict[str, tuple[Any, Task]] = {}
         # Given up by the scheduler, perhaps only because of what the same workers had in hand: tried once more, each alone.
@@ -192,7 +191,9 @@ class ClusterWorkers:
             error = future.exception()
             if is_killed(future):
                 times = error.allowed_failures + 1
-                self.watcher.told(f"{times} workers ended while they had {task.title} in hand; it is given up.")
+                self.watcher.told(
+                    f"{times} workers ended while they had {task.title} in hand; it is given up."
+                )
                 words = f"{times} workers ended while they had this in hand: it may need more memory than they have."
                 return Outcome(task.name, None, words)
             words = " ".join(str(error).split())

@@ -1,13 +1,18 @@
-"""The report of a batch: one page of plain HTML that needs nothing else, with what failed and why, and a table to sort.
+"""What a batch leaves for people and other programs: a report, two tables, and setup sheets.
 
+Sheets are drawn where they are asked for.
+
+The report is one page of plain HTML that needs nothing else, with what failed and why, and a table to sort.
 Records and sheets are linked where they stand beside the page; all else, pictures too, is in it.
 """
 
 from __future__ import annotations
 
+import re
 from base64 import b64encode
 from collections import Counter
 from collections.abc import Sequence
+from datetime import date
 from html import escape
 from pathlib import Path
 from shlex import quote
@@ -15,13 +20,15 @@ from typing import Any
 
 from attrs import define, field, frozen
 
+from workhold.batch.durations import Measured
+from workhold.batch.run import Batch
 from workhold.batch.store import Store
-from workhold.batch.tables import JobRow, Row
+from workhold.batch.tables import JobRow, Row, job_rows, write_tables
 from workhold.drawing.panel import plural
-from workhold.files.atomic import text_file
+from workhold.files.atomic import plain_errors, text_file, write_bytes
 from workhold.plain import plain
 
-__all__ = ["Report", "Summary"]
+__all__ = ["Report", "Summary", "write_results"]
 
 # Rows on the page, and pictures among them; the tables have everything.
 MOST_ROWS, MOST_PICTURES = 5000, 400
@@ -137,7 +144,7 @@ class Report:
         row = job.row
         if row["state"] != "held" or self.pictures >= MOST_PICTURES:
             return ""
-        from workhold.drawing.thumbnails import draw_thumbnail
+        from workhold.drawing.fixture_pictures import draw_thumbnail
 
         self.pictures += 1
         result = job.result(self.store)
@@ -170,13 +177,17 @@ class Report:
             return f"<small>{told(row['record'])}</small>"
         record = Path(row["record"])
         link = (
-            f'<a href="{told(record.relative_to(self.folder).as_posix())}">the best</a>' if self.holds(record) else ""
+            f'<a href="{told(record.relative_to(self.folder).as_posix())}">the best</a>'
+            if self.holds(record)
+            else ""
         )
         if sheet is not None:
             return f'<small>{link} <a href="{told(sheet.relative_to(self.folder).as_posix())}">setup sheet</a></small>'
         name = Path(row["part"]).stem
         line = f"workhold sheet {quote(str(record))} 1 --part-name {quote(name)} -o {quote(f'{name}.pdf')}"
-        return f"<small>{link}<details><summary>setup sheet</summary><code>{told(line)}</code></details></small>"
+        return (
+            f"<small>{link}<details><summary>setup sheet</summary><code>{told(line)}</code></details></small>"
+        )
 
     def holds(self, path: Path) -> bool:
         """Whether a file stands beside the page."""
@@ -190,7 +201,14 @@ class Report:
         InputError
             When it cannot be written.
         """
-        headings = ["first choice", "part", "toolkit", "state", "fixtures", *(words for words, _, _ in FIGURES)]
+        headings = [
+            "first choice",
+            "part",
+            "toolkit",
+            "state",
+            "fixtures",
+            *(words for words, _, _ in FIGURES),
+        ]
         headings += ["seconds", "predicted s"]
         with text_file(path) as stream:
             stream.write(f"{HEAD}<h1>{told(summary.headline)}</h1>\n")
@@ -203,8 +221,12 @@ class Report:
                 stream.write(f"<h2>What happened on the way</h2>\n<ul>\n{items}</ul>\n")
             if self.bad:
                 stream.write(f"<h2>What failed, and why</h2>\n{self.failures()}")
-            stream.write('<h2>All jobs</h2>\n<label>Only rows with <input id="filter" type="search"></label>\n')
-            heads = "".join(f'<th scope="col"><button type="button">{told(words)}</button></th>' for words in headings)
+            stream.write(
+                '<h2>All jobs</h2>\n<label>Only rows with <input id="filter" type="search"></label>\n'
+            )
+            heads = "".join(
+                f'<th scope="col"><button type="button">{told(words)}</button></th>' for words in headings
+            )
             stream.write(f'<div class="box"><table id="jobs"><thead><tr>{heads}</tr></thead><tbody>\n')
             stream.writelines(self.rows)
             stream.write(f"</tbody></table></div>\n{SCRIPT}")
@@ -212,7 +234,9 @@ class Report:
     @property
     def counts(self) -> str:
         """How many jobs came out how, in a sentence."""
-        counted = [f"{self.states[state]:,} {words}" for state, (_, words) in STATES.items() if self.states[state]]
+        counted = [
+            f"{self.states[state]:,} {words}" for state, (_, words) in STATES.items() if self.states[state]
+        ]
         return f"{plural(self.states.total(), 'job')}: {', '.join(counted)}." if counted else "No jobs."
 
     def failures(self) -> str:
@@ -222,7 +246,9 @@ class Report:
             for (part, reason), toolkits in self.bad.items()
         )
         heads = "".join(f'<th scope="col">{words}</th>' for words in ("part", "in", "why"))
-        return f'<div class="box"><table><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>\n'
+        return (
+            f'<div class="box"><table><thead><tr>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>\n'
+        )
 
 
 def told(words: Any) -> str:
@@ -242,3 +268,61 @@ def figure(value: float | None, decimals: int) -> str:
     if value is None:
         return cell("", name="n")
     return cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")
+
+
+# Letters of a sheet's name that come of its part and toolkit, and of its record's name.
+LONGEST_NAME, LETTERS = 80, 8
+
+
+def write_results(
+    batch: Batch,
+    store: Store,
+    measured: Measured,
+    folder: Path,
+    report_name: str,
+    summary: Summary,
+    sheets: Path | None,
+) -> Report:
+    """Write tables and report of all jobs into a folder, and the sheet of each first choice into another, if one is named.
+
+    Parameters
+    ----------
+    summary : what stands over the report.
+
+    Raises
+    ------
+    InputError
+        When they cannot be written.
+    """
+    with plain_errors(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    report = Report(folder, store)
+    for row in write_tables(job_rows(batch.jobs, store, measured), folder):
+        report.add(row, None if sheets is None else sheet_of(row, store, sheets))
+    report.write(folder / report_name, summary)
+    return report
+
+
+def sheet_of(row: JobRow, store: Store, folder: Path) -> Path | None:
+    """The setup sheet of a job's first choice, which is written if it is not there; None where there is no fixture.
+
+    Raises
+    ------
+    InputError
+        When it cannot be written.
+    """
+    if row.row["state"] != "held":
+        return None
+    name = re.sub(r"[^\w.-]+", "_", f"{Path(row.row['part']).stem} in {row.job.held_in.name}")[:LONGEST_NAME]
+    path = folder / f"{name}_{row.job.name[:LETTERS]}.pdf"
+    if not path.exists():
+        from workhold.drawing.pdf import svg_to_pdf
+        from workhold.drawing.result_sheet import result_sheet
+
+        with plain_errors(folder):
+            folder.mkdir(parents=True, exist_ok=True)
+        part_name = Path(row.row["part"]).stem
+        result = row.result(store)
+        pages = result_sheet(result, 1, result_hash=row.job.name, part_name=part_name, day=date.today())
+        write_bytes(path, svg_to_pdf(pages, date.today()))
+    return path

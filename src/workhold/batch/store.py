@@ -1,21 +1,90 @@
-"""Where records are kept: a folder of files, each under its task's name, written whole or not at all.
+"""Records, the bytes that are kept of what came of a task, and where they are kept.
 
-Two runs may use one folder at a time: a record that both write has the same bytes, and takes its name at once.
+The record of an answer is a result file (``files.result.writer``) of the best fixtures, which every command
+that takes one can open. That of a drawing holds the part in the form that ``files.part.data`` reads, and what
+there is to tell about it. What cannot be read or asked is a record too: it would be refused again.
+
+A folder keeps each record in a file under its task's name, written whole or not at all. Two runs may use one
+folder at a time: a record that both write has the same bytes, and takes its name at once. An object store or
+another machine keeps them wherever fsspec can write: ``s3://bucket/folder``, ``sftp://host/folder``. Workers
+of a cluster write there themselves, so that no record passes through the machine that asks.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+import tempfile
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from attrs import frozen
 
-from workhold.batch.records import is_whole
+from workhold.errors import InputError
 from workhold.files.atomic import plain_errors, write_bytes
+from workhold.files.result.writer import workpiece_entry
+from workhold.model.workpiece import Workpiece
 
-__all__ = ["FolderStore", "Store"]
+__all__ = [
+    "PART_NAME",
+    "FolderStore",
+    "Store",
+    "UrlStore",
+    "is_whole",
+    "part_record",
+    "plain_record",
+    "refusal_record",
+    "store_at",
+    "workpiece_of",
+]
+
+PART, REFUSAL = "workhold-part/1", "workhold-refusal/1"
+# In records a part has this name, so that files of one content, whatever they are called, are one part.
+PART_NAME = "part"
+FIRST, LAST = b'{"format": "workhold-', b"]}\n"
+
+
+def part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
+    """The record of a drawing that was read."""
+    about = {"format": PART, **workpiece_entry(workpiece), "name": PART_NAME}
+    x0, y0, x1, y1 = workpiece.bounds
+    return ended(
+        about | {"faces": len(workpiece.faces), "size": [x1 - x0, y1 - y0], "remarks": list(remarks)}
+    )
+
+
+def refusal_record(sentence: str) -> bytes:
+    """The record of what cannot be read or asked, with the reason."""
+    return ended({"format": REFUSAL, "refusal": [sentence]})
+
+
+def ended(content: dict[str, Any]) -> bytes:
+    """A record whose last entry is a list, so that it ends as every record does."""
+    return json.dumps(content).encode() + b"\n"
+
+
+def is_whole(content: bytes) -> bool:
+    """Whether bytes begin and end as a record does: a file that lost its end with the power is none.
+
+    >>> is_whole(refusal_record("no")), is_whole(refusal_record("no")[:-1]), is_whole(b"")
+    (True, False, False)
+    """
+    return content.startswith(FIRST) and content.endswith(LAST)
+
+
+def plain_record(content: bytes) -> dict[str, Any]:
+    """A record as plain data; the sentence of a refusal is under ``refusal``, of all others that is empty."""
+    data: dict[str, Any] = json.loads(content)
+    data["refusal"] = data["refusal"][0] if data["format"] == REFUSAL else ""
+    return data
+
+
+def workpiece_of(record: dict[str, Any]) -> Workpiece:
+    """The part of a drawing's record."""
+    return Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"])
+
 
 # Letters of a name that its folder has: so no folder has too many files.
 FOLDER_LETTERS = 2
@@ -88,3 +157,78 @@ class FolderStore:
         with plain_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
         write_bytes(path, record)
+
+
+@frozen
+class UrlStore:
+    """Records below a URL.
+
+    Parameters
+    ----------
+    url : without a slash at its end.
+    """
+
+    url: str
+
+    def place(self, name: str) -> str:
+        """The URL of a record."""
+        return f"{self.url}/{name[:FOLDER_LETTERS]}/{name}.json"
+
+    def at(self, name: str) -> tuple[Any, str]:
+        """The file system of a record, and its path there."""
+        from fsspec.core import url_to_fs
+
+        system, path = url_to_fs(self.place(name))
+        return system, path
+
+    def has(self, name: str) -> bool:
+        """Whether there is such a record."""
+        return self.read(name) is not None
+
+    def read(self, name: str) -> bytes | None:
+        """A record, if it is whole."""
+        system, path = self.at(name)
+        try:
+            content: bytes = system.cat_file(path)
+        except OSError:
+            return None
+        return content if is_whole(content) else None
+
+    def write(self, name: str, record: bytes) -> None:
+        """Keep a record; see :meth:`workhold.batch.store.Store.write`. One that is cut short is none."""
+        system, path = self.at(name)
+        try:
+            system.makedirs(path.rpartition("/")[0], exist_ok=True)
+            system.pipe_file(path, record)
+        except OSError as error:
+            raise InputError(f"{self.place(name)} cannot be written: {error.strerror or error}.") from error
+
+    @contextmanager
+    def file(self, name: str) -> Iterator[Path]:
+        """A copy of a record as a file."""
+        with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
+            path = Path(folder) / f"{name}.json"
+            path.write_bytes(self.read(name) or b"")
+            yield path
+
+
+def store_at(url: str) -> Store:
+    """The store at a URL, or in a folder of this machine's disks, which all workers see.
+
+    Raises
+    ------
+    InputError
+        For a URL of a kind that cannot be used here, or where nothing can be kept.
+    """
+    if "://" not in url:
+        return FolderStore(Path(url).absolute())
+    if find_spec("fsspec") is None:
+        raise InputError(f"{url} takes fsspec, which is not installed: install fsspec>=2024.6.")
+    from fsspec.core import url_to_fs
+
+    try:
+        system, path = url_to_fs(url.rstrip("/"))
+    except (ImportError, ValueError, OSError) as error:
+        raise InputError(f"{url} cannot be used: {' '.join(str(error).split())}.") from error
+    local = "file" in ((system.protocol,) if isinstance(system.protocol, str) else system.protocol)
+    return FolderStore(Path(path)) if local else UrlStore(url.rstrip("/"))

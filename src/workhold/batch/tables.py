@@ -15,10 +15,9 @@ from typing import Any, Protocol
 
 from attrs import frozen
 
-from workhold.batch.jobs import Job
-from workhold.batch.measured import Measured
-from workhold.batch.records import plain_record
-from workhold.batch.store import Store
+from workhold.batch.durations import Measured
+from workhold.batch.run import Job
+from workhold.batch.store import Store, plain_record
 from workhold.files.atomic import binary_file, text_file
 from workhold.model.quality import FIGURES, SEATING_FIGURES
 from workhold.model.query import Query
@@ -105,7 +104,11 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
         row |= {"state": "refused", "reason": record["refusal"]}
         return []
     found = sum(record["found"].values())
-    row |= {"state": "held" if found else "none", "fixtures": found, "distinct": sum(record["distinct"].values())}
+    row |= {
+        "state": "held" if found else "none",
+        "fixtures": found,
+        "distinct": sum(record["distinct"].values()),
+    }
     row["reason"] = " ".join(record["notes"]) or None
     best = [
         dict.fromkeys(BEST) | named | fixture_row(fixture, job) | {"rank": rank}
@@ -147,7 +150,7 @@ def seating_figures(told: Mapping[str, Any] | None) -> Row:
     it is not told."""
     if told is None:
         return {}
-    from workhold.files.result.seating_forms import figures_told
+    from workhold.files.result.fixture_forms import figures_told
 
     return figures_told(told)
 

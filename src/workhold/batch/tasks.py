@@ -1,28 +1,79 @@
-"""What a worker does: a task comes in, its record goes out. A worker needs nothing but the task and this program.
+"""Tasks: what a worker does, under which name, and what a queue of workers is.
 
-Outcomes depend on nothing but the task, to the byte; only what they took is told beside them.
+A task comes in, its record goes out.
+
+A worker needs nothing but the task and this program. Outcomes depend on nothing but the task, to the byte;
+only what they took is told beside them. A name is the hash of all that an outcome depends on, so that the
+same work has the same name wherever it is done. A queue takes tasks, gives them to workers, and hands over
+what came of them.
 """
 
 from __future__ import annotations
 
+import json
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from hashlib import sha256
 from io import StringIO
 from pathlib import Path
+from threading import Event
 from time import perf_counter
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from attrs import define, evolve, field, frozen
 
-from workhold.batch.naming import program
-from workhold.batch.records import part_record, plain_record, refusal_record, workpiece_of
+from workhold.batch.store import part_record, plain_record, refusal_record, workpiece_of
 from workhold.errors import InputError, WorkholdError
 from workhold.limits import NO_ROOM, lacks_memory
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
+from workhold.version import __version__
 
-__all__ = ["Answering", "Outcome", "Reading", "Task", "done"]
+__all__ = [
+    "MOST_TRIES",
+    "Answering",
+    "Outcome",
+    "Queue",
+    "Reading",
+    "Task",
+    "Watcher",
+    "done",
+    "name_of",
+    "program",
+]
+
+PACKAGE = Path(__file__).resolve().parents[1]
+# What only shows or checks outcomes, or brings the work to where it is done.
+WITHOUT_SAY = ("cli", "drawing", "verification", "web")
+# Letters of a name: 128 bits, so that no two of any number of tasks share one.
+LETTERS = 32
+
+
+@cache
+def program() -> str:
+    """The version of the program, and a hash of its sources that have a say in an outcome: the same on every machine."""
+    digest = sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        place = path.relative_to(PACKAGE)
+        if place.parts[0] not in WITHOUT_SAY:
+            digest.update(f"{place.as_posix()} ".encode() + sha256(path.read_bytes()).digest())
+    return f"{__version__} {digest.hexdigest()[:LETTERS]}"
+
+
+def name_of(*content: Any) -> str:
+    """The name of a task of this program, from bytes and plain data.
+
+    >>> name_of(b"part", {"best": 3}) == name_of(b"part", {"best": 3}), len(name_of())
+    (True, 32)
+    """
+    digest = sha256(program().encode())
+    for item in content:
+        data = item if isinstance(item, bytes) else json.dumps(item, sort_keys=True).encode()
+        # Its length in front, so that what belongs to one item cannot be taken for the next.
+        digest.update(f"{len(data)}:".encode() + data)
+    return digest.hexdigest()[:LETTERS]
 
 
 @frozen
@@ -31,7 +82,7 @@ class Task:
 
     Parameters
     ----------
-    name : see ``batch.naming``.
+    name : see ``batch.tasks``.
     title : what it is called where people see it.
     program : of the sender; a worker with another one would give other outcomes.
     """
@@ -198,14 +249,14 @@ def done(task: Task, worker: str = "") -> Outcome:
         failure = str(error)
     except Exception as error:
         if lacks_memory(error):
-            failure = (
-                "This needs more memory than its worker may take: give it to fewer workers, or to a larger machine."
-            )
+            failure = "This needs more memory than its worker may take: give it to fewer workers, or to a larger machine."
         elif isinstance(error, OSError):
             failure = f"The system refused something the work needs: {error.strerror or error}."
             has_no_room = error.errno in NO_ROOM
         else:
-            failure = f"A mistake of workhold, not of yours ({type(error).__name__}: {error}); please report it."
+            failure = (
+                f"A mistake of workhold, not of yours ({type(error).__name__}: {error}); please report it."
+            )
     return Outcome(task.name, record, failure, perf_counter() - start, worker, has_no_room)
 
 
@@ -230,3 +281,37 @@ def make_ready(task: Task) -> None:
         task.prepare()
     except InputError as error:
         raise UnfitWorkerError(str(error)) from error
+
+
+# A task whose worker died is tried so many times: once more by another one, then it is named.
+MOST_TRIES = 2
+
+
+class Watcher(Protocol):
+    """Who looks on."""
+
+    def begun(self, worker: str, title: str) -> None:
+        """A worker begins with a task."""
+
+    def ended(self, worker: str) -> None:
+        """A worker has nothing to do, or is no more."""
+
+    def told(self, sentence: str) -> None:
+        """Something happened that is to be told, such as the death of a worker."""
+
+
+class Queue(Protocol):
+    """What gives tasks to workers."""
+
+    def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
+        """Do tasks, which are taken in their order when there is a worker for them; outcomes come as they do.
+
+        Parameters
+        ----------
+        stop : when set, no further task is taken, those begun are given up, and the outcomes end.
+
+        Raises
+        ------
+        InputError
+            When there are no workers and there will be none.
+        """

@@ -19,8 +19,7 @@ from typing import Any
 
 from attrs import define, evolve, field
 
-from workhold.batch.queues import MOST_TRIES, Watcher
-from workhold.batch.tasks import Outcome, Task, done
+from workhold.batch.tasks import MOST_TRIES, Outcome, Task, Watcher, done
 from workhold.errors import InputError
 from workhold.web.worker import Order, worker_main
 
@@ -105,7 +104,7 @@ class LocalWorkers:
             self.workers.pop().end()
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """See :class:`workhold.batch.queues.Queue`."""
+        """See :class:`workhold.batch.tasks.Queue`."""
         waiting: deque[Task] = deque()
         deaths = Counter[str]()
         while not stop.is_set():
@@ -138,7 +137,9 @@ class LocalWorkers:
     def free_title(self) -> str:
         """What a further worker is called."""
         taken = {one.title for one in self.workers}
-        return next(title for title in (f"worker {k}" for k in range(1, self.count + 1)) if title not in taken)
+        return next(
+            title for title in (f"worker {k}" for k in range(1, self.count + 1)) if title not in taken
+        )
 
     def started(self, title: str) -> Worker:
         """Start a worker."""
@@ -208,7 +209,9 @@ class LocalWorkers:
         """Tell of a worker that died with a task in hand; the failure of the task where it was not the first time."""
         how = ended_by(one)
         if times < MOST_TRIES:
-            self.watcher.told(f"{one.title} ended {how} while it worked on {task.title}, which is tried again.")
+            self.watcher.told(
+                f"{one.title} ended {how} while it worked on {task.title}, which is tried again."
+            )
             return None
         self.watcher.told(f"{one.title} ended {how} while it worked on {task.title}, for the second time.")
         words = f"Two workers ended, the last {how}, while they worked on this: it may need more memory than there is."

@@ -1,5 +1,6 @@
-"""What ``workhold mcp`` offers to agents: load, design, show, sheet and explain, as functions of checked arguments.
+"""Tools of ``workhold mcp`` for agents: load, design, show, sheet and explain, with checked arguments.
 
+Each description of an argument is what an agent reads. Lengths are in mm, angles in degrees, forces in N.
 Nothing here knows the protocol. A result stays in its file; the next tool is told the file.
 """
 
@@ -8,31 +9,207 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from threading import Event, Timer
-from typing import Any
+from typing import Annotated, Any, Literal, TypeVar
 
 from attrs import frozen
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from workhold.cli.options import result_with
 from workhold.cli.outputs import refuse_output
-from workhold.cli.ranked import result_with
 from workhold.cli.search_options import with_fit_of
-from workhold.cli.tool_forms import DesignArguments, LoadArguments, SheetArguments, ShowArguments, ToolArguments
 from workhold.errors import InputError
+from workhold.files.input_forms import LoadTable
 from workhold.files.loads_file import load_from_words
-from workhold.files.loads_form import LoadTable
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.result.save import save
-from workhold.files.toolkit.presets import load_toolkit
+from workhold.files.toolkit_file import load_toolkit
 from workhold.fixels.kinds import ALIASES, KINDS, toolkit_of
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.near_duplicates import entries
-from workhold.model.load import Load
+from workhold.listing.identity import entries
 from workhold.model.query import Query, asked_ranking
-from workhold.model.restrictions import Restrictions, circle_zone, polygon_zone
+from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
 from workhold.model.result import Result
-from workhold.model.tolerance import Tolerance
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
 
-__all__ = ["TOOLS", "Answer", "Tool"]
+__all__ = [
+    "TOOLS",
+    "Answer",
+    "DesignArguments",
+    "LoadArguments",
+    "SheetArguments",
+    "ShowArguments",
+    "Tool",
+    "ToolArguments",
+    "checked_arguments",
+]
+
+Arguments = TypeVar("Arguments", bound="ToolArguments")
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+Positive = Annotated[float, Field(gt=0)]
+Rank = Annotated[int, Field(ge=1, description="which fixture; 1 is the best")]
+ResultPath = Annotated[str, Field(description="path of a result file, as design tells it")]
+MayReplace = Annotated[bool, Field(description="replace a file that workhold has not written")]
+ClosingForce = Annotated[float | None, Field(ge=0, description="with which the vise is closed, in N")]
+
+
+class ToolArguments(BaseModel):
+    """What all tools have in common: words that are not known are refused."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+
+class LoadArguments(ToolArguments):
+    """A part and how it is read."""
+
+    part: str = Field(description="path of a DXF, SVG, JSON or STEP file, or a built-in name such as widget")
+    unit: Literal["mm", "cm", "m", "inch"] | None = Field(
+        default=None, description="of a drawing that does not say its own"
+    )
+    layers: list[str] | None = Field(
+        default=None, description="DXF layers to read; all visible ones if not given"
+    )
+    part_number: int | None = Field(
+        default=None, ge=1, description="which part of several, from 1 by decreasing area"
+    )
+    join_tolerance: float = Field(
+        default=1e-3, ge=0, description="largest gap between loose ends to close, in mm"
+    )
+    fit: Positive | None = Field(
+        default=None, description="how far lines and arcs may be from true curves that they stand for, in mm"
+    )
+    axis: Literal["x", "y", "z"] | None = Field(
+        default=None, description="STEP: what the pegs are parallel to"
+    )
+    section: float | None = Field(default=None, description="STEP: take the section at this height, in mm")
+    picture: bool = Field(default=False, description="show a picture, too")
+
+    def reading(self) -> dict[str, Any]:
+        """The arguments of :func:`workhold.load` but the part."""
+        return self.model_dump(include=set(LoadArguments.model_fields) - {"part", "picture"})
+
+
+class Circle(ToolArguments):
+    """A round place that no peg may stand over, in the part's coordinates."""
+
+    circle: Annotated[list[float], Field(min_length=3, max_length=3, description="x, y, radius")]
+
+
+class Polygon(ToolArguments):
+    """A place with corners that no peg may stand over, in the part's coordinates."""
+
+    polygon: list[Pair] = Field(min_length=3)
+
+
+class DesignArguments(LoadArguments):
+    """A search for every way to hold a part."""
+
+    toolkit: str = Field(
+        description="a preset such as plate-20mm, clamp-plate-20mm, two-clamp-plate-20mm or fence-20mm, the path of a "
+        "toolkit's TOML file, or a kind (vise, opening-vise, plate, fence) with fields"
+    )
+    fields: dict[str, Any] = Field(
+        default_factory=dict,
+        description="fields of the toolkit that are given or changed, such as pitch, columns, rows, peg_radius, min_gap, "
+        "max_opening, travel, clamps, wall_offset",
+    )
+    types: list[str] | None = Field(default=None, description="of a vise I, II or both")
+    best: int | None = Field(default=None, ge=1, description="seek only so many, the best")
+    avoid: list[int] = Field(
+        default=[], description="faces not to touch, by number, such as those to be machined"
+    )
+    keep_out: list[Circle | Polygon] = Field(default=[], description="places that no peg may stand over")
+    angles: list[Pair] = Field(default=[], description="ranges of angles that the part may lie at")
+    contact_margin: float = Field(
+        default=0.0, ge=0, description="smallest distance of a contact from a face's end"
+    )
+    prefer: Literal["square", "strong", "precise", "roomy"] | None = Field(
+        default=None, description="what comes first"
+    )
+    jaw_force: ClosingForce = None
+    loads: list[LoadTable] = Field(default=[], description="what acts on the part while it is held")
+    seating: int | None = Field(
+        default=None,
+        ge=1,
+        description="of the first so many fixtures tell from how far open, or drawn back, the part is caught and where else "
+        "it can rest, and order them by that too",
+    )
+    opening: Positive | None = Field(
+        default=None,
+        description="with seating, list only those that catch the part when opened by so many mm",
+    )
+    foolproof: bool = Field(
+        default=False,
+        description="with seating, list only those of which a caliper tells every wrong place to rest",
+    )
+    count: int = Field(default=5, ge=0, le=100, description="how many fixtures to tell")
+    out: str | None = Field(
+        default=None, description="path of the result file, .json or .npz; else a temporary one"
+    )
+    force: MayReplace = False
+    seconds: Positive = Field(
+        default=120.0, description="longest search; what was found by then is told as incomplete"
+    )
+
+
+class ShowArguments(ToolArguments):
+    """One fixture of a result."""
+
+    result_file: ResultPath
+    rank: Rank = 1
+    loads: list[LoadTable] = Field(default=[], description="instead of those of the result")
+    jaw_force: ClosingForce = None
+    seating: bool = Field(
+        default=False, description="work out whether the part ends up there, and where else it can rest"
+    )
+    picture: bool = Field(default=True, description="show a picture, too")
+
+
+class SheetArguments(ToolArguments):
+    """A setup sheet, or a set-up for a CAM system."""
+
+    result_file: ResultPath
+    rank: Rank = 1
+    path: str = Field(description="the file to write: .pdf, .svg, .png, .dxf, .step or .csv (a list of pins)")
+    force: MayReplace = False
+    paper: Literal["a4", "letter"] = "a4"
+    unit: Literal["mm", "inch"] = "mm"
+    part_name: str | None = None
+    jaw_force: ClosingForce = None
+    seating: bool | None = Field(
+        default=None, description="whether it says if the part ends up there; if known when null"
+    )
+    jaw: Literal["screw", "constant"] | Annotated[float, Field(ge=0)] = "screw"
+    friction: Positive | None = None
+    zero: str | Pair | None = Field(
+        default=None, description='part zero: "corner", "centre", "hole 2", or x and y'
+    )
+    machine_position: Pair | None = Field(default=None, description="of hole A1 in the machine's coordinates")
+    thickness: Positive | None = None
+    peg_length: Positive | None = None
+    peg_height: Positive | None = None
+    dowel: str | None = Field(
+        default=None, description="what the pegs are and how they fit, such as 6 mm m6 in H7"
+    )
+    clearance: float = Field(
+        default=1.0, ge=0, description="how far the cutter is to keep off the pegs of a .dxf"
+    )
+
+
+def checked_arguments(form: type[Arguments], given: dict[str, Any] | None) -> Arguments:
+    """The arguments of a tool.
+
+    Raises
+    ------
+    InputError
+        Naming the first that is not as it should be.
+    """
+    try:
+        return form.model_validate(given or {})
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        place = ".".join(str(part) for part in first["loc"])[:120] or "what is given"
+        message = str(first["msg"]).strip().rstrip(".")
+        raise InputError(f"{place} is not as it should be: {message[:1].lower()}{message[1:200]}.") from error
 
 
 @frozen
@@ -62,7 +239,9 @@ class Tool:
 def load(asked: LoadArguments, folder: Path, cancel: Event) -> Answer:
     """The part and its faces."""
     loaded = read(asked)
-    return Answer(part_data(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None)
+    return Answer(
+        part_data(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None
+    )
 
 
 def read(asked: LoadArguments) -> Loaded:
@@ -102,7 +281,9 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
 
     explanation = explained(result.query)
     words = explanation.nearest.words if explanation.nearest else " ".join(result.notes)
-    return Answer({"found": 0, "complete": True, "sentence": words, **explanation_data(explanation, result.toolkit)})
+    return Answer(
+        {"found": 0, "complete": True, "sentence": words, **explanation_data(explanation, result.toolkit)}
+    )
 
 
 def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
@@ -119,7 +300,8 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
     toolkit, tolerance = held_in(asked.toolkit, asked.fields)
     loads = loads_of(asked.loads)
     zones = [
-        circle_zone(*one.circle) if hasattr(one, "circle") else polygon_zone(one.polygon) for one in asked.keep_out
+        circle_zone(*one.circle) if hasattr(one, "circle") else polygon_zone(one.polygon)
+        for one in asked.keep_out
     ]
     query = Query(
         loaded.workpiece,
@@ -183,10 +365,14 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
     fixture, loads = result[asked.rank - 1], loads_of(asked.loads) or result.query.loads
     force = result.query.jaw_force if asked.jaw_force is None else asked.jaw_force
     cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
-    told = {"listed": len(result), "complete": bool(result.complete), "loads": [load_case_data(one) for one in cases]}
+    told = {
+        "listed": len(result),
+        "complete": bool(result.complete),
+        "loads": [load_case_data(one) for one in cases],
+    }
     shown = fixture_data(fixture, result.toolkit, asked.rank)
     if asked.seating and not result.toolkit.closes_at_once:
-        from workhold.seating.by_hand import by_hand
+        from workhold.seating.clamping import by_hand
 
         shown["by_hand"] = by_hand(fixture, result.workpiece, result.toolkit).as_fields()
     elif asked.seating and fixture.seating is None:

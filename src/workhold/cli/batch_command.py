@@ -9,16 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.batch_progress import batch_progress
-from workhold.cli.commands import option, spread
+from workhold.cli.commands import option, spread, tell
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
-from workhold.cli.json_output import JsonOption, print_json
-from workhold.cli.many_toolkits import Named, query_of, toolkits_to_try, words_of
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import ForceOption, refuse_output_folder
-from workhold.cli.saying import tell
-from workhold.cli.search_options import QueryWords
-from workhold.cli.seating_options import SeatingWords
+from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
+from workhold.cli.progress import batch_progress
+from workhold.cli.search_options import QueryWords, SeatingWords
+from workhold.cli.toolkit_options import Named, query_of, toolkits_to_try, words_of
 from workhold.cli.values import length_unit, optional_count
 from workhold.errors import InputError
 
@@ -26,13 +23,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from workhold.batch.cluster import ClusterWorkers
-    from workhold.batch.jobs import HeldIn, Request
-    from workhold.batch.measured import Measured
+    from workhold.batch.durations import Measured
     from workhold.batch.report import Report
-    from workhold.batch.run import Batch
+    from workhold.batch.run import Batch, HeldIn, Request
     from workhold.batch.store import Store
     from workhold.batch.workers import LocalWorkers
-    from workhold.cli.batch_progress import BatchProgress
+    from workhold.cli.progress import BatchProgress
     from workhold.units import Unit
 
 __all__ = ["batch"]
@@ -57,7 +53,9 @@ PartsArgument = Annotated[
 ]
 SheetsOption = Annotated[
     bool,
-    typer.Option("--sheets", help="Write the setup sheet of each first choice as PDF.", rich_help_panel="Results"),
+    typer.Option(
+        "--sheets", help="Write the setup sheet of each first choice as PDF.", rich_help_panel="Results"
+    ),
 ]
 
 
@@ -81,15 +79,21 @@ def batch(
     out: str = option(
         "Results", "DIR", "The folder for tables, report and records; the same again goes on.", default=""
     ),
-    best: str = option("Results", "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST),
+    best: str = option(
+        "Results", "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST
+    ),
     sheets: SheetsOption = False,
     force: ForceOption = False,
     json_: JsonOption = False,
     workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given."),
     cluster: str | None = option(
-        WORK, "ADDRESS", "Work on a Dask cluster instead, by the address of its scheduler, such as tcp://10.0.0.5:8786."
+        WORK,
+        "ADDRESS",
+        "Work on a Dask cluster instead, by the address of its scheduler, such as tcp://10.0.0.5:8786.",
     ),
-    local_cluster: str | None = option(WORK, "N", "Work on a Dask cluster of N processes on this machine instead."),
+    local_cluster: str | None = option(
+        WORK, "N", "Work on a Dask cluster of N processes on this machine instead."
+    ),
     records: str | None = option(
         WORK,
         "URL|DIR",
@@ -110,7 +114,9 @@ def batch(
     kept = optional_count("--best", best) or 1
     count, processes = optional_count("--workers", workers), optional_count("--local-cluster", local_cluster)
     if sum(word is not None for word in (workers, cluster, local_cluster)) > 1:
-        raise InputError("--workers, --cluster and --local-cluster are three places to work: give one of them.")
+        raise InputError(
+            "--workers, --cluster and --local-cluster are three places to work: give one of them."
+        )
     if cluster is not None or processes is not None:
         refuse_no_cluster()
     folder = Path(out)
@@ -119,10 +125,9 @@ def batch(
     names = (*table_names(), REPORT)
     refuse_output_folder(folder, names, (*parts, words.loads), force)
     requests = requests_of(parts, toolkit, pitch, columns, peg_radius, (words, seated_by), reading, folder)
-    from workhold.batch.measured import Measured
+    from workhold.batch.durations import Measured
     from workhold.batch.run import Work, run_batch
-    from workhold.batch.store import FolderStore
-    from workhold.batch.url_store import store_at
+    from workhold.batch.store import FolderStore, store_at
     from workhold.kernels.base.compiling import is_first_run
 
     store = FolderStore(folder / RECORDS) if records is None else store_at(records)
@@ -153,7 +158,9 @@ def batch(
     if json_:
         bad = [{"part": part, "reason": reason} for part, reason in report.bad]
         counts = {"parts": len(done.parts), "found": done.fresh, "known_before": done.kept}
-        print_json(**counts, complete=done.is_complete, bad=bad, written=[str(folder / name) for name in names])
+        print_json(
+            **counts, complete=done.is_complete, bad=bad, written=[str(folder / name) for name in names]
+        )
     else:
         print_tables(report.counts, run_sentence(done, spent), f"Written to {folder}: {', '.join(names)}.")
     if not has_parquet():
@@ -186,11 +193,17 @@ def is_seated(held: HeldIn) -> bool:
     """Whether seating is asked for, of one clamp or a vise: with two clamps there is nothing to compile for it."""
     from workhold.model.query import Query
 
-    return isinstance(held.query, Query) and held.query.seating is not None and held.query.toolkit.closes_at_once
+    return (
+        isinstance(held.query, Query) and held.query.seating is not None and held.query.toolkit.closes_at_once
+    )
 
 
 def place_to_work(
-    progress: BatchProgress, count: int | None, cluster: str | None, processes: int | None, store: Store | None
+    progress: BatchProgress,
+    count: int | None,
+    cluster: str | None,
+    processes: int | None,
+    store: Store | None,
 ) -> LocalWorkers | ClusterWorkers:
     """The queue asked for; ``store`` is where the workers of a cluster put records themselves."""
     if cluster is None and processes is None:
@@ -221,8 +234,8 @@ def requests_of(
     """
     from attrs import evolve
 
-    from workhold.batch.jobs import Request
-    from workhold.cli.job_file import JOB_ENDINGS, read_jobs
+    from workhold.batch.run import Request
+    from workhold.cli.jobs import JOB_ENDINGS, read_jobs
     from workhold.files.part_list import part_list
 
     unit = length_unit(reading.unit)
@@ -247,7 +260,9 @@ def requests_of(
                 if job.toolkits is not None:
                     own = asked_toolkits(list(job.toolkits), None, None, None, own_reading)
                 if own is None:
-                    raise InputError("no toolkit is given: name one or more under toolkit, or for all of them.")
+                    raise InputError(
+                        "no toolkit is given: name one or more under toolkit, or for all of them."
+                    )
                 options, held_in = own_reading.options(), held_in_all(own, own_words, own_reading)
                 requests += [Request(part, options, held_in) for part in part_list([job.part], [folder])]
             except InputError as error:
@@ -256,24 +271,32 @@ def requests_of(
 
 
 def asked_toolkits(
-    names: list[str] | None, pitch: str | None, columns: str | None, peg_radius: str | None, reading: PartWords
+    names: list[str] | None,
+    pitch: str | None,
+    columns: str | None,
+    peg_radius: str | None,
+    reading: PartWords,
 ) -> list[Named]:
     """The toolkits of names, files and lists; of several names one may be a kind.
 
     Raises
     ------
     InputError
-        See :func:`workhold.cli.many_toolkits.toolkits_to_try`.
+        See :func:`workhold.cli.toolkit_options.toolkits_to_try`.
     """
     from workhold.fixels.kinds import ALIASES, KINDS
 
     words = [word for text in names or () for word in words_of("--toolkit", text)]
     kinds = [word for word in words if word.lower() in (*KINDS, *ALIASES)]
     if len(kinds) > 1:
-        raise InputError(f"{kinds[0]} and {kinds[1]} are two kinds of toolkit: give one, and others by name or file.")
+        raise InputError(
+            f"{kinds[0]} and {kinds[1]} are two kinds of toolkit: give one, and others by name or file."
+        )
     others = [word for word in words if word not in kinds]
     if kinds and pitch is None and not others:
-        raise InputError(f"{kinds[0]} is a kind of toolkit: give --pitch and --peg-radius too, or name toolkits.")
+        raise InputError(
+            f"{kinds[0]} is a kind of toolkit: give --pitch and --peg-radius too, or name toolkits."
+        )
     kind = kinds[0] if kinds else None
     return toolkits_to_try(others or None, kind, pitch, columns, peg_radius, length_unit(reading.unit))
 
@@ -298,7 +321,7 @@ def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -
     InputError
         For words that mean nothing.
     """
-    from workhold.batch.jobs import ANY_PART, HeldIn
+    from workhold.batch.run import ANY_PART, HeldIn
 
     asked = asked_of(words, length_unit(reading.unit))
     return [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in named]
@@ -309,7 +332,9 @@ def run_sentence(done: Batch, spent: float) -> str:
     from workhold.cli.tables import plural
 
     before = f"; {done.kept:,} were known from before" if done.kept else ""
-    return f"{plural(len(done.parts), 'part')}, {plural(done.fresh, 'answer')} found in {spent:.1f} s{before}."
+    return (
+        f"{plural(len(done.parts), 'part')}, {plural(done.fresh, 'answer')} found in {spent:.1f} s{before}."
+    )
 
 
 def write_all(
@@ -322,8 +347,7 @@ def write_all(
     InputError
         When they cannot be written.
     """
-    from workhold.batch.report import Summary
-    from workhold.batch.results import write_results
+    from workhold.batch.report import Summary, write_results
     from workhold.cli.tables import plural
     from workhold.version import __version__
 

@@ -1,21 +1,44 @@
-"""What workhold's commands have in common: a plain help in sections, and words handed on as they were typed.
+"""Shared parts of all commands: remarks on standard error, a plain help in sections, and words as typed.
 
-Typer would format the help with Rich and check every value with pydantic. Both take longer to import than most commands
-take to run; the help needs no boxes, and :mod:`workhold.cli.values` reads the words anyway.
+Typer would format the help with Rich and check every value with pydantic. Both take longer to import than
+most commands take to run. The help needs no boxes, and :mod:`workhold.cli.values` reads the words anyway.
 """
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial, wraps
 from inspect import Parameter, Signature, cleandoc, signature
-from typing import Any, get_type_hints
+from typing import Any, TextIO, get_type_hints
 
 import typer
 from attrs import fields, resolve_types
 from typer.core import TyperCommand, TyperGroup
 
-__all__ = ["PlainCommand", "PlainGroup", "option", "spread"]
+from workhold.limits import NO_ROOM
+from workhold.plain import plain, shortened
+
+__all__ = ["PlainCommand", "PlainGroup", "forget", "option", "spread", "tell"]
+
+
+def tell(message: str) -> None:
+    """One line on stderr, whatever the message quotes; a full disk, as of a log, loses it and changes nothing else."""
+    try:
+        typer.echo(f"workhold: {plain(shortened(message))}", err=True)
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        forget(sys.stderr)
+
+
+def forget(stream: TextIO) -> None:
+    """Nobody reads a stream any more, or it has no room: send the rest nowhere, so that the interpreter ends in peace."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
 
 BAD_INPUT = 2
 ARGUMENTS, OPTIONS, COMMANDS = "Arguments", "Options", "Commands"
@@ -31,16 +54,22 @@ def option(panel: str | None, metavar: str, help: str, *names: str, default: str
 def spread(command: Callable[..., None]) -> Callable[..., None]:
     """A command in whose place of each group of words, an attrs class of options, the class's fields stand as options."""
     kinds = get_type_hints(command, include_extras=True)
-    groups = {name: kinds[name] for name in signature(command).parameters if hasattr(kinds[name], "__attrs_attrs__")}
+    groups = {
+        name: kinds[name] for name in signature(command).parameters if hasattr(kinds[name], "__attrs_attrs__")
+    }
     parameters: list[Parameter] = []
     for name, parameter in signature(command).parameters.items():
         shown = signature(groups[name]).parameters.values() if name in groups else [parameter]
-        hints = {one.name: one.type for one in fields(resolve_types(groups[name]))} if name in groups else kinds
+        hints = (
+            {one.name: one.type for one in fields(resolve_types(groups[name]))} if name in groups else kinds
+        )
         parameters += [one.replace(annotation=hints[one.name], kind=Parameter.KEYWORD_ONLY) for one in shown]
 
     @wraps(command)
     def spread_out(**words: Any) -> None:
-        taken = {name: {one: words.pop(one) for one in signature(kind).parameters} for name, kind in groups.items()}
+        taken = {
+            name: {one: words.pop(one) for one in signature(kind).parameters} for name, kind in groups.items()
+        }
         command(**words, **{name: kind(**taken[name]) for name, kind in groups.items()})
 
     spread_out.__dict__["__signature__"] = Signature(parameters)
@@ -87,7 +116,9 @@ class PlainGroup(TyperGroup):
         self.format_usage(ctx, formatter)
         self.format_help_text(ctx, formatter)
         write_sections(self, ctx, formatter)
-        commands = [(name, cleandoc(command.help or "").split("\n\n")[0]) for name, command in self.commands.items()]
+        commands = [
+            (name, cleandoc(command.help or "").split("\n\n")[0]) for name, command in self.commands.items()
+        ]
         with formatter.section(heading(COMMANDS)):
             formatter.write_dl(commands, col_max=WIDEST_ENTRY)
         formatter.write(f"\n{cleandoc(self.epilog or '')}\n")

@@ -10,18 +10,25 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option, spread
+from workhold.cli.commands import option, spread, tell
+from workhold.cli.design_report import explain_none, picture_names
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.explanations import explain_none
-from workhold.cli.json_output import JsonOption, print_json, refuse_both
 from workhold.cli.options import PartArgument, PartWords
-from workhold.cli.outputs import ForceOption, refuse_output, refuse_output_folder
-from workhold.cli.pictures import picture_names
+from workhold.cli.outputs import (
+    FORMAT,
+    OUTPUT,
+    STANDARD_OUTPUT,
+    ForceOption,
+    JsonOption,
+    output_form,
+    print_json,
+    refuse_both,
+    refuse_output,
+    refuse_output_folder,
+    write_found,
+)
 from workhold.cli.progress import search_progress
-from workhold.cli.result_forms import FORMAT, OUTPUT, STANDARD_OUTPUT, output_form, write_found
-from workhold.cli.saying import tell
-from workhold.cli.search_options import QueryWords, with_fit_of
-from workhold.cli.seating_options import SeatingWords
+from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, optional_count, whole_number
 
@@ -41,7 +48,10 @@ KNOWN_FROM, SEARCH_SHARE, MANY = 0.05, 0.9, 200_000
 BYTES = {"json": 960, "csv": 550, "npz": 209}
 
 UnfitOption = Annotated[
-    bool, typer.Option("--unfit", help="List also what is no fixture for a workshop, in red.", rich_help_panel=OUTPUT)
+    bool,
+    typer.Option(
+        "--unfit", help="List also what is no fixture for a workshop, in red.", rich_help_panel=OUTPUT
+    ),
 ]
 
 
@@ -118,7 +128,9 @@ def design(
 
         second = begin_compiling()
     workpiece = reading.load(part).workpiece
-    query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked)
+    query = Query(
+        workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked
+    )
     start = perf_counter()
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
     with ask_to_stop("what was found is kept as far as it is soon proven") as cancel:
@@ -140,7 +152,9 @@ def design(
         if not result.complete:
             raise typer.Exit(INTERRUPTED)
         return
-    spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
+    spent = f"{perf_counter() - start:.1f} s" + (
+        ", compiling on this first run included" if first_run else ""
+    )
     report(result, spent, out, form, listed, shown, unfit)
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
@@ -166,7 +180,9 @@ def foretelling(
         fixtures = round(found / min(fraction / SEARCH_SHARE, 1.0))
         if fixtures >= MANY:
             size = f"some {float(f'{fixtures:.1e}'):,.0f} fixtures, {fixtures * BYTES[form] / 1e6:,.0f} MB in {out}"
-            columns = "" if form == "npz" else "; a name that ends in .npz gives a smaller file that opens at once"
+            columns = (
+                "" if form == "npz" else "; a name that ends in .npz gives a smaller file that opens at once"
+            )
             tell(f"this will be {size}: --best K keeps only the best K{columns}.")
 
     return followed
@@ -188,10 +204,18 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
     return answer(query, threads=threads, **watching)
 
 
-def report(result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit, unfit: bool) -> None:
+def report(
+    result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit, unfit: bool
+) -> None:
     """Tell about a result that is written; the words go to stderr where stdout carries the file."""
-    from workhold.cli.tables import counts_sentence, print_tables, proof_sentences, result_table, unfit_sentence
-    from workhold.listing.near_duplicates import entries
+    from workhold.cli.tables import (
+        counts_sentence,
+        print_tables,
+        proof_sentences,
+        result_table,
+        unfit_sentence,
+    )
+    from workhold.listing.identity import entries
 
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     for note in result.notes:
@@ -202,7 +226,9 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int, 
     sentence = counts_sentence(result)
     if not sum(result.found.values()):
         found = "exists" if result.complete else "was found before the interruption"
-        sentence = f"No fixture {found} for {result.workpiece.name} {result.toolkit.wording.inside}: the count is 0"
+        sentence = (
+            f"No fixture {found} for {result.workpiece.name} {result.toolkit.wording.inside}: the count is 0"
+        )
     written = out is not None and out != STANDARD_OUTPUT
     proof = proof_sentences(result, out if written and form != "csv" else None)
     left_out = [unfit_sentence(shown.unfit)] if shown.unfit else []
@@ -216,13 +242,15 @@ def report(result: Result, spent: str, out: str | None, form: str, listed: int, 
 
 def report_data(result: Result, listed: int, unfit: bool, out: str | None) -> dict[str, Any]:
     """What :func:`report` says, as plain data."""
-    from workhold.listing.near_duplicates import entries
+    from workhold.listing.identity import entries
     from workhold.presenting.data import result_data
 
     return {**result_data(result, entries(result, unfit), max(listed, 0)), "result_file": out}
 
 
-def further_data(result: Result, engine: str, threads: int | None, folder: Path | None, unit: Unit) -> dict[str, Any]:
+def further_data(
+    result: Result, engine: str, threads: int | None, folder: Path | None, unit: Unit
+) -> dict[str, Any]:
     """Why there is no fixture, and the pictures drawn, as plain data; a search that was interrupted has neither."""
     explained, written = None, []
     if result.complete and not any(result.found.values()) and engine == "curves":
@@ -232,11 +260,11 @@ def further_data(result: Result, engine: str, threads: int | None, folder: Path 
         why = explain(result.query, threads, unit)
         explained = explanation_data(why, result.toolkit)
         if folder is not None and why.nearest is not None:
-            from workhold.cli.pictures import NEAREST_MISS, draw_one
+            from workhold.cli.design_report import NEAREST_MISS, draw_one
 
             written = draw_one(why.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
     elif result.complete and folder is not None:
-        from workhold.cli.pictures import draw_best
+        from workhold.cli.design_report import draw_best
 
         written = draw_best(result, folder, unit)
     return {"explanation": explained, "pictures": [str(path) for path in written]}
@@ -244,7 +272,7 @@ def further_data(result: Result, engine: str, threads: int | None, folder: Path 
 
 def draw_pictures(result: Result, folder: Path, out: str | None, unit: Unit) -> None:
     """Draw the best fixtures and say where they are."""
-    from workhold.cli.pictures import draw_best
+    from workhold.cli.design_report import draw_best
     from workhold.cli.tables import plural, print_tables
 
     written = draw_best(result, folder, unit)

@@ -9,22 +9,19 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from workhold.cli.commands import option, spread
+from workhold.cli.commands import option, spread, tell
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.json_output import JsonOption, print_json
-from workhold.cli.many_toolkits import query_of, toolkits_to_try
 from workhold.cli.options import PartArgument, PartWords
-from workhold.cli.outputs import ForceOption, refuse_output
+from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
 from workhold.cli.progress import search_progress
-from workhold.cli.saying import tell
 from workhold.cli.search_options import QueryWords
-from workhold.cli.toolkit_options import TOOLKIT
+from workhold.cli.toolkit_options import TOOLKIT, query_of, toolkits_to_try
 from workhold.cli.values import length_unit
 from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.model.restrictions import Restrictions
+    from workhold.model.requirements import Restrictions
     from workhold.model.workpiece import Workpiece
     from workhold.search.exploring import Explored
 
@@ -65,7 +62,9 @@ def explore(
     toolkits = toolkits_to_try(vise, toolkit, pitch, columns, peg_radius, shown)
     asked = words.asked(shown)
     if out is not None:
-        refuse_output(out, (part, words.loads, *(name for names in vise or () for name in names.split(","))), force)
+        refuse_output(
+            out, (part, words.loads, *(name for names in vise or () for name in names.split(","))), force
+        )
     from workhold.kernels.base.compiling import is_first_run
 
     workpiece = reading.load(part).workpiece
@@ -127,7 +126,7 @@ FIGURES_KEPT = 3
 def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
     """Write the table and say which toolkit is best."""
     from workhold.cli.tables import Table, figure_text, heading, print_tables
-    from workhold.files.toolkit.presets import is_sold
+    from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR
 
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
@@ -139,7 +138,9 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
         if item.figures and not item.fit:
             table.red.add(len(table.rows))
         counts = (f"{item.found.get(name, 0):,}" for name in types)
-        values = (figure_text(f, item.figures[f.key], unit) if f.key in item.figures else "-" for f in figures)
+        values = (
+            figure_text(f, item.figures[f.key], unit) if f.key in item.figures else "-" for f in figures
+        )
         table.add_row(item.name, f"{item.fixtures:,}", *values, *counts)
     print_tables(table)
     for item in found:
@@ -155,7 +156,7 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
 
 def first_of(found: list[Explored], ranking: tuple[str, ...]) -> Explored | None:
     """The toolkit to take, see :func:`workhold.search.exploring.first_choice`."""
-    from workhold.files.toolkit.presets import is_sold
+    from workhold.files.toolkit_file import is_sold
     from workhold.search.exploring import first_choice
 
     return first_choice(found, ranking, is_sold)

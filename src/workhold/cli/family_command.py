@@ -1,4 +1,7 @@
-"""``workhold family``: the fewest set-ups for many parts, and what each fewer one costs."""
+"""The command ``workhold family``: the fewest set-ups for many parts, and what each fewer one costs.
+
+The terminal shows the curve, what was left out, and the plan.
+"""
 
 from __future__ import annotations
 
@@ -9,26 +12,142 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from workhold.cli.commands import option, spread
+from workhold.cli.commands import option, spread, tell
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.family_parts import asked_of, jobs_of
-from workhold.cli.family_report import report
-from workhold.cli.json_output import JsonOption, print_json
+from workhold.cli.jobs import asked_of, jobs_of
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import ForceOption, refuse_output
+from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
+from workhold.cli.table import Table
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, number, optional_count, picture_ending, positive_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.family.family import Family
-    from workhold.family.losses import Threshold
-    from workhold.family.plan import Plan
+    from workhold.family.members import Threshold
+    from workhold.family.plan import Plan, SetUp
+    from workhold.fixels.toolkit import Toolkit
     from workhold.units import Unit
 
-__all__ = ["family"]
+__all__ = ["family", "report"]
+
+# Letters of a part's name that are shown, and up to which there is room for the figure as well.
+LONGEST_NAME, SHORT_NAME = 26, 16
+
+
+def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
+    """Tell the curve, what was left out, and the plan."""
+    from workhold.cli.tables import plural, print_tables
+
+    toolkit = found.toolkit
+    for part in found.left_out:
+        tell(f"{part.name} is left out: {part.reason}.")
+    if not found.members:
+        print_tables(f"No pattern holds any of the parts {toolkit.wording.inside}; {spent}.")
+        return
+    assert found.table is not None
+    print_tables(curve_table(found, unit))
+    sentences = [
+        f"{plural(len(found.members), 'part')}, {plural(len(found.table.words), 'pattern')} that hold at least one of them; "
+        f"{spent}.",
+        f"The loss is the {found.figure.words} over the best that each part has {toolkit.wording.inside}.",
+    ]
+    if not all(plan.point.is_least and plan.point.at_least == plan.point.setups for plan in found.plans):
+        sentences.append("Time was over before all of it was proven: a longer --time-limit may show less.")
+    print_tables(*sentences)
+    if plan is None:
+        print_tables(
+            "See the plan of a line with --setups K, or of the fewest set-ups within a loss with --max-loss."
+        )
+        return
+    for number_, setup in enumerate(plan.setups, 1):
+        heading = f"Set-up {number_} of {len(plan.setups)}: {pegs_words(setup, toolkit)}"
+        place = "" if number_ == 1 else f" ({setup.moved} to place, the rest stands)"
+        print_tables("", f"{heading}{place}", setup_table(setup, found, unit))
+        for one in setup.holdings:
+            if not one.in_place:
+                holes = ", ".join(peg.hole for peg in one.fixture.pegs)
+                print_tables(f"{one.member.name} needs the same pegs in other columns: {holes}.")
+
+    if any(one.turned for setup in plan.setups for one in setup.holdings):
+        print_tables(
+            "", "A number with ' is that of the list after half a turn of everything, which swaps the jaws."
+        )
+
+
+def curve_table(found: Family, unit: Unit) -> Table:
+    """The curve: set-ups, the worst loss and on which part, and how many pegs are moved."""
+    from workhold.cli.tables import figure_text, heading
+    from workhold.family.members import loss_text
+
+    table = Table((">set-ups", ">worst loss", ">pegs moved", f">{heading(found.figure, unit)}", "worst part"))
+    for plan in found.plans:
+        point = plan.point
+        worst = max((one for setup in plan.setups for one in setup.holdings), key=lambda one: one.loss)
+        count = f"{point.setups}" if point.at_least == point.setups else f"{point.at_least} to {point.setups}"
+        table.add_row(
+            count,
+            loss_text(point.loss),
+            str(plan.moved),
+            figure_text(found.figure, worst.figure, unit),
+            short_name(worst.member.name),
+        )
+    return table
+
+
+def pegs_words(setup: SetUp, toolkit: Toolkit) -> str:
+    """The holes of a set-up."""
+    return ", ".join(peg.hole for peg in setup.standing.fixture.placed)
+
+
+def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
+    """The parts of a set-up and how each lies."""
+    from workhold.cli.tables import figure_text, heading
+    from workhold.family.members import loss_text
+    from workhold.model.setup import settings_of
+
+    settings = settings_of(setup.standing.fixture, found.toolkit)
+    names = [f">{setting.short} {unit.abbreviation}" for setting in settings]
+    columns = (
+        "part",
+        ">fixture",
+        ">angle",
+        f">x {unit.abbreviation}",
+        f">y {unit.abbreviation}",
+        *names,
+        ">loss",
+    )
+    # Long names, or the lengths of two clamps, leave no room for it on a terminal.
+    with_figure = len(settings) < 2 and max(len(one.member.name) for one in setup.holdings) <= SHORT_NAME
+    table = Table((*columns, f">{heading(found.figure, unit)}") if with_figure else columns)
+    for one in setup.holdings:
+        fixture = one.fixture
+        pose = fixture.pose
+        lengths = [unit.number(setting.length) for setting in settings_of(fixture, found.toolkit)]
+        table.add_row(
+            short_name(one.member.name),
+            f"{one.number:,}" + ("'" if one.turned else ""),
+            f"{pose.theta_deg:.3f}",
+            unit.number(pose.x),
+            unit.number(pose.y),
+            *lengths,
+            loss_text(one.loss),
+            *([figure_text(found.figure, one.figure, unit)] if with_figure else []),
+        )
+    return table
+
+
+def short_name(name: str) -> str:
+    """A part's name, or its beginning and end where it is long.
+
+    >>> short_name("ell.dxf"), short_name("bracket, left, machined side up.dxf")
+    ('ell.dxf', 'bracket, left… side up.dxf')
+    """
+    half = LONGEST_NAME // 2
+    return name if len(name) <= LONGEST_NAME else f"{name[:half]}…{name[1 - half :]}"
+
 
 FAMILY, OUTPUT = "The family", "Results"
 EVERY_TYPE = "both"
@@ -73,9 +192,13 @@ def family(
     *,
     held_in: ToolkitWords,
     max_loss: str | None = option(
-        FAMILY, "LOSS", "Accept no larger loss than this, such as 1.25; the plan is then that of the fewest set-ups."
+        FAMILY,
+        "LOSS",
+        "Accept no larger loss than this, such as 1.25; the plan is then that of the fewest set-ups.",
     ),
-    setups: str | None = option(FAMILY, "K", "The plan is that of at most K set-ups, as good as those can be."),
+    setups: str | None = option(
+        FAMILY, "K", "The plan is that of at most K set-ups, as good as those can be."
+    ),
     limit: list[str] | None = option(
         FAMILY,
         "FIGURE=VALUE",
@@ -102,7 +225,9 @@ def family(
     ),
     threads: str | None = option(FAMILY, "N", "Threads to use; all processors if not given."),
     out: str | None = option(OUTPUT, "FILE", "Write curve and plans to this JSON file."),
-    draw: str | None = option(OUTPUT, "FILE", "Draw the curve into this file; its name ends in .svg or .png."),
+    draw: str | None = option(
+        OUTPUT, "FILE", "Draw the curve into this file; its name ends in .svg or .png."
+    ),
     sheets: str | None = option(
         OUTPUT,
         "FILE",
@@ -177,12 +302,14 @@ def family(
             progress=progress,
         )
     plan = found.plan(most) if found.members and (most is not None or loss is not None) else None
-    spent = f"{perf_counter() - start:.1f} s" + (", compiling on this first run included" if first_run else "")
+    spent = f"{perf_counter() - start:.1f} s" + (
+        ", compiling on this first run included" if first_run else ""
+    )
     written = write_all(found, plan, out, draw, sheets, shown)
     if json_:
         from json import loads
 
-        from workhold.family.file import family_text
+        from workhold.family.family import family_text
 
         print_json(**loads(family_text(found)), written=written)
         return
@@ -215,12 +342,12 @@ def write_all(
 
     contents: dict[str, bytes] = {}
     if out is not None:
-        from workhold.family.file import family_text
+        from workhold.family.family import family_text
 
         contents[out] = family_text(found).encode("utf-8")
     if draw is not None and found.members:
         from workhold.drawing.render import render
-        from workhold.family.curve_picture import draw_curve
+        from workhold.family.pages import draw_curve
 
         contents[draw] = render(draw_curve(found, None if plan is None else plan.point), Path(draw).suffix)
     if sheets is not None and plan is not None:
@@ -237,7 +364,7 @@ def sheets_bytes(found: Family, plan: Plan, ending: str, unit: Unit) -> bytes:
     from workhold.drawing.pdf import svg_to_pdf
     from workhold.drawing.render import svg_to_png
     from workhold.drawing.scene import stacked
-    from workhold.family.setup_pages import draw_setups
+    from workhold.family.pages import draw_setups
 
     day = date.today()
     pages = draw_setups(plan, found.figure, day, unit)
@@ -256,7 +383,9 @@ def loss_of(text: str) -> float:
     """
     value = number(text)
     if not (isfinite(value) and value >= 1.0):
-        raise InputError(f"--max-loss {text!r} is no loss: give 1 (the best each part has) or more, such as 1.25.")
+        raise InputError(
+            f"--max-loss {text!r} is no loss: give 1 (the best each part has) or more, such as 1.25."
+        )
     return value
 
 
@@ -268,9 +397,11 @@ def threshold_of(text: str) -> Threshold:
     InputError
         For anything else.
     """
-    from workhold.family.losses import threshold
+    from workhold.family.members import threshold
 
     name, equals, value = text.partition("=")
     if not equals or not isfinite(number(value)):
-        raise InputError(f"--limit {text!r} is no limit: give a figure and its value, such as location-error=0.05.")
+        raise InputError(
+            f"--limit {text!r} is no limit: give a figure and its value, such as location-error=0.05."
+        )
     return threshold(name, number(value))

@@ -17,9 +17,8 @@ import typer
 from typer.main import get_command
 
 from workhold import __version__
-from workhold.cli.commands import PlainCommand, PlainGroup
+from workhold.cli.commands import PlainCommand, PlainGroup, forget, tell
 from workhold.cli.ending import INTERRUPTED, end_on_signals, leave, say_interrupted
-from workhold.cli.saying import forget, tell
 from workhold.errors import InputError
 from workhold.limits import NO_ROOM, lacks_memory, refuse_little_space
 
@@ -48,8 +47,7 @@ Lengths are in millimetres, or in the unit of --unit; a length may carry a unit
 of its own, such as 0.5in. workhold COMMAND --help explains a command.
 """
 
-# The commands, each with the first paragraph of its help. A command is the function of its name in the module of its name,
-# which is imported when it is asked for: nobody waits for the others.
+# The commands, each with the first paragraph of its help.
 COMMANDS = {
     "design": "Find every way to hold PART in a vise, or on a plate with a clamp or two.",
     "show": (
@@ -87,6 +85,25 @@ COMMANDS = {
     "completion": "Print the script that lets a shell complete the commands and options of workhold.",
 }
 
+# The modules of several commands; every other command stands in a module of its own. A command is the function of its name,
+# and its module is imported when it is asked for: nobody waits for the others.
+SHARED_MODULES = {
+    "catalogue_commands": ("features", "parts", "toolkits"),
+    "fixture_commands": ("seat", "show"),
+    "result_commands": ("convert", "verify"),
+    "serving_commands": ("completion", "mcp", "serve"),
+    "workshop_commands": ("copies", "drill", "sheet"),
+}
+MODULES = {name: f"{name}_command" for name in COMMANDS} | {
+    name: module for module, names in SHARED_MODULES.items() for name in names
+}
+
+
+def command_of(name: str) -> Callable[..., None]:
+    """The function of a command, whose module is imported now."""
+    command: Callable[..., None] = getattr(import_module(f"workhold.cli.{MODULES[name]}"), name)
+    return command
+
 
 @contextmanager
 def outcomes() -> Iterator[None]:
@@ -113,8 +130,7 @@ class Workhold(PlainGroup):
         if cmd_name not in COMMANDS:
             return None
         alone = typer.Typer(add_completion=False, rich_markup_mode=None)
-        command = getattr(import_module(f"workhold.cli.{cmd_name}_command"), cmd_name)
-        alone.command(cmd_name, cls=PlainCommand)(command)
+        alone.command(cmd_name, cls=PlainCommand)(command_of(cmd_name))
         return get_command(alone)
 
     def make_context(self, *args: Any, **extra: Any) -> Any:
@@ -174,7 +190,8 @@ def show_version(wanted: bool) -> None:
 @app.callback()
 def options(
     version: Annotated[
-        bool, typer.Option("--version", callback=show_version, is_eager=True, help="Print the version and stop.")
+        bool,
+        typer.Option("--version", callback=show_version, is_eager=True, help="Print the version and stop."),
     ] = False,
 ) -> None:
     """Options of workhold itself; the help above is the app's."""

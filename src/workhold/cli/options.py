@@ -1,4 +1,8 @@
-"""The part and how its file is read, and the unit of what is shown: what several commands share."""
+"""Arguments and options of several commands: the part and how it is read, a result file, a rank, a unit.
+
+Words that describe a toolkit stand in :mod:`workhold.cli.toolkit_options`, words of a search in
+:mod:`workhold.cli.search_options`.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +13,67 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import option
-from workhold.cli.saying import tell
-from workhold.cli.values import choice, length, length_unit, optional_count, optional_length, optional_positive_length
+from workhold.cli.commands import option, tell
+from workhold.cli.values import (
+    choice,
+    length,
+    length_unit,
+    optional_count,
+    optional_length,
+    optional_positive_length,
+    whole_number,
+)
+from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.files.part.load import Loaded
+    from workhold.model.result import Result
 
-__all__ = ["SHOWN_UNIT", "PartArgument", "PartWords"]
+__all__ = [
+    "SHOWN_UNIT",
+    "PartArgument",
+    "PartWords",
+    "RankArgument",
+    "ResultArgument",
+    "asked_rank",
+    "result_with",
+]
+
+ResultArgument = Annotated[
+    str, typer.Argument(metavar="RESULT", help="A result file (JSON or npz) written by workhold design.")
+]
+RankArgument = Annotated[str, typer.Argument(metavar="N", help="Which fixture, by rank: 1 is the best.")]
+
+
+def asked_rank(text: str) -> int:
+    """A rank from 1.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    rank = whole_number("fixture", text)
+    if rank < 1:
+        raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
+    return rank
+
+
+def result_with(path: str, rank: int) -> Result:
+    """The result of a file that lists a fixture of a rank.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be used, or lists fewer.
+    """
+    from workhold.files.result.reader import read_result
+
+    result = read_result(path)
+    if rank > len(result):
+        raise InputError(f"{path} lists {len(result)} fixtures: there is no fixture {rank}.")
+    return result
+
 
 READING = "Reading the part"
 # With its unit, so that it is the same whatever --unit says.
@@ -37,7 +94,8 @@ CALLED = {
 PartArgument = Annotated[
     str,
     typer.Argument(
-        metavar="PART", help="The part: a DXF, SVG, JSON or STEP file, or a built-in name (see workhold parts)."
+        metavar="PART",
+        help="The part: a DXF, SVG, JSON or STEP file, or a built-in name (see workhold parts).",
     ),
 ]
 SHOWN_UNIT = option(None, "UNIT", "Unit of the lengths shown (mm, cm, m, inch); mm if not given.", "--unit")
@@ -63,7 +121,9 @@ class PartWords:
         READING, "N", "Which part, when a drawing holds several; the largest if not given.", "--part"
     )
     drawing_unit: str | None = option(
-        READING, "UNIT", "Unit of the drawing, where it is not that of --unit, or where the file says a wrong one."
+        READING,
+        "UNIT",
+        "Unit of the drawing, where it is not that of --unit, or where the file says a wrong one.",
     )
     axis: str | None = option(
         READING, "x|y|z", "STEP files: the direction that the pegs are parallel to; z if not given."

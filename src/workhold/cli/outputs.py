@@ -1,18 +1,45 @@
-"""What a command may write over: its own earlier outputs, and nothing that it reads."""
+"""Outputs of a command: files it may write over, the forms of a result file, and the object of ``--json``.
+
+A command writes over its own earlier outputs, and over nothing that it reads. What ``--json`` prints on
+standard output is for other programs: lengths in mm, angles in degrees and forces in N whatever ``--unit``
+says. Remarks and errors go to standard error as always, and the exit codes are the same.
+"""
 
 from __future__ import annotations
 
+import json
 import os
+import sys
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from workhold.cli.commands import option
+from workhold.cli.ending import Interrupted, keep_what_is_found
+from workhold.cli.values import choice
 from workhold.errors import InputError
 
-__all__ = ["ForceOption", "refuse_output", "refuse_output_folder"]
+if TYPE_CHECKING:
+    from workhold.model.result import Result
+
+__all__ = [
+    "FORMAT",
+    "OUTPUT",
+    "STANDARD_OUTPUT",
+    "ForceOption",
+    "JsonOption",
+    "output_form",
+    "print_json",
+    "print_written",
+    "refuse_both",
+    "refuse_output",
+    "refuse_output_folder",
+    "write_found",
+    "write_output",
+]
 
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace files of these names that workhold has not written.")
@@ -37,7 +64,9 @@ MARKS = (
 )
 
 
-def refuse_output(path: str | Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force") -> None:
+def refuse_output(
+    path: str | Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force"
+) -> None:
     """Refuse an output file before any work is done for it.
 
     Parameters
@@ -57,7 +86,9 @@ def refuse_output(path: str | Path, inputs: Iterable[str | Path | None], force: 
     refuse_replacing(Path(path), inputs, force, called)
 
 
-def refuse_output_folder(folder: Path, names: Iterable[str], inputs: Iterable[str | Path | None], force: bool) -> None:
+def refuse_output_folder(
+    folder: Path, names: Iterable[str], inputs: Iterable[str | Path | None], force: bool
+) -> None:
     """Refuse an output folder, or the files of some names that a command would write into it.
 
     Raises
@@ -73,7 +104,9 @@ def refuse_output_folder(folder: Path, names: Iterable[str], inputs: Iterable[st
         refuse_replacing(folder / name, inputs, force)
 
 
-def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force") -> None:
+def refuse_replacing(
+    path: Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force"
+) -> None:
     """Refuse to write over an input, and over a foreign file unless that is asked for.
 
     Raises
@@ -105,3 +138,113 @@ def is_own(path: Path) -> bool:
         ends = first + stream.read(ENDS)
         return not ends or any(mark in ends for mark in MARKS)
     return False
+
+
+OUTPUT = "Results"
+STANDARD_OUTPUT = "-"
+FORMS = ("json", "csv", "npz")
+
+FORMAT = option(
+    OUTPUT,
+    "json|csv|npz",
+    "Form of the file: csv for a spreadsheet, npz in columns for a great many fixtures. If not given, the file's "
+    "name decides.",
+    "--format",
+)
+
+
+def output_form(out: str | None, asked: str | None) -> str:
+    """The form of a result file: the one asked for, or the one that its name suggests.
+
+    Raises
+    ------
+    InputError
+        For a form that is not known, and for one that no terminal can take.
+    """
+    if asked is None:
+        ending = "" if out is None else out.lower().rpartition(".")[2]
+        return ending if ending in FORMS else "json"
+    form = choice("--format", asked, FORMS)
+    if form == "npz" and out == STANDARD_OUTPUT:
+        raise InputError("--format npz needs a file: name one with --out.")
+    return form
+
+
+def write_output(result: Result, out: str, form: str) -> None:
+    """Write a result to a file or to the terminal.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    if out != STANDARD_OUTPUT:
+        from workhold.files.result.save import save
+
+        save(result, out, form)
+        return
+    if form == "csv":
+        from workhold.files.result.fixture_text import write_result_csv_to as write_to
+    else:
+        from workhold.files.result.writer import write_result_to as write_to
+    write_to(result, sys.stdout)
+    sys.stdout.flush()
+
+
+def write_found(result: Result, out: str, form: str) -> Result:
+    """Write what a search found, or after a Ctrl-C the best of millions, which takes a moment only; what was written.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    try:
+        write_output(result, out, form)
+    except Interrupted:
+        from workhold.listing.collector import LISTED_LATE
+
+        if out == STANDARD_OUTPUT or len(result) <= LISTED_LATE:
+            raise
+        keep_what_is_found()
+        result = result.part(slice(LISTED_LATE)).cut_short(LISTED_LATE)
+        write_output(result, out, form)
+    return result
+
+
+JsonOption = Annotated[
+    bool,
+    typer.Option(
+        "--json", help="Print one JSON object instead of tables; lengths in mm whatever --unit says."
+    ),
+]
+
+
+def refuse_both(as_json: bool, out: str | None) -> None:
+    """Refuse two things on standard output.
+
+    Raises
+    ------
+    InputError
+        Where the file goes there too.
+    """
+    if as_json and out == STANDARD_OUTPUT:
+        raise InputError(
+            "--json and a file on the terminal (-) are two things in one place: leave one of them out."
+        )
+
+
+def print_json(**content: Any) -> None:
+    """Print an object in a line of ASCII."""
+    sys.stdout.write(json.dumps(content, allow_nan=False) + "\n")
+    sys.stdout.flush()
+
+
+def print_written(as_json: bool, sentence: str, *paths: str | Path) -> None:
+    """Tell which files were written, in a sentence or as JSON."""
+    if as_json:
+        print_json(written=[str(path) for path in paths])
+        return
+    from workhold.cli.tables import print_tables
+
+    print_tables(sentence)

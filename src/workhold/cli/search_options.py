@@ -1,24 +1,90 @@
-"""Options that say what is ruled out, what loads act and what makes a fixture good, shared by the commands that search."""
+"""Options of a search: what is ruled out, loads, what makes a fixture good, and whether the part seats.
+
+A load is typed as ``--load "force=200 at=10,5 direction=30..60"``.
+"""
 
 from __future__ import annotations
 
+import shlex
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
+import typer
 from attrs import evolve, frozen
 
 from workhold.cli.commands import option
-from workhold.cli.load_option import LOAD_HELP, parse_load
-from workhold.cli.values import length, number, optional_force, whole_number
+from workhold.cli.values import (
+    length,
+    number,
+    optional_count,
+    optional_force,
+    optional_positive_length,
+    whole_number,
+)
 from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.model.load import Load
-    from workhold.model.restrictions import Zone
-    from workhold.model.tolerance import Tolerance
+    from workhold.model.requirements import Load, Tolerance, Zone
 
-__all__ = ["FRICTION", "JAW", "JAW_FORCE", "LOAD", "LOADS_FILE", "QueryWords", "asked_loads", "with_fit_of"]
+__all__ = [
+    "FRICTION",
+    "JAW",
+    "JAW_FORCE",
+    "LOAD",
+    "LOADS_FILE",
+    "LOAD_HELP",
+    "QueryWords",
+    "SeatingWords",
+    "asked_loads",
+    "parse_load",
+    "with_fit_of",
+]
+
+LOAD_HELP = (
+    "A load on the part, such as 'force=200 at=10,5 direction=30..60', in N, degrees and part coordinates; "
+    "path=X,Y;X,Y for a cutter's path, any direction if none is given, moment=5000 in N mm. May be repeated."
+)
+
+
+def parse_load(text: str, unit_scale: float = 1.0) -> Load:
+    """A load from the text of ``--load``.
+
+    Parameters
+    ----------
+    text : words key=value, see ``files.loads_file``; a value with spaces stands in quotes.
+    unit_scale : millimetres in one unit of length.
+
+    Raises
+    ------
+    InputError
+        When it cannot be used.
+
+    Examples
+    --------
+    >>> parse_load("force=150 path=0,0;40,0;40,20").points
+    ((0.0, 0.0), (40.0, 0.0), (40.0, 20.0))
+    """
+    place = f'--load "{text}"'
+    from workhold.files.loads_file import load_from_words
+
+    try:
+        words = shlex.split(text)
+    except ValueError:
+        raise InputError(f"{place} has a quote that is not closed: close it.") from None
+    values: dict[str, str] = {}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if not equals:
+            raise InputError(
+                f"{place} cannot be used at '{word}': give words like force=200 at=10,5 direction=30..60, without spaces "
+                "inside a value."
+            )
+        if key in values:
+            raise InputError(f"{place} has {key} twice: give it once, and another --load for another load.")
+        values[key] = value
+    return load_from_words(values, place, unit_scale)
+
 
 RULING_OUT, LOADS, RANKING = "Ruling out", "Loads", "Ranking"
 
@@ -38,7 +104,9 @@ JAW = option(
     "times as stiff as one contact the locked jaw is.",
     default="screw",
 )
-FRICTION = option(LOADS, "MU", "Coefficient of friction, to tell what friction could add; none counts elsewhere.")
+FRICTION = option(
+    LOADS, "MU", "Coefficient of friction, to tell what friction could add; none counts elsewhere."
+)
 
 
 @frozen
@@ -97,14 +165,16 @@ class QueryWords:
             For words that mean nothing, figures that are not known, and a file that cannot be used.
         """
         from workhold.model.query import asked_ranking
-        from workhold.model.restrictions import Restrictions
+        from workhold.model.requirements import Restrictions
 
         loads = asked_loads(self.load, self.loads, unit)
         names = None if self.rank_by is None else [word for word in self.rank_by.split(",") if word.strip()]
         return {
             "contact_margin": asked_contact_margin(self.contact_margin, unit),
             "restrictions": Restrictions(
-                avoid=tuple(whole_number("--avoid", word) for words in self.avoid or () for word in words.split(",")),
+                avoid=tuple(
+                    whole_number("--avoid", word) for words in self.avoid or () for word in words.split(",")
+                ),
                 zones=tuple(zone(text, unit) for text in self.keep_out or ()),
                 angles=tuple(angles(text) for text in self.angle or ()),
             ),
@@ -123,11 +193,13 @@ def zone(text: str, unit: Unit) -> Zone:
     InputError
         For anything else.
     """
-    from workhold.model.restrictions import circle_zone, polygon_zone
+    from workhold.model.requirements import circle_zone, polygon_zone
 
     kind, _, rest = text.partition("=")
     points = [
-        [length("--keep-out", word, unit) for word in words.split(",")] for words in rest.split(";") if words.strip()
+        [length("--keep-out", word, unit) for word in words.split(",")]
+        for words in rest.split(";")
+        if words.strip()
     ]
     kind = kind.strip().lower()
     if kind == "circle" and len(points) == 1 and len(points[0]) == 3:
@@ -174,13 +246,15 @@ def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
     InputError
         For words that are no lengths.
     """
-    from workhold.model.tolerance import Tolerance
+    from workhold.model.requirements import Tolerance
 
     if text is None:
         return None
     words = text.split(",")
     if len(words) > 2:
-        raise InputError(f"--tolerance {text!r} has {len(words)} numbers: give one for pegs and faces, or PEG,FACE.")
+        raise InputError(
+            f"--tolerance {text!r} has {len(words)} numbers: give one for pegs and faces, or PEG,FACE."
+        )
     lengths = [length("--tolerance", word, unit) for word in words]
     return Tolerance(lengths[0], lengths[-1])
 
@@ -206,3 +280,49 @@ def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[
 
     typed = tuple(parse_load(text, unit.millimetres) for text in loads or ())
     return typed + (() if file is None else read_loads(file, unit.millimetres))
+
+
+SEATING = "Seating"
+FoolproofOption = Annotated[
+    bool,
+    typer.Option(
+        "--foolproof",
+        help="List only those of them that have no wrong place to rest in, or a caliper tells each.",
+        rich_help_panel=SEATING,
+    ),
+]
+
+
+@frozen
+class SeatingWords:
+    """What was typed about seating; None for options not given."""
+
+    seating: str | None = option(
+        SEATING,
+        "K",
+        "Of the first K fixtures tell from how far open, or with the clamp how far drawn back, the part is caught and where "
+        "else it can rest, and order them by that too (see workhold seat).",
+    )
+    opening: str | None = option(
+        SEATING,
+        "LENGTH",
+        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so much more than "
+        "where they hold it; places beyond it do not count.",
+    )
+    foolproof: FoolproofOption = False
+
+    def asked(self, unit: Unit) -> dict[str, Any]:
+        """Keyword arguments of a query.
+
+        Raises
+        ------
+        InputError
+            For words that are no number or length, and for rules of seating where that is not asked for.
+        """
+        count = optional_count("--seating", self.seating)
+        opening = optional_positive_length("--opening", self.opening, unit)
+        if count is None and (opening is not None or self.foolproof):
+            raise InputError(
+                "--opening and --foolproof need --seating K: of how many fixtures, the first, to look at it."
+            )
+        return {"seating": count, "opening": opening, "foolproof": bool(self.foolproof)}

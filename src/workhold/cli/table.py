@@ -55,13 +55,17 @@ class Table:
         """
         right = [column.startswith(">") for column in self.columns]
         headings = [column.lstrip(">") for column in self.columns]
-        content = [max(map(len, column), default=0) for column in zip(*self.rows, strict=True)] or [0] * len(headings)
+        content = [max(map(len, column), default=0) for column in zip(*self.rows, strict=True)] or [0] * len(
+            headings
+        )
         widths = [max(len(heading), most) for heading, most in zip(headings, content, strict=True)]
         tops, gap, kept = [[heading] for heading in headings], GAP, len(headings)
         rows, left_out = [[[word] for word in row] for row in self.rows], ""
         if width is not None and total(widths, gap) > width:
             gap = NARROW_GAP
-            widths = [max(most, *map(len, heading.split())) for heading, most in zip(headings, content, strict=True)]
+            widths = [
+                max(most, *map(len, heading.split())) for heading, most in zip(headings, content, strict=True)
+            ]
             tops = [wrap(heading, room) for heading, room in zip(headings, widths, strict=True)]
             while total(widths[:kept], gap) > width and kept > len(headings) - self.spare:
                 kept -= 1
@@ -75,7 +79,8 @@ class Table:
         def lines_of(cells: list[list[str]], low: bool) -> list[str]:
             high = max(map(len, cells[:kept]))
             filled = [
-                [""] * (high - len(cell)) + cell if low else cell + [""] * (high - len(cell)) for cell in cells[:kept]
+                [""] * (high - len(cell)) + cell if low else cell + [""] * (high - len(cell))
+                for cell in cells[:kept]
             ]
             return [
                 (" " * gap)
@@ -94,7 +99,9 @@ class Table:
             if number in self.red:
                 red.update(range(len(lines), len(lines) + len(written)))
             lines += written
-        return Fitted(lines_of(tops, low=True), lines + wrap(left_out, max(width or 0, 1), break_long_words=False), red)
+        return Fitted(
+            lines_of(tops, low=True), lines + wrap(left_out, max(width or 0, 1), break_long_words=False), red
+        )
 
 
 def total(widths: list[int], gap: int) -> int:

@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING, TextIO
 import typer
 
 from workhold.cli.table import Table
-from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN
+from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN
 from workhold.plain import plain, shortened
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
-    from workhold.geometry.face import Face
-    from workhold.listing.near_duplicates import Entries
+    from workhold.geometry.loop import Face
+    from workhold.listing.identity import Entries
     from workhold.model.fixture import Fixture, Peg
-    from workhold.model.proof import Proof, Undecided
     from workhold.model.quality import Figure
     from workhold.model.result import Result
-    from workhold.model.setting import Setting
+    from workhold.model.search_report import Proof, Undecided
+    from workhold.model.setup import Setting
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -85,7 +85,12 @@ def sentence_lines(sentence: str, width: int | None) -> list[str]:
     if width is None or len(sentence) <= width or not words:
         return [sentence]
     return wrap(
-        words, width, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+        words,
+        width,
+        initial_indent=indent,
+        subsequent_indent=indent,
+        break_long_words=False,
+        break_on_hyphens=False,
     )
 
 
@@ -121,7 +126,9 @@ def counts_sentence(result: Result) -> str:
         found += each if result.query.listing == "best" else f" at {plural(result.seats, 'seat')}"
     sentence = f"{found}; {sum(result.distinct.values())} distinct under the part's symmetry"
     if result.query.has_seating_rules:
-        sentence += f"; {plural(len(result), 'fixture')} of the first {result.query.seating} listed for their seating"
+        sentence += (
+            f"; {plural(len(result), 'fixture')} of the first {result.query.seating} listed for their seating"
+        )
     elif len(result) < total:
         sentence += f"; the best {len(result)} are kept"
     return sentence
@@ -153,7 +160,9 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
     named = [f"  {undecided_words(item)}." for item in proof.undecided[:MOST_NAMED]]
     if lost > MOST_NAMED:
         others = "The other one is" if lost == MOST_NAMED + 1 else f"The other {lost - MOST_NAMED} are"
-        where = f'under "proof" in {written}' if written else 'under "proof" in a JSON file written with --out'
+        where = (
+            f'under "proof" in {written}' if written else 'under "proof" in a JSON file written with --out'
+        )
         named.append(f"  {others} {where}.")
     return [f"{sentence}, {lost} undecided:", *named, UNDECIDED]
 
@@ -190,7 +199,7 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     sorted as it is.
     """
     from workhold.model.quality import FIGURES, LOCATION_ERROR, RANKED, SEATING_FIGURES
-    from workhold.model.setting import settings_of
+    from workhold.model.setup import settings_of
     from workhold.statics.judging import unfit
 
     ranked = [figure for key in result.query.ranking for figure in RANKED if figure.key == key]
@@ -200,7 +209,9 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
         # What it is ranked by first, then how wide open the part is caught, and what a reading must tell.
         told = [f for f in SEATING_FIGURES if f.key in ("capture_opening", "reading") and f not in figures]
         figures[1:1] = told
-    headings = [f">{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip() for figure in figures]
+    headings = [
+        f">{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip() for figure in figures
+    ]
     toolkit = result.toolkit
     groups, opening = peg_groups(toolkit), f">{toolkit.moving.measure} {unit.abbreviation}"
     pairs = [">best of"] if result.query.listing == "best" else []
@@ -248,7 +259,9 @@ def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
         is_alone = carrier.contact is CLAMP_TIP and toolkit.closes_at_once
         pegs = carrier.peg if is_alone else f"{carrier.peg}s"
         if carrier.contact.is_placed:
-            groups.setdefault(f"{carrier.name} holes" if len(toolkit.plates) > 1 else pegs, []).append(carrier.name)
+            groups.setdefault(f"{carrier.name} holes" if len(toolkit.plates) > 1 else pegs, []).append(
+                carrier.name
+            )
     return groups
 
 
@@ -321,7 +334,7 @@ def fixture_tables(
     fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
     """How to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
-    from workhold.model.setting import settings_of
+    from workhold.model.setup import settings_of
 
     noun, several = toolkit.moving.noun, len(toolkit.plates) > 1
     x, y = f">x {unit.abbreviation}", f">y {unit.abbreviation}"
@@ -355,12 +368,15 @@ def setting_sentence(setting: Setting, unit: Unit) -> str:
 
 def pair_sentences(fixture: Fixture) -> list[str]:
     """In which order two clamps are tightened and with what forces; none of other fixtures."""
-    from workhold.model.tightening import clamp_names, clamp_shares, order_words
+    from workhold.model.clamps import clamp_names, clamp_shares, order_words
 
     order = order_words(fixture)
     if not order:
         return []
-    each = [f"{share:.0%} at {name}" for name, share in zip(clamp_names(fixture), clamp_shares(fixture), strict=True)]
+    each = [
+        f"{share:.0%} at {name}"
+        for name, share in zip(clamp_names(fixture), clamp_shares(fixture), strict=True)
+    ]
     return [
         order,
         f"Forces are told for {' and '.join(each)} of the clamp force, which is that of both.",
@@ -374,7 +390,9 @@ def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
     first = 0
     loop_of = {}
     for index, loop in enumerate(workpiece.loops):
-        loop_of.update(dict.fromkeys(range(first, first + len(loop)), "outer" if index == 0 else f"hole {index}"))
+        loop_of.update(
+            dict.fromkeys(range(first, first + len(loop)), "outer" if index == 0 else f"hole {index}")
+        )
         first += len(loop)
     for face in workpiece.faces:
         kind, size, start, end = face_words(face, unit)

@@ -1,13 +1,18 @@
-"""Options that describe the toolkit, shared by the commands that search."""
+"""Options that describe one toolkit, and lists of toolkits for the commands that try many.
+
+A list holds names, files and kinds, and its figures may be lists as well.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, field, frozen
 
 from workhold.cli.commands import option
+from workhold.cli.search_options import with_fit_of
 from workhold.cli.values import length, optional_length, pitches, whole_number
 from workhold.errors import InputError
 from workhold.fixels.fields import MIN_GAP, NAMES, OPTIONS
@@ -16,9 +21,11 @@ from workhold.units import Unit
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
-    from workhold.model.tolerance import Tolerance
+    from workhold.model.query import Query
+    from workhold.model.requirements import Tolerance
+    from workhold.model.workpiece import Workpiece
 
-__all__ = ["TOOLKIT", "ToolkitWords"]
+__all__ = ["MOST_TOOLKITS", "TOOLKIT", "Named", "ToolkitWords", "query_of", "toolkits_to_try", "words_of"]
 
 TOOLKIT = option(
     TOOLKIT_SECTION,
@@ -28,14 +35,18 @@ TOOLKIT = option(
     "--toolkit",
 )
 MIN_OPENING = option(
-    TOOLKIT_SECTION, "LENGTH", "Smallest distance from the left jaw's last column to the right jaw's first, if larger."
+    TOOLKIT_SECTION,
+    "LENGTH",
+    "Smallest distance from the left jaw's last column to the right jaw's first, if larger.",
 )
 
 
 def typed_options() -> dict[str, Any]:
     """Attributes of :class:`ToolkitWords`, in the order of the help: one for each field of a toolkit, and a few more."""
     out = {
-        "vise": option(TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change what it says."),
+        "vise": option(
+            TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change what it says."
+        ),
         "toolkit": TOOLKIT,
     }
     for row in OPTIONS:
@@ -45,7 +56,9 @@ def typed_options() -> dict[str, Any]:
     words: Any = str | None
     several: Any = list[str] | None
     lists = {row.name for row in OPTIONS if row.form == "holes"}
-    return {name: field(default=given, type=several if name in lists else words) for name, given in out.items()}
+    return {
+        name: field(default=given, type=several if name in lists else words) for name, given in out.items()
+    }
 
 
 @frozen(these=typed_options())
@@ -106,12 +119,16 @@ class ToolkitWords:
 
         kind, said = kind_of(USUAL)
         named = [
-            word for word in (self.vise, self.toolkit) if word is not None and word.lower() not in (*KINDS, *ALIASES)
+            word
+            for word in (self.vise, self.toolkit)
+            if word is not None and word.lower() not in (*KINDS, *ALIASES)
         ]
         if len(named) > 1:
-            raise InputError(f"--vise {named[0]} and --toolkit {named[1]} name two toolkits: give one of them.")
+            raise InputError(
+                f"--vise {named[0]} and --toolkit {named[1]} name two toolkits: give one of them."
+            )
         if named:
-            from workhold.files.toolkit.presets import load_toolkit
+            from workhold.files.toolkit_file import load_toolkit
 
             loaded = load_toolkit(named[0])
             kind, said, tolerance = loaded.kind, loaded.fields, loaded.tolerance
@@ -160,7 +177,9 @@ def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
         For less or more than two lengths.
     """
     if text.count(",") != 1:
-        raise InputError(f"{option_name} {text!r} is not two lengths: give the least and the most, such as 10,35.")
+        raise InputError(
+            f"{option_name} {text!r} is not two lengths: give the least and the most, such as 10,35."
+        )
     return lengths(option_name, text, unit)
 
 
@@ -174,7 +193,9 @@ def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
     """
     words = [word.strip() for word in text.split(",")]
     if len({":" in word for word in words}) == 2:
-        raise InputError(f"{option_name} {text!r} has pairs and single directions: give one kind, such as -x:-y,-x:+y.")
+        raise InputError(
+            f"{option_name} {text!r} has pairs and single directions: give one kind, such as -x:-y,-x:+y."
+        )
     return [tuple(name.strip() for name in word.split(":")) if ":" in word else word for word in words]
 
 
@@ -188,3 +209,121 @@ READERS: Mapping[str, Callable[[str, Any, Unit], Any]] = {
     "holes": lambda name, texts, unit: [hole for text in texts for hole in text.split(",")],
     "directions": lambda name, text, unit: directions(name, text),
 }
+
+
+# More toolkits than this are more likely a slip than a wish.
+MOST_TOOLKITS = 1000
+
+
+@frozen
+class Named:
+    """A toolkit to try: what it is called, its kind and keyword arguments, and its tolerance where it has one."""
+
+    name: str
+    kind: str
+    fields: dict[str, Any]
+    tolerance: Tolerance | None = None
+
+    def changed(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
+        """The toolkit after changes, each of which has a name."""
+        name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
+        fields = {key: value for _, change in changes for key, value in change.items()}
+        return Named(name, self.kind, self.fields | fields, self.tolerance)
+
+
+def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
+    """The query for a toolkit, or why there is no such toolkit."""
+    from workhold.fixels.kinds import toolkit_of
+    from workhold.model.query import Query
+
+    try:
+        return Query(
+            workpiece,
+            toolkit_of(named.kind, named.fields),
+            **asked | {"tolerance": with_fit_of(asked["tolerance"], named.tolerance)},
+        )
+    except InputError as error:
+        return error
+
+
+def toolkits_to_try(
+    names: list[str] | None,
+    toolkit: str | None,
+    pitch: str | None,
+    columns: str | None,
+    peg_radius: str | None,
+    unit: Unit,
+) -> list[Named]:
+    """The toolkits to try.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing, lists that do not make a toolkit, and more than a thousand toolkits.
+    """
+    from workhold.files.toolkit_file import load_toolkit, preset_names
+    from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, table_of
+
+    is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)
+    kind, said = kind_of(toolkit.lower()) if toolkit is not None and is_kind else (None, {})
+    if toolkit is not None and not is_kind:
+        names = [*(names or ()), toolkit]
+    lists: list[list[tuple[str, dict[str, Any]]]] = []
+    if pitch is not None:
+        lists.append(
+            [(f"pitch {word}", {"pitch": pitch_of(word, unit)}) for word in words_of("--pitch", pitch)]
+        )
+    if columns is not None:
+        numbers = [whole_number("--columns", word) for word in words_of("--columns", columns)]
+        lists.append(
+            [(f"{number} column{'s' if number != 1 else ''}", {"columns": number}) for number in numbers]
+        )
+    if peg_radius is not None:
+        radii = [(word, length("--peg-radius", word, unit)) for word in words_of("--peg-radius", peg_radius)]
+        lists.append([(f"radius {word}", {"peg_radius": radius}) for word, radius in radii])
+    if names is None and pitch is not None:
+        listed = {"columns": columns, "peg_radius": peg_radius}
+        needed = {row.name for row in table_of(kind or USUAL).fields if row.is_required}
+        if any(name in needed and name not in said and text is None for name, text in listed.items()):
+            raise InputError(
+                "a list of pitches alone makes no vise: give --columns and --peg-radius too, or --vise."
+            )
+        bases = [Named("", kind or USUAL, dict(said))]
+    else:
+        asked = (
+            preset_names()
+            if names is None
+            else [name for words in names for name in words_of("--vise", words)]
+        )
+        # A kind picks those of the kind, and makes one sort of toolkit of another.
+        bases = [
+            Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
+            for one in map(load_toolkit, asked)
+            if kind is None or table_of(kind) is table_of(one.kind)
+        ]
+    toolkits = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
+    if len(toolkits) > MOST_TOOLKITS:
+        raise InputError(
+            f"the lists combine to {len(toolkits)} toolkits: give lists that combine to {MOST_TOOLKITS} or fewer."
+        )
+    return toolkits
+
+
+def words_of(option: str, text: str) -> list[str]:
+    """The entries of a list.
+
+    Raises
+    ------
+    InputError
+        When one is missing.
+    """
+    words = [word.strip() for word in text.split(",")]
+    if not all(words):
+        raise InputError(f"{option} {text!r} has an empty entry: give a list such as 1,2,4.")
+    return words
+
+
+def pitch_of(word: str, unit: Unit) -> tuple[float, float]:
+    """A pitch for both directions, or ``XxY``."""
+    x, cross, y = word.partition("x")
+    return length("--pitch", x, unit), length("--pitch", y if cross else x, unit)

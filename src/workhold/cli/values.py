@@ -8,8 +8,7 @@ from math import inf, isfinite, nan
 from pathlib import Path
 
 from workhold.errors import InputError
-from workhold.limits import refuse_strong
-from workhold.real import counting_number
+from workhold.limits import counting_number, refuse_strong
 from workhold.units import MILLIMETRE, POUND, Unit, unit_named
 
 __all__ = [

@@ -22,7 +22,7 @@ __all__ = ["SecondProcess", "begin_compiling", "compile_kernels", "compile_seati
 WORDS = "Compiling the kernels, on the first run only"
 SEATING_WORDS = "Compiling the kernels of seating, on the first run only"
 # The last of seating to be compiled, of each process, as their files are called.
-LAST_OF_SEATING = ("leaving.leave", "sticking.least_friction")
+LAST_OF_SEATING = ("free_space.leave", "sticking.least_friction")
 # Writes a line for each kernel that is done, and ends with this process, however that ends.
 PROGRAM = """
 import sys

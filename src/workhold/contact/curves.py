@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from workhold.conventions import LOOSE
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
 from workhold.kernels.chord.coincidences import are_concentric
-from workhold.kernels.curves.columns import (
+from workhold.kernels.chord.columns import (
     CENTER,
     END_STRETCH,
     FIRST_STRETCH,
@@ -57,7 +57,7 @@ class LatticeSteps:
 
 @define(frozen=True, eq=False)
 class CurveTable:
-    """Chord curves and sliding pairs of pairs of features, see ``kernels.curves.columns``."""
+    """Chord curves and sliding pairs of pairs of features, see ``kernels.chord.columns``."""
 
     curves: Curves
     sliding_pairs: SlidingPairs
@@ -124,7 +124,9 @@ def curve_table(
     for integers, _, _, _, stretches in parts:
         integers[:, [FIRST_STRETCH, END_STRETCH]] += before
         before += len(stretches)
-    integers, reals, whole, sliding, stretches = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    integers, reals, whole, sliding, stretches = (
+        np.concatenate(columns) for columns in zip(*parts, strict=True)
+    )
     return CurveTable(Curves(integers, reals, stretches), SlidingPairs(whole, sliding))
 
 
@@ -176,5 +178,7 @@ def joined(one: CurveTable, other: CurveTable, before: int) -> CurveTable:
         table[:, CENTER] += before * (table[:, CENTER] >= 0)
     other.curves.integers[:, [FIRST_STRETCH, END_STRETCH]] += len(one.curves.stretches)
     integers, reals, stretches = (np.concatenate(pair) for pair in zip(one.curves, other.curves, strict=True))
-    whole, sliding = (np.concatenate(pair) for pair in zip(one.sliding_pairs, other.sliding_pairs, strict=True))
+    whole, sliding = (
+        np.concatenate(pair) for pair in zip(one.sliding_pairs, other.sliding_pairs, strict=True)
+    )
     return CurveTable(Curves(integers, reals, stretches), SlidingPairs(whole, sliding))

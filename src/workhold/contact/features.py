@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
-from workhold.fixels.flat import Flat
+from workhold.fixels.carrier import Flat
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.model.restrictions import Restrictions, Zone
+from workhold.model.requirements import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -55,10 +55,14 @@ class ContactFeature:
         return self.segment
 
 
-def contact_features(workpiece: Workpiece, peg_radius: float, flat: Flat | None = None) -> list[ContactFeature]:
+def contact_features(
+    workpiece: Workpiece, peg_radius: float, flat: Flat | None = None
+) -> list[ContactFeature]:
     """The contact features of a workpiece for pegs of a radius in mm, round or with a flat, ordered by face."""
     faces = workpiece.faces
-    pieces = trimmed_offsets([face.segment for face in faces], peg_radius, None if flat is None else flat.distance)
+    pieces = trimmed_offsets(
+        [face.segment for face in faces], peg_radius, None if flat is None else flat.distance
+    )
     return [ContactFeature(faces[index].number, piece) for index, piece in pieces]
 
 
@@ -123,7 +127,7 @@ def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
 def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Distances (..., 2) in mm along features from the feet of points to the low and to the high end.
 
-    Negative beyond an end, infinite on a whole circle, which has none. ``kernels.statics.contact_matrix.end_distance`` is
+    Negative beyond an end, infinite on a whole circle, which has none. ``kernels.contact.contact_matrix.end_distance`` is
     its compiled form for one point; verification, the algebra and the proof in balls have their own on purpose.
 
     Parameters
@@ -132,7 +136,10 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
     points : (..., 2) in mm.
     """
     dx, dy = points[..., 0] - rows[..., X], points[..., 1] - rows[..., Y]
-    along, across = dx * rows[..., AXIS_X] + dy * rows[..., AXIS_Y], rows[..., AXIS_X] * dy - rows[..., AXIS_Y] * dx
+    along, across = (
+        dx * rows[..., AXIS_X] + dy * rows[..., AXIS_Y],
+        rows[..., AXIS_X] * dy - rows[..., AXIS_Y] * dx,
+    )
     is_arc = rows[..., IS_ARC] != 0.0
     place, unit = np.where(is_arc, np.arctan2(across, along), along), np.where(is_arc, rows[..., RADIUS], 1.0)
     half = rows[..., HALF_EXTENT]
@@ -156,7 +163,9 @@ def end_slacks(
     locus : all features, also those that are ruled out, if others are: a joint with one of them is a joint.
     """
     everything = [feature.segment for feature in (features if locus is None else locus)]
-    ends = dict(zip(map(id, everything), np.minimum(joint_slacks(everything) + margin, END_SLACK), strict=True))
+    ends = dict(
+        zip(map(id, everything), np.minimum(joint_slacks(everything) + margin, END_SLACK), strict=True)
+    )
     slack = np.array([ends[id(feature.cut_from)] for feature in features]).reshape(-1, 2)
     for index, feature in enumerate(features):
         piece = feature.cut_from
@@ -171,7 +180,9 @@ def end_slacks(
 def joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
     """How far in mm a contact may lie past the low and the high end of pieces of the locus, shape (F, 2)."""
     ends = np.array([[piece.at(-piece.half_extent), piece.at(piece.half_extent)] for piece in pieces])
-    normals = np.array([[piece.normal(-piece.half_extent), piece.normal(piece.half_extent)] for piece in pieces])
+    normals = np.array(
+        [[piece.normal(-piece.half_extent), piece.normal(piece.half_extent)] for piece in pieces]
+    )
     points, directions = ends.reshape(-1, 2), normals.reshape(-1, 2)
     slack = np.full(len(points), -END_SLACK)
     together = max(TOGETHER // max(len(points), 1), 1)

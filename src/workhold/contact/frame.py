@@ -14,7 +14,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.fixels.holes import Holes
+from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Toolkit, Travel
 from workhold.kernels.base.given import Lattice
 
@@ -71,7 +71,9 @@ class Frame:
                 f"that of the {standing.name} one: give both one pitch, and a direction of whole quarter turns."
             )
         quarters = round(turns) % 4
-        return cls(toolkit, quarters, turned(standing, quarters, farthest), turned(moving, quarters, farthest))
+        return cls(
+            toolkit, quarters, turned(standing, quarters, farthest), turned(moving, quarters, farthest)
+        )
 
     @property
     def carriers(self) -> tuple[Carrier, Carrier]:
@@ -106,7 +108,9 @@ class Frame:
         cosine, sine = QUARTERS[self.quarters]
         return cosine * column - sine * row, sine * column + cosine * row
 
-    def holes(self, standing: NDArray[np.bool_], column: IntArray, row: IntArray) -> tuple[IntArray, IntArray]:
+    def holes(
+        self, standing: NDArray[np.bool_], column: IntArray, row: IntArray
+    ) -> tuple[IntArray, IntArray]:
         """Columns and rows (N, 4) of the toolkit from those of the frame; ``standing`` says of which carrier.
 
         Where the carriers have no end across the travel, the lowest is 0.
@@ -147,7 +151,9 @@ def turned(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
     swaps = quarters % 2 == 1
     columns, rows = (carrier.rows, carrier.columns) if swaps else (carrier.columns, carrier.rows)
     if carrier.blocked and (columns is None or (quarters and rows is None)):
-        raise InputError(f"the {carrier.name} carrier has no end: give the number of its columns and rows of holes.")
+        raise InputError(
+            f"the {carrier.name} carrier has no end: give the number of its columns and rows of holes."
+        )
     pitch = carrier.pitch[::-1] if swaps else carrier.pitch
     if columns is None:
         columns = int(farthest / pitch[0]) + 1

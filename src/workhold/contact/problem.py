@@ -9,7 +9,13 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.contact.features import ContactFeature, allowed_features, contact_features, end_slacks, feature_rows
+from workhold.contact.features import (
+    ContactFeature,
+    allowed_features,
+    contact_features,
+    end_slacks,
+    feature_rows,
+)
 from workhold.contact.frame import Frame
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Carrier, Toolkit
@@ -17,10 +23,9 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.given import Limits, Setting
 from workhold.limits import refuse_many_steps
-from workhold.model.diameter import outline_diameter
 from workhold.model.query import Query
-from workhold.model.restrictions import Restrictions
-from workhold.model.workpiece import Workpiece
+from workhold.model.requirements import Restrictions
+from workhold.model.workpiece import Workpiece, outline_diameter
 
 __all__ = ["Problem", "Progress"]
 
@@ -129,7 +134,9 @@ class Problem:
     def backward_error(self) -> float:
         """How far in mm the features' rows may be from the drawing, by the rounding of a dozen sums and products."""
         center = self.workpiece.center
-        return ROUNDINGS * (abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [X, Y, RADIUS]]).max()))
+        return ROUNDINGS * (
+            abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [X, Y, RADIUS]]).max())
+        )
 
     @cached_property
     def frame(self) -> Frame:

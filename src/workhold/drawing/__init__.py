@@ -4,12 +4,11 @@ The map from millimetres to the page is kept in the pictures: groups that show t
 ``data-model-to-page`` as an SVG matrix.
 """
 
-from workhold.drawing.features_picture import draw_features
-from workhold.drawing.fixture_picture import draw_fixture
+from workhold.drawing.fixture_pictures import MOST_THUMBNAILS, draw_fixture, draw_thumbnails
+from workhold.drawing.part_pictures import draw_features
 from workhold.drawing.render import render, svg_to_png
 from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.drawing.thumbnails import MOST_THUMBNAILS, draw_thumbnails
+from workhold.drawing.sheet_facts import SheetDetails
 
 __all__ = [
     "MOST_THUMBNAILS",

@@ -1,25 +1,127 @@
-"""A fixture as it lies in the vise: jaws, part, pegs and contact forces, without any lettering."""
+"""A fixture as it lies in the vise: jaws, part, pegs and contact forces, without any lettering.
+
+Outlines are SVG paths whose arcs are true arcs. A small picture shows the part as it was drawn, so that the turn in the vise
+can be told from it.
+"""
 
 from __future__ import annotations
 
-from math import hypot
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import ceil, hypot, pi
 
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.drawing.clamps import draw_clamp, draw_push
-from workhold.drawing.part import contact_of, face_of, outline_path, sampled_loop, segment_path
-from workhold.drawing.plates import draw_holes, draw_plate, draw_wall, most_holes
-from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
-from workhold.fixels.flat import peg_outline
+from workhold.conventions import AGREEMENT
+from workhold.drawing.carriers import draw_clamp, draw_holes, draw_plate, draw_push, draw_wall, most_holes
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
+from workhold.fixels.carrier import peg_outline
+from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Point, Segment
+from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
 from workhold.model.fixture import Fixture
+from workhold.model.setup import hole_centers
 from workhold.model.shown import Shown, shown
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ARROW", "PART_FILL", "PEG_FILL", "TOUCHED", "Bench", "bench_of", "draw_bench", "force_arrow"]
+__all__ = [
+    "ARROW",
+    "PART_FILL",
+    "PEG_FILL",
+    "TOUCHED",
+    "Bench",
+    "bench_of",
+    "contact_of",
+    "draw_bench",
+    "draw_inset",
+    "draw_zero",
+    "face_of",
+    "force_arrow",
+    "outline_path",
+    "sampled",
+    "sampled_loop",
+    "segment_path",
+]
+
+# An SVG arc is told by its ends and radius. Beyond this sweep its centre suffers from the rounding of the ends, so
+# longer arcs are written in pieces.
+LONGEST_SWEEP = 2 * pi / 3
+
+
+def segment_path(segment: Segment, view: View, moved: bool = True) -> str:
+    """SVG path data of one segment, beginning with a move to its start unless ``moved`` is False."""
+    start = "M{} {}".format(*map(number, view(segment.start))) if moved else ""
+    if isinstance(segment, Line):
+        return start + "L{} {}".format(*map(number, view(segment.end)))
+    pieces = ceil(2 * segment.half_sweep / LONGEST_SWEEP - 1e-9)
+    radius = number(segment.radius * view.scale)
+    sweep = (
+        "0" if segment.sign > 0 else "1"
+    )  # y is turned over, so counter-clockwise is SVG's negative direction
+    for k in range(1, pieces + 1):
+        parameter = segment.sign * segment.half_sweep * (2 * k / pieces - 1)
+        x, y = map(number, view(segment.at(parameter)))
+        start += f"A{radius} {radius} 0 0 {sweep} {x} {y}"
+    return start
+
+
+def outline_path(loops: Sequence[Sequence[Segment]], view: View) -> str:
+    """SVG path data of closed loops; fill it by the even-odd rule."""
+    return " ".join(
+        "".join(segment_path(segment, view, k == 0) for k, segment in enumerate(loop)) + "Z" for loop in loops
+    )
+
+
+def sampled(segments: Iterable[Segment], view: View, step: float) -> NDArray[np.float64]:
+    """(N, 2) page points along segments, about ``step`` page units apart, both ends included."""
+    points: list[Point] = []
+    for segment in segments:
+        count = max(1, min(400, ceil(segment.length * view.scale / step)))
+        half = segment.half_extent
+        points += [view(segment.at(half * (2 * k / count - 1))) for k in range(count + 1)]
+    return np.array(points, dtype=np.float64).reshape(-1, 2)
+
+
+def sampled_loop(loop: Sequence[Segment], view: View, step: float) -> NDArray[np.float64]:
+    """(N, 2) page points around a closed loop in running order, about ``step`` apart; the last is the first."""
+    runs = []
+    for segment in loop:
+        points = sampled([segment], view, step)
+        backwards = isinstance(segment, Arc) and segment.sign < 0
+        runs.append(points[::-1] if backwards else points)
+    return np.vstack(runs)
+
+
+def face_of(workpiece: Workpiece, number: int) -> Segment:
+    """The whole face that a segment number belongs to."""
+    return next(face.segment for face in workpiece.faces if number in face.segments)
+
+
+def contact_of(kind: ContactKind, center: Point, face: Segment) -> tuple[Point, Point]:
+    """Where a contact of a kind, about a centre, touches a face, and the outward unit normal there, all in one frame, mm."""
+    return CONTACTS[kind](center, face)
+
+
+def wall_contact(center: Point, face: Segment) -> tuple[Point, Point]:
+    """The contact of a part with a wall below it, where its end is."""
+    return center, (0.0, -1.0)
+
+
+def pin_contact(center: Point, face: Segment) -> tuple[Point, Point]:
+    """The contact of a pin about a centre with a face."""
+    half = face.half_extent
+    parameter = max(-half, min(half, face.parameter(center)))
+    return face.at(parameter), face.normal(parameter)
+
+
+CONTACTS: Mapping[ContactKind, Callable[[Point, Segment], tuple[Point, Point]]] = {
+    ROUND_PIN: pin_contact,
+    FLAT_PIN: pin_contact,
+    CLAMP_TIP: pin_contact,
+    WALL_END: wall_contact,
+}
+
 
 PART_FILL = "#fff7d1"
 PEG_FILL = "#b3122a"
@@ -146,7 +248,9 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
     d = outline_path(bench.loops, view)
     part.path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
     for face in dict.fromkeys(bench.faces[k] for k in bench.touching):
-        part.path(segment_path(face, view), TOUCHED, 8.0 * weight, stroke_linecap="butt", **{"class": "touched"})
+        part.path(
+            segment_path(face, view), TOUCHED, 8.0 * weight, stroke_linecap="butt", **{"class": "touched"}
+        )
     part.path(d, BLACK, 2.2 * weight, **{"class": "outline"})
 
 
@@ -169,3 +273,82 @@ def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
         if cross > 2.0 * weight:
             pegs.line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
             pegs.line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)
+
+
+# Flatter than this, in page units, there is no room for a picture.
+LOWEST = 90.0
+# Size of the number of a hole.
+NUMBER = 10.0
+
+
+def draw_inset(
+    scene: Scene,
+    box: Box,
+    workpiece: Workpiece,
+    fixture: Fixture,
+    toolkit: Toolkit,
+    zero: Point | None = None,
+) -> None:
+    """Draw the unturned part with its touched faces and contacts into a page box.
+
+    Parameters
+    ----------
+    zero : part zero in the part's coordinates, mm, to mark where it lies within the part's extent; holes are numbered too.
+    """
+    if box.height < LOWEST:
+        return
+    group = scene.group("part-as-drawn")
+    group.text((box.x0, box.y0 + 8), "The part as drawn (θ = 0°)", 13, fill=GREY)
+    room = Box(box.x0 + 40, box.y0 + 30, box.x1 - 10, box.y1 - 24)
+    bounds = Box(*workpiece.bounds)
+    view = View.fitting(bounds, room)
+    d = outline_path(workpiece.loop_segments, view)
+    group.path(d, fill=PART_FILL, fill_rule="evenodd")
+    for face in dict.fromkeys(peg.face for peg in fixture.pegs if peg.beside is None):
+        group.path(segment_path(face_of(workpiece, face), view), TOUCHED, 5.0)
+    group.path(d, BLACK, 1.4)
+    for point in contacts(workpiece, fixture, toolkit):
+        group.circle(view(point), 3.0, ARROW, "#ffffff", 1.0)
+    if zero is not None:
+        number_holes(group, view, workpiece)
+        if bounds.grown(AGREEMENT).contains(Box(*zero, *zero)):
+            draw_zero(group, view(zero))
+    corner = (box.x0 + 4, box.y1 - 4)
+    group.arrow(corner, (corner[0] + 30, corner[1]), GREY, 1.2, 8)
+    group.arrow(corner, (corner[0], corner[1] - 30), GREY, 1.2, 8)
+    group.text((corner[0] + 34, corner[1] - 1), "x", 12, fill=GREY)
+    group.text((corner[0] + 5, corner[1] - 33), "y", 12, fill=GREY)
+
+
+def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
+    """Write the number of each hole at its centre, where it has room for it."""
+    for count, (loop, center) in enumerate(
+        zip(workpiece.loop_segments[1:], hole_centers(workpiece), strict=True), 1
+    ):
+        boxes = [bounding_box(segment) for segment in loop]
+        room = (
+            min(max(box[k + 2] for box in boxes) - min(box[k] for box in boxes) for k in (0, 1)) * view.scale
+        )
+        if room >= NUMBER + 2:
+            scene.text(view(center), str(count), NUMBER, "middle", fill=GREY)
+
+
+def draw_zero(scene: Scene, at: Point, radius: float = 5.0) -> None:
+    """Draw the sign of a zero point, a disc with two black quarters."""
+    x, y = at
+    r = number(radius)
+    scene.circle(at, radius, "#ffffff", BLACK, 1.0)
+    for way in (1, -1):
+        start, end = f"{number(x + way * radius)} {number(y)}", f"{number(x)} {number(y - way * radius)}"
+        scene.path(f"M{number(x)} {number(y)}L{start}A{r} {r} 0 0 0 {end}Z", fill=BLACK)
+
+
+def contacts(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> list[Point]:
+    """The contact points in the workpiece's own frame, mm."""
+    back = fixture.pose.inverse
+    return [
+        contact_of(
+            toolkit.carrier(peg.carrier).contact, back.apply(peg.x, peg.y), face_of(workpiece, peg.face)
+        )[0]
+        for peg in fixture.pegs
+    ]

@@ -1,18 +1,22 @@
-"""The block of words and numbers beside a fixture: what to set, which holes to use, what the signs mean."""
+"""The block of words and numbers beside a fixture: what to set, which holes to use, what the signs mean.
+
+Signs are those that every plan has, those of what moves, and those of what the part lies on.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
-from workhold.drawing.fonts import shortened, text_width, wrapped
-from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.scene import BLACK, GREY, Scene
-from workhold.fixels.arrangement import Arrangement
-from workhold.fixels.carrier import Carrier
+from workhold.drawing.bench import ARROW, PEG_FILL, TOUCHED
+from workhold.drawing.carriers import block_arrow, draw_sign, draw_wall
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, shortened, text_width, wrapped
+from workhold.fixels.carrier import Carrier, Measure
+from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, Arrangement, ContactKind
 from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Point
+from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
-from workhold.model.setting import contact_names, settings_of
-from workhold.model.tightening import order_words
+from workhold.model.setup import contact_names, settings_of
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -22,6 +26,7 @@ __all__ = [
     "arrangement_words",
     "closure_margin",
     "diameter_words",
+    "draw_legend",
     "draw_peg_table",
     "draw_settings",
     "draw_title",
@@ -54,14 +59,18 @@ class Column:
     def __init__(self, scene: Scene, x: float, y: float, width: float) -> None:
         self.scene, self.x, self.y, self.width = scene, x, y, width
 
-    def words(self, content: str, size: float, bold: bool = False, fill: str = BLACK, gap: float = 0.55) -> None:
+    def words(
+        self, content: str, size: float, bold: bool = False, fill: str = BLACK, gap: float = 0.55
+    ) -> None:
         """Write one line, shortened to fit, and leave ``gap`` ems below it."""
         self.y += 0.75 * size
         content = shortened(content, size, self.width, bold)
         self.scene.text((self.x, self.y), content, size, bold=bold, fill=fill, middle=False)
         self.y += gap * size
 
-    def paragraph(self, content: str, size: float, bold: bool = False, fill: str = BLACK, indent: float = 0.0) -> None:
+    def paragraph(
+        self, content: str, size: float, bold: bool = False, fill: str = BLACK, indent: float = 0.0
+    ) -> None:
         """Write as many lines as it takes, ``indent`` page units further in."""
         for line in wrapped(content, size, self.width - indent, bold):
             self.y += 0.75 * size
@@ -95,7 +104,10 @@ class Column:
         """Write a table, its first column from the left and the others flush right, in type that fits the width."""
         while True:
             widths = [
-                max(text_width(header[k], size, bold=True), *(text_width(row[k], size, bold=k == 0) for row in rows))
+                max(
+                    text_width(header[k], size, bold=True),
+                    *(text_width(row[k], size, bold=k == 0) for row in rows),
+                )
                 for k in range(len(header))
             ]
             gap = (self.width - sum(widths)) / (len(header) - 1)
@@ -168,7 +180,9 @@ def offset_words(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
     return f"{lengths.words(abs(offset))} {'above' if offset > 0 else 'below'}" if offset else None
 
 
-def draw_title(column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, title: str | None) -> None:
+def draw_title(
+    column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, title: str | None
+) -> None:
     """Write the part's name, the fixture's and its type."""
     fitting = [size for size in (26, 22, 18) if text_width(workpiece.name, size, bold=True) <= column.width]
     column.words(workpiece.name, fitting[0] if fitting else 18, bold=True, gap=0.5)
@@ -249,4 +263,90 @@ def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: 
 
 def pegs_words(toolkit: Toolkit) -> str:
     """What its pegs are called, such as "peg" or "locator or clamp"."""
-    return " or ".join(dict.fromkeys(carrier.peg for carrier in toolkit.carriers if carrier.contact.is_placed))
+    return " or ".join(
+        dict.fromkeys(carrier.peg for carrier in toolkit.carriers if carrier.contact.is_placed)
+    )
+
+
+# Draws a sign about a page point.
+Sign = Callable[[Scene, Point], None]
+
+WORDS = 11.5
+
+
+def peg(scene: Scene, at: Point) -> None:
+    """Draw a peg."""
+    scene.circle(at, 7, PEG_FILL, BLACK, 1.2)
+
+
+def hole(scene: Scene, at: Point) -> None:
+    """Draw an empty hole."""
+    scene.circle(at, 7, "#ffffff", GREY, 0.9)
+
+
+def push(scene: Scene, at: Point) -> None:
+    """Draw the arrow behind a clamp."""
+    block_arrow(scene, at, (-1.0, 0.0), 0.55)
+
+
+def line(scene: Scene, at: Point) -> None:
+    """Draw the line that the tip of a clamp is on."""
+    scene.line([(at[0] - 15, at[1]), (at[0] + 16, at[1])], BLACK, 1.0, stroke_dasharray="7 4")
+
+
+def wall(scene: Scene, at: Point) -> None:
+    """Draw a piece of a wall."""
+    draw_wall(scene, Box(at[0] - 15, -at[1] - 6, at[0] + 16, -at[1] + 3), View(1.0, 0.0, 0.0))
+
+
+def force(scene: Scene, at: Point) -> None:
+    """Draw the arrow of a force from its contact."""
+    x, y = at
+    scene.circle((x - 14, y), 2.8, ARROW)
+    scene.arrow((x - 14, y), (x + 16, y), ARROW, 2.4, 12)
+
+
+def face(scene: Scene, at: Point) -> None:
+    """Draw a face that is touched."""
+    ends = [(at[0] - 15, at[1]), (at[0] + 16, at[1])]
+    scene.line(ends, TOUCHED, 8)
+    scene.line(ends, BLACK, 2.2)
+
+
+PUSH = push, "which way the clamp pushes"
+# The signs of what moves, by what is set on it, and of what else a part touches, by the kind of contact.
+OF_MOVING: Mapping[Measure, tuple[tuple[Sign, str], ...]] = {
+    "opening": (),
+    "stroke": ((draw_sign, "clamp: bolt, body and tip"), PUSH),
+    "tip": ((line, "line of holes that the clamp is on"), PUSH),
+}
+OF_CONTACTS: Mapping[ContactKind, tuple[tuple[Sign, str], ...]] = {
+    ROUND_PIN: (),
+    FLAT_PIN: (),
+    CLAMP_TIP: (),
+    WALL_END: ((wall, "{noun} that the part lies flush on"),),
+}
+
+
+def draw_legend(column: Column, toolkit: Toolkit, fill: str = GREY) -> None:
+    """Explain the signs; ``fill`` is the colour of the words."""
+    first = toolkit.plates[0]
+    named = f"{first.noun}, column, row" if first.letter else "column, row"
+    signs: list[tuple[Sign, str]] = [
+        (peg, f"{first.peg} to place, with its hole: {named}"),
+        (hole, "hole, left empty"),
+        *OF_MOVING[toolkit.moving.measure],
+        *(
+            (draw, words.format(noun=one.noun))
+            for one in toolkit.carriers
+            for draw, words in OF_CONTACTS[one.contact]
+        ),
+        (force, f"force of the {pegs_words(toolkit)} on the part, longer if larger"),
+        (face, "face touched, with its number"),
+    ]
+    for draw, words in signs:
+        y = column.y + 8
+        draw(column.scene, (column.x + 16, y))
+        size = min(WORDS, WORDS * (column.width - 44) / text_width(words, WORDS))
+        column.scene.text((column.x + 44, y), words, size, fill=fill)
+        column.y += 21

@@ -18,8 +18,7 @@ from fpdf.drawing import DrawingContext, GraphicsStyle, PaintedPath
 from fpdf.drawing_primitives import color_from_hex_string
 from fpdf.enums import TextMode
 
-from workhold.drawing.fonts import font_files, has_character, text_width
-from workhold.drawing.scene import UNITS_PER_MM
+from workhold.drawing.scene import UNITS_PER_MM, font_files, has_character, text_width
 from workhold.geometry.segment import Point
 
 __all__ = ["svg_to_pdf"]
@@ -117,7 +116,9 @@ def shape(tag: str, attributes: dict[str, str]) -> PaintedPath:
     path = PaintedPath()
     if tag == "rect":
         refuse_unknown(tag, attributes, STYLE | SILENT | {"x", "y", "width", "height", "rx"})
-        x, y, width, height, round_by = (float(attributes.get(k, "0")) for k in ("x", "y", "width", "height", "rx"))
+        x, y, width, height, round_by = (
+            float(attributes.get(k, "0")) for k in ("x", "y", "width", "height", "rx")
+        )
         corner = min(round_by, width / 2, height / 2)
         path.rectangle(x, y, width, height, corner, corner)
     elif tag == "circle":
@@ -172,11 +173,16 @@ def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
     direction, height = atan2(y1 - y0, x1 - x0), sense * chord / 2 * tan(half / 2)
     middle = ((x0 + x1) / 2 + height * sin(direction), (y0 + y1) / 2 - height * cos(direction))
     reach = 4 / 3 * tan(half / 4) * chord / (2 * sin(half))
-    ways = [(reach * cos(a), reach * sin(a)) for a in (direction - sense * half, direction, direction + sense * half)]
+    ways = [
+        (reach * cos(a), reach * sin(a))
+        for a in (direction - sense * half, direction, direction + sense * half)
+    ]
     points = [start, middle, (x1, y1)]
     for k in (0, 1):
         (x, y), (end_x, end_y) = points[k : k + 2]
-        path.curve_to(x + ways[k][0], y + ways[k][1], end_x - ways[k + 1][0], end_y - ways[k + 1][1], end_x, end_y)
+        path.curve_to(
+            x + ways[k][0], y + ways[k][1], end_x - ways[k + 1][0], end_y - ways[k + 1][1], end_x, end_y
+        )
 
 
 def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
@@ -224,7 +230,9 @@ def write(pdf: FPDF, x: float, y: float, content: str, attributes: dict[str, str
     if "stroke" in attributes:
         width = float(attributes["stroke-width"])
         with pdf.local_context(
-            text_mode=TextMode.STROKE, draw_color=color_from_hex_string(attributes["stroke"]), line_width=width
+            text_mode=TextMode.STROKE,
+            draw_color=color_from_hex_string(attributes["stroke"]),
+            line_width=width,
         ):
             pdf.text(x, y, content)
     pdf.set_text_color(color_from_hex_string(attributes["fill"]))

@@ -10,16 +10,21 @@ from typing import Literal
 
 import numpy as np
 
-from workhold.drawing.bench import PEG_FILL, Bench, draw_bench, force_arrow
-from workhold.drawing.clamps import avoid_clamp, block_arrow
-from workhold.drawing.dimensions import BEYOND, angle_mark, dimension
-from workhold.drawing.fonts import text_width
-from workhold.drawing.inset import draw_zero
-from workhold.drawing.labels import Label, LabelPlacer, Place, around, joined, leader_end
-from workhold.drawing.length_unit import LengthUnit
-from workhold.drawing.plates import labelled
-from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
-from workhold.fixels.holes import column_letters
+from workhold.drawing.annotation import (
+    BEYOND,
+    Label,
+    LabelPlacer,
+    Place,
+    angle_mark,
+    around,
+    dimension,
+    joined,
+    leader_end,
+)
+from workhold.drawing.bench import PEG_FILL, Bench, draw_bench, draw_zero, force_arrow
+from workhold.drawing.carriers import avoid_clamp, block_arrow, labelled
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, text_width
+from workhold.fixels.carrier import column_letters
 from workhold.geometry.segment import Point
 from workhold.model.shown import ShownCarrier
 from workhold.model.workpiece import Workpiece
@@ -89,7 +94,9 @@ def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[
         plate = view.box(shown.plate)
         rows = [(row, view((0.0, y))[1]) for row, y in shown.named_rows]
         for row, y, used in labelled(rows, shown.used_rows, 15.0):
-            rim, inner, way = (frame.x0, plate.x0, -1) if shown.names_at == "left" else (frame.x1, plate.x1, 1)
+            rim, inner, way = (
+                (frame.x0, plate.x0, -1) if shown.names_at == "left" else (frame.x1, plate.x1, 1)
+            )
             ruling(group, (rim, y), (inner, y))
             names.append(((rim + 10 * way, y), str(row + 1), used, "end" if way < 0 else "start"))
         columns = [(column, view((x, 0.0))[0]) for column, x in shown.named_columns]
@@ -114,7 +121,8 @@ def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> 
         for other in boxes if used else []:
             places += [((other.x0 - 3, at[1]), "end"), ((other.x1 + 3, at[1]), "start")]
         placed = [
-            (abs(place[0] - at[0]), place, anchor, name_box(place, name, used, anchor)) for place, anchor in places
+            (abs(place[0] - at[0]), place, anchor, name_box(place, name, used, anchor))
+            for place, anchor in places
         ]
         free = [each for each in placed if all(each[3].grown(1.5).overlap(other) == 0 for other in boxes)]
         if free:
@@ -159,7 +167,9 @@ def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
     return Box(left, at[1] - size / 2, left + width, at[1] + size / 2)
 
 
-def draw_travel(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box, lengths: LengthUnit) -> list[Box]:
+def draw_travel(
+    scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box, lengths: LengthUnit
+) -> list[Box]:
     """Dimension the lengths to set, above the plates or at their right, and return where the words stand, all of them within
     the bounds.
 
@@ -175,7 +185,9 @@ def draw_travel(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box,
             for x, y in (view(high) for _, high in measured.axes)
         )
         for x, y in (start, end):
-            group.line([(frame.x1 + 3, y), (x + 3, y)] if upright else [(x, frame.y0 - 23), (x, y - 3)], BLACK, 0.7)
+            group.line(
+                [(frame.x1 + 3, y), (x + 3, y)] if upright else [(x, frame.y0 - 23), (x, y - 3)], BLACK, 0.7
+            )
         lines.append((upright, measured.setting, start, end))
     # The words come last: they are read where a line passes below them.
     for upright, setting, start, end in lines:
@@ -271,7 +283,14 @@ def draw_labels(
         [
             *(peg_label(bench, index, view) for index in labelled_pegs),
             *(face_tag(bench, face, view) for face in numbers),
-            around(center, direction, (text_width(angle, 13) + 4, 16), (26, 32, 40, 50, 64), spread(24), turn_cost=4),
+            around(
+                center,
+                direction,
+                (text_width(angle, 13) + 4, 16),
+                (26, 32, 40, 50, 64),
+                spread(24),
+                turn_cost=4,
+            ),
             *(mark_label(point, name) for point, name in marks),
         ]
     )
@@ -347,7 +366,9 @@ def face_tag(bench: Bench, face_number: int, view: View) -> Label:
         parameter = share * half
         nx, ny = face.normal(parameter)
         extra = 4 * abs(parameter - near) / half
-        labels.append(around(view(face.at(parameter)), atan2(ny, -nx), size, (7, 14, 24, 40, 60), spread(8), extra))
+        labels.append(
+            around(view(face.at(parameter)), atan2(ny, -nx), size, (7, 14, 24, 40, 60), spread(8), extra)
+        )
     return joined(labels)
 
 

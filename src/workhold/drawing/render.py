@@ -6,7 +6,7 @@ from zlib import crc32
 
 import resvg_py
 
-from workhold.drawing.fonts import font_files
+from workhold.drawing.scene import font_files
 from workhold.errors import InputError
 
 __all__ = ["render", "svg_to_png"]
@@ -56,4 +56,6 @@ def render(svg: str, ending: str) -> bytes:
             return svg.encode("utf-8")
         case ".png":
             return svg_to_png(svg)
-    raise InputError(f"{ending or 'no ending'} is not a kind of picture workhold writes: end the file in .svg or .png.")
+    raise InputError(
+        f"{ending or 'no ending'} is not a kind of picture workhold writes: end the file in .svg or .png."
+    )

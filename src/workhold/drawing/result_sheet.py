@@ -6,17 +6,16 @@ from collections.abc import Sequence
 from datetime import date
 from typing import Any
 
-from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.scene import LengthUnit
 from workhold.drawing.sheet import draw_sheet
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.drawing.sheet_facts import Caution, cautions_of, edge_distances
+from workhold.drawing.sheet_facts import Caution, SheetDetails, cautions_of, edge_distances
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.load import Load
-from workhold.model.part_zero import part_zero
+from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.seating.by_hand import by_hand
+from workhold.model.setup import part_zero
+from workhold.seating.clamping import by_hand
 from workhold.seating.solver import Solver
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import measured_fixture
@@ -77,8 +76,8 @@ def result_details(
     ----------
     rank : of the fixture, from 1.
     loads : instead of those of the result, if given.
-    jaw : what closes the vise, see :func:`workhold.statics.jaw.jaw_stiffness`.
-    zero : part zero, see :func:`workhold.model.part_zero.part_zero`; its numbers are in ``unit``.
+    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
+    zero : part zero, see :func:`workhold.model.setup.part_zero`; its numbers are in ``unit``.
     others : how many other fixtures use the same holes; counted in the result if None.
     number, count : the rank in a larger result and how many that lists, of a fixture that was taken out of it.
     seating : whether to tell what else the pegs can do with the part; None tells it where the result has it.
@@ -92,7 +91,11 @@ def result_details(
     """
     asked = result.query.loads if loads is None else loads
     jaw_force = result.query.jaw_force if jaw_force is None else jaw_force
-    fixture, workpiece, toolkit = measured_fixture(result, rank - 1, asked, jaw_force), result.workpiece, result.toolkit
+    fixture, workpiece, toolkit = (
+        measured_fixture(result, rank - 1, asked, jaw_force),
+        result.workpiece,
+        result.toolkit,
+    )
     told, not_seated = result[rank - 1].seating if seating is not False else None, ""
     if seating is None and not toolkit.closes_at_once:
         seating = rank <= (result.query.seating or 0)

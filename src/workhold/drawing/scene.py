@@ -1,4 +1,4 @@
-"""A page of SVG: the map from millimetres to the page, and the few shapes that pictures are made of.
+"""A page of SVG: the bundled typeface, lengths in words, the map from millimetres to the page, and a few shapes.
 
 Glossary
 --------
@@ -10,30 +10,114 @@ view : the map from a model frame to the page, a scale and a shift.
 
 from __future__ import annotations
 
+import json
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
+from functools import cache
 from math import atan2, cos, hypot, log10, sin
+from pathlib import Path
 
 from attrs import frozen
 
-from workhold.drawing.fonts import FAMILY
-from workhold.geometry.box import Box
-from workhold.geometry.segment import Point
+from workhold.geometry.segment import Box, Point
 from workhold.plain import plain
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = [
     "BLACK",
+    "FAMILY",
     "GREY",
     "LANDSCAPE",
     "PORTRAIT",
     "UNITS_PER_MM",
     "Box",
+    "LengthUnit",
     "Scene",
     "View",
     "decimals_for",
+    "font_files",
+    "has_character",
     "number",
+    "shortened",
     "stacked",
+    "text_width",
+    "wrapped",
 ]
+
+FAMILY = "DejaVu Sans, Verdana, Arial, sans-serif"
+
+FOLDER = Path(__file__).resolve().parent.parent / "data" / "fonts"
+
+# Width in ems given to a character the bundled typeface does not have.
+UNKNOWN_WIDTH = 1.0
+
+
+def font_files() -> list[str]:
+    """Paths of the bundled fonts, regular and bold."""
+    return [str(FOLDER / "DejaVuSans.ttf"), str(FOLDER / "DejaVuSans-Bold.ttf")]
+
+
+@cache
+def advance_widths() -> dict[str, dict[str, float]]:
+    """Width in ems of every bundled character, by weight ("regular", "bold")."""
+    widths: dict[str, dict[str, float]] = json.loads(
+        (FOLDER / "advance_widths.json").read_text(encoding="ascii")
+    )
+    return widths
+
+
+def text_width(content: str, size: float, bold: bool = False) -> float:
+    """Width of a line of text in page units, for a font size in page units.
+
+    >>> text_width("i", 10) < text_width("W", 10) < text_width("W", 10, bold=True)
+    True
+    """
+    widths = advance_widths()["bold" if bold else "regular"]
+    return size * sum(widths.get(character, UNKNOWN_WIDTH) for character in content)
+
+
+def has_character(character: str) -> bool:
+    """Whether the bundled typeface has a character.
+
+    >>> has_character("Ø"), has_character("樂")
+    (True, False)
+    """
+    return character in advance_widths()["regular"]
+
+
+def shortened(content: str, size: float, width: float, bold: bool = False) -> str:
+    """The text itself, or its beginning and an ellipsis when it is wider than ``width`` page units.
+
+    >>> shortened("a plate", 10, 200), shortened("a very long plate", 10, 50)
+    ('a plate', 'a very l…')
+    """
+    if text_width(content, size, bold) <= width:
+        return content
+    while content and text_width(content + "…", size, bold) > width:
+        content = content[:-1]
+    return content.rstrip() + "…"
+
+
+def wrapped(content: str, size: float, width: float, bold: bool = False) -> list[str]:
+    """The text in lines no wider than ``width`` page units, broken at spaces, or inside words that are too long.
+
+    >>> wrapped("a plate with holes", 10, 50)
+    ['a plate', 'with', 'holes']
+    """
+    lines: list[str] = []
+    for word in content.split():
+        if lines and text_width(f"{lines[-1]} {word}", size, bold) <= width:
+            lines[-1] += f" {word}"
+            continue
+        while len(word) > 1 and text_width(word, size, bold) > width:
+            cut = next(
+                k for k in range(len(word) - 1, 0, -1) if k == 1 or text_width(word[:k], size, bold) <= width
+            )
+            lines.append(word[:cut])
+            word = word[cut:]
+        lines.append(word)
+    return lines
+
 
 LANDSCAPE = (1188.0, 840.0)
 PORTRAIT = (840.0, 1188.0)
@@ -167,18 +251,24 @@ class Scene:
             found["data-model-to-page"] = view.matrix
         return Scene(self.add("g", found))
 
-    def path(self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str) -> ET.Element:
+    def path(
+        self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str
+    ) -> ET.Element:
         """Add a path."""
         attributes = {"d": d, "fill": fill}
         if stroke != "none":
             attributes |= {"stroke": stroke, "stroke-width": number(width)}
         return self.add("path", attributes | {key.replace("_", "-"): value for key, value in more.items()})
 
-    def line(self, points: Sequence[Point], stroke: str = BLACK, width: float = 1.0, **more: str) -> ET.Element:
+    def line(
+        self, points: Sequence[Point], stroke: str = BLACK, width: float = 1.0, **more: str
+    ) -> ET.Element:
         """Add an open polyline."""
         return self.path("M" + "L".join(f"{number(x)} {number(y)}" for x, y in points), stroke, width, **more)
 
-    def polygon(self, points: Sequence[Point], fill: str, stroke: str = "none", width: float = 1.0) -> ET.Element:
+    def polygon(
+        self, points: Sequence[Point], fill: str, stroke: str = "none", width: float = 1.0
+    ) -> ET.Element:
         """Add a closed polygon."""
         d = "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + "Z"
         return self.path(d, stroke, width, fill)
@@ -201,7 +291,13 @@ class Scene:
         return self.add("rect", attributes)
 
     def circle(
-        self, center: Point, radius: float, fill: str = "none", stroke: str = "none", width: float = 1.0, **more: str
+        self,
+        center: Point,
+        radius: float,
+        fill: str = "none",
+        stroke: str = "none",
+        width: float = 1.0,
+        **more: str,
     ) -> ET.Element:
         """Add a circle."""
         attributes = {"cx": number(center[0]), "cy": number(center[1]), "r": number(radius), "fill": fill}
@@ -245,7 +341,9 @@ class Scene:
         element.text = plain(content)
         return element
 
-    def arrow(self, tail: Point, tip: Point, stroke: str = BLACK, width: float = 1.0, head: float = 8.0) -> None:
+    def arrow(
+        self, tail: Point, tip: Point, stroke: str = BLACK, width: float = 1.0, head: float = 8.0
+    ) -> None:
         """Add an arrow; ``head`` is the length of its head."""
         dx, dy = tip[0] - tail[0], tip[1] - tail[1]
         length = hypot(dx, dy)
@@ -260,4 +358,61 @@ class Scene:
         c, s = cos(angle), sin(angle)
         half = 0.34 * length
         back = (tip[0] - length * c, tip[1] - length * s)
-        self.polygon([tip, (back[0] - half * s, back[1] + half * c), (back[0] + half * s, back[1] - half * c)], fill)
+        self.polygon(
+            [tip, (back[0] - half * s, back[1] + half * c), (back[0] + half * s, back[1] - half * c)], fill
+        )
+
+
+@frozen
+class LengthUnit:
+    """How a picture writes lengths.
+
+    Parameters
+    ----------
+    unit : what they are written in.
+    decimals : of a length.
+
+    Examples
+    --------
+    >>> from workhold.units import INCH
+    >>> LengthUnit.mm().words(24.125), LengthUnit.suiting(INCH, 10.0).words(-25.4), LengthUnit.mm().number(-0.0)
+    ('24.125 mm', '−1.0000 in', '0.000')
+    """
+
+    unit: Unit
+    decimals: int
+
+    @classmethod
+    def mm(cls, decimals: int = MILLIMETRE.decimals) -> LengthUnit:
+        """Millimetres."""
+        return cls(MILLIMETRE, decimals)
+
+    @classmethod
+    def suiting(cls, unit: Unit, length: float) -> LengthUnit:
+        """A unit with decimals that suit a picture whose typical length is ``length`` mm, such as a vise's pitch."""
+        return cls(unit, unit.decimals + decimals_for(length) - decimals_for(1.0))
+
+    @property
+    def sign(self) -> str:
+        """What stands behind a number."""
+        return self.unit.abbreviation
+
+    def number(self, length: float) -> str:
+        """A length in mm as a number of this unit, with a real minus sign and no negative zero."""
+        return self.unit.number(length, self.decimals).replace("-", "−")
+
+    def words(self, length: float) -> str:
+        """A length in mm with the sign of the unit."""
+        return f"{self.number(length)} {self.sign}"
+
+    def short(self, length: float, digits: int = 6) -> str:
+        """A length in mm, such as a pitch, with as few decimals as it has and at most so many digits.
+
+        >>> LengthUnit.mm().short(12.7), LengthUnit.mm().short(10.0)
+        ('12.7 mm', '10 mm')
+        """
+        return f"{self.short_number(length, digits)} {self.sign}"
+
+    def short_number(self, length: float, digits: int = 6) -> str:
+        """As `short`, without the sign of the unit."""
+        return f"{length / self.unit.millimetres:.{digits}g}"

@@ -8,14 +8,14 @@ from math import asin, ceil, degrees, floor, inf, log10
 
 from attrs import frozen
 
-from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.scene import LengthUnit
 from workhold.fixels.carrier import Measure
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.seating import CLOSE_READING, DRY_STEEL, Seat, Seating
 from workhold.model.workpiece import Workpiece
-from workhold.seating.gauge import Gauge
-from workhold.seating.silhouette import Silhouette
+from workhold.seating.clamping import Gauge
+from workhold.seating.part_features import Silhouette
 
 __all__ = ["SeatingWords", "down"]
 
@@ -93,7 +93,8 @@ class SeatingWords:
     def wrong(self) -> list[Seat]:
         """The wrong seats that the jaws open far enough for, those first that could be taken for right by their reading."""
         return sorted(
-            self.told.wrong_within(), key=lambda seat: (abs(seat.difference), seat.mirrored, seat.pose.theta_deg)
+            self.told.wrong_within(),
+            key=lambda seat: (abs(seat.difference), seat.mirrored, seat.pose.theta_deg),
         )
 
     @property
@@ -123,7 +124,10 @@ class SeatingWords:
     def steps(self, workpiece: Workpiece) -> list[str]:
         """What to do and what to read, one step each."""
         told, right = self.told, self.reads(self.reading(self.own))
-        ways, (most, more) = self.gauge.ways, ("at most", "more") if self.gauge.grows else ("at least", "less")
+        ways, (most, more) = (
+            self.gauge.ways,
+            ("at most", "more") if self.gauge.grows else ("at least", "less"),
+        )
         capture, room = told.capture_opening, told.drop_room
         widest = inf if told.most is None else told.most
         if told.is_untold:
@@ -161,7 +165,9 @@ class SeatingWords:
         if told.opening is not None:
             reach = f", {self.gauge.ways.done.lower()} by no more than {self.bound(told.opening)},"
         wrong, over = self.wrong, sum(seat.mirrored for seat in self.wrong)
-        turned = "" if not over else ", turned over" if over == len(wrong) else f", {over} of them turned over"
+        turned = (
+            "" if not over else ", turned over" if over == len(wrong) else f", {over} of them turned over"
+        )
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
         words = [f"The same pegs{reach} hold the part in no wrong place."]
         if wrong:
@@ -184,7 +190,9 @@ class SeatingWords:
             way = "turned over" if seat.mirrored else "turned round"
             return f"It covers its place, but {way}: {read}, which tells nothing. Mark the part."
         if seat is not None:
-            kind = {"loose": " that does not locate it", "unsettled": " that is not settled"}.get(seat.kind, "")
+            kind = {"loose": " that does not locate it", "unsettled": " that is not settled"}.get(
+                seat.kind, ""
+            )
             off = self.difference(seat)
             tells = "as when it is right" if off == "the same" else f"{off} than when it is right"
             return f"It comes to rest in a wrong place{kind}: {read}, {tells}."
@@ -198,7 +206,9 @@ class SeatingWords:
         """What to beware of: a word for it, "capture" or "reading", and a sentence."""
         told, found = self.told, list[tuple[str, str]]()
         if told.is_untold:
-            found.append(("capture", "From where on the part is caught is not known: hold it in its place meanwhile."))
+            found.append(
+                ("capture", "From where on the part is caught is not known: hold it in its place meanwhile.")
+            )
         elif told.capture_opening is not None and told.is_hardly_caught:
             found.append(
                 (
@@ -212,7 +222,10 @@ class SeatingWords:
         if near is not None and abs(near.difference) < CLOSE_READING:
             off = "no different" if self.difference(near) == "the same" else f"only {self.difference(near)}"
             found.append(
-                ("reading", f"In a wrong place the reading is {off}: see by the picture that the part lies right.")
+                (
+                    "reading",
+                    f"In a wrong place the reading is {off}: see by the picture that the part lies right.",
+                )
             )
         return found
 

@@ -1,28 +1,95 @@
-"""What a setup sheet tells beyond the fixture itself: what calipers measure, where contacts end, what to beware of."""
+"""What a setup sheet tells beyond the fixture itself: its details, what calipers measure, and what to beware of.
+
+The details are paper, unit, names, dates, and what the loads do.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import date
 from math import dist, inf
 
-from attrs import frozen
+from attrs import field, frozen
 
-from workhold.drawing.length_unit import LengthUnit
+from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingWords
-from workhold.drawing.sheet_details import SheetDetails
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
+from workhold.model.requirements import Tolerance
+from workhold.model.seating import Seating
+from workhold.model.setup import PartZero
 from workhold.model.workpiece import Workpiece
+from workhold.seating.clamping import ByHand
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go
+from workhold.statics.loads import LoadCase
+from workhold.units import MILLIMETRE, Unit
 
 __all__ = [
+    "PAPERS",
     "CaliperCheck",
     "Caution",
+    "SheetDetails",
     "caliper_check",
     "cautions_of",
     "edge_distances",
 ]
+
+# Width and height in mm, upright: ISO 216 and ANSI/ASME Y14.1.
+PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
+
+
+@frozen
+class SheetDetails:
+    """Everything on a setup sheet that the fixture does not tell.
+
+    Parameters
+    ----------
+    number, count : the fixture's rank in its result and how many there are.
+    day : the date written on the sheet.
+    result_hash : SHA-256 of the result file in hexadecimal; empty for a result of no file.
+    version : of the program.
+    paper : "a4" or "letter".
+    unit : of lengths.
+    part_name : written instead of the workpiece's own name.
+    tolerance : how far pegs and faces may be off, which the location error is for.
+    jaw_force : in N; None when it is left open.
+    friction : coefficient of friction that was asked for with the loads.
+    loads : what acts on the part, and the peg forces that answer it.
+    zero : what the machinist programs from; the drawing's origin if None.
+    machine_position : of the hole that places are told from, in mm in the machine's own coordinates; None when not known.
+    thickness : of the part, in mm; None where it is to be written on the paper, as are the next three.
+    peg_length, peg_height : of the pegs, and how far they stand out of the jaws, in mm.
+    dowel : what the pegs are and how they fit their holes, in the user's words instead of the tolerance's.
+    others : how many other fixtures of the result use the same holes.
+    seating : what else the pegs can do with the part; None where the sheet does not tell.
+    by_hand : how the part is put into two clamps; None where the sheet does not tell.
+    not_seated : why seating is not told though it was asked for, in a sentence.
+    """
+
+    number: int
+    count: int
+    day: date
+    result_hash: str
+    version: str
+    paper: str = "a4"
+    unit: Unit = MILLIMETRE
+    part_name: str | None = None
+    tolerance: Tolerance = field(factory=Tolerance)
+    jaw_force: float | None = None
+    friction: float | None = None
+    loads: tuple[LoadCase, ...] = ()
+    zero: PartZero | None = None
+    machine_position: tuple[float, float] | None = None
+    thickness: float | None = None
+    peg_length: float | None = None
+    peg_height: float | None = None
+    dowel: str | None = None
+    others: int = 0
+    seating: Seating | None = None
+    by_hand: ByHand | None = None
+    not_seated: str = ""
+
 
 UNFIT = "No fixture for a workshop: the part may lie anywhere, or one peg hardly holds. Choose another."
 
@@ -70,7 +137,9 @@ def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
     last, travelled = first.column_count - 1, fixture.jaw_separation
     shift = round((second.offset[1] - first.offset[1]) / first.pitch[1])
     best: tuple[float, int, int, int] | None = None
-    for low, high in {(row + a, row + a + b - shift) for row in [*rows, 0] for a in (-1, 0, 1) for b in (-1, 0, 1)}:
+    for low, high in {
+        (row + a, row + a + b - shift) for row in [*rows, 0] for a in (-1, 0, 1) for b in (-1, 0, 1)
+    }:
         if min(low, high) < 0 or (first.rows is not None and max(low, high) >= first.rows):
             continue
         if first.is_blocked(last, low) or second.is_blocked(0, high):
@@ -112,7 +181,9 @@ def cautions_of(
             found.append(Caution("edge", f"{place}: a burr or a broken edge there shifts the part."))
     if is_weak(margin):
         weakest = min(fixture.pegs, key=lambda peg: peg.force)
-        words = f"{weakest.hole} has only {margin:.2%} of the hold (even would be {100 // len(fixture.pegs)}%)"
+        words = (
+            f"{weakest.hole} has only {margin:.2%} of the hold (even would be {100 // len(fixture.pegs)}%)"
+        )
         found.append(Caution("closure", f"Weak closure: {words}."))
     largest = max(fixture.pegs, key=lambda peg: peg.force)
     if is_strong(largest.force):
@@ -125,12 +196,16 @@ def cautions_of(
         found.append(Caution("location", f"{words}: probe it after clamping."))
     if details.jaw_force is not None:
         lifting = [
-            (n, case) for n, case in enumerate(details.loads, 1) if lets_go(case.needed.value, details.jaw_force)
+            (n, case)
+            for n, case in enumerate(details.loads, 1)
+            if lets_go(case.needed.value, details.jaw_force)
         ]
         for number, case in sorted(lifting, key=lambda pair: -pair[1].needed.value)[:1]:
             name, peg = case.load.name or f"load {number}", fixture.pegs[case.needed.peg]
             more = lengths.unit.force_above(case.needed.value)
-            words = f"Under {name} {peg.hole} lets go at the {lengths.unit.force_words(details.jaw_force)} given"
+            words = (
+                f"Under {name} {peg.hole} lets go at the {lengths.unit.force_words(details.jaw_force)} given"
+            )
             found.append(Caution("load", f"{words}: clamp with more than {more} {lengths.unit.force}."))
     if details.seating is not None:
         told = SeatingWords(details.seating, fixture, toolkit, lengths)

@@ -7,21 +7,17 @@ from collections.abc import Callable
 
 from attrs import frozen
 
-from workhold.drawing.fonts import text_width
-from workhold.drawing.length_unit import LengthUnit
 from workhold.drawing.panel import FACT_NAME, Column, pegs_words
-from workhold.drawing.scene import BLACK, GREY, Scene
+from workhold.drawing.scene import BLACK, GREY, LengthUnit, Scene, text_width
 from workhold.drawing.seating_words import SeatingWords
-from workhold.drawing.sheet_details import SheetDetails
-from workhold.drawing.sheet_facts import Caution
-from workhold.fixels.contact_kind import FLAT_PIN
+from workhold.drawing.sheet_facts import Caution, SheetDetails
+from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.setup_words import Datum
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
-from workhold.model.dowel import fit_words
+from workhold.model.dowels import fit_words
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.part_zero import PartZero, part_zero
-from workhold.model.setting import Setting, contact_names, settings_of
+from workhold.model.setup import PartZero, Setting, contact_names, part_zero, settings_of
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
 
@@ -141,7 +137,9 @@ def fact_or_field(column: Column, name: str, value: str | None) -> None:
     least, most = FIELD
     right = column.x + column.width
     room = column.width - text_width(name, FACT_NAME) - 10
-    column.scene.line([(right - min(max(room, least), most), column.y + 2), (right, column.y + 2)], BLACK, 0.8)
+    column.scene.line(
+        [(right - min(max(room, least), most), column.y + 2), (right, column.y + 2)], BLACK, 0.8
+    )
     column.y += 0.62 * HEADING
 
 
@@ -187,7 +185,11 @@ def inside_words(sheet: Sheet) -> str:
     """Which pegs stand in holes of the part, a sentence behind another one; nothing where none does."""
     outer = len(sheet.workpiece.loops[0])
     inside = [peg.hole for peg in sheet.fixture.pegs if peg.face >= outer]
-    return f" {listed(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part." if inside else ""
+    return (
+        f" {listed(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part."
+        if inside
+        else ""
+    )
 
 
 def write_dowel(column: Column, sheet: Sheet) -> None:
@@ -196,7 +198,9 @@ def write_dowel(column: Column, sheet: Sheet) -> None:
     diameter = 2 * carrier.peg_radius
     fit = details.tolerance.fit
     column.y += 3
-    fact_or_field(column, "dowel and fit", details.dowel or (None if fit is None else fit_words(fit, diameter)))
+    fact_or_field(
+        column, "dowel and fit", details.dowel or (None if fit is None else fit_words(fit, diameter))
+    )
     if fit is not None:
         pin, hole_limits = (
             f"{lengths.short_number(low)} to {lengths.short(high)}" for low, high in (fit.pin, fit.hole)

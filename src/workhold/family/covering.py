@@ -16,7 +16,17 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.listing.canonical_form import changes
 
-__all__ = ["REQUIREMENT", "Cover", "as_sets", "cover", "first_cover", "greedy", "load_solver", "maximal", "packing"]
+__all__ = [
+    "REQUIREMENT",
+    "Cover",
+    "as_sets",
+    "cover",
+    "first_cover",
+    "greedy",
+    "load_solver",
+    "maximal",
+    "packing",
+]
 
 BoolArray = NDArray[np.bool_]
 WordArray = NDArray[np.uint64]
@@ -57,7 +67,9 @@ def load_solver() -> None:
     try:
         import scipy.optimize  # noqa: F401
     except ImportError as error:
-        raise InputError(f"a family needs SciPy, which is not installed: pip install '{REQUIREMENT}'.") from error
+        raise InputError(
+            f"a family needs SciPy, which is not installed: pip install '{REQUIREMENT}'."
+        ) from error
 
 
 def maximal(masks: WordArray) -> NDArray[np.int64]:
@@ -106,7 +118,11 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
     constraint = LinearConstraint(sets.T.astype(np.float64), lb=1.0)
     count = len(sets)
     found = milp(
-        np.ones(count), integrality=np.ones(count), bounds=Bounds(0, 1), constraints=constraint, options=options
+        np.ones(count),
+        integrality=np.ones(count),
+        bounds=Bounds(0, 1),
+        constraints=constraint,
+        options=options,
     )
     bound = found.mip_dual_bound
     if bound is not None and np.isfinite(bound):
@@ -129,7 +145,9 @@ def packing(sets: BoolArray) -> int:
     return count
 
 
-def first_cover(sets: BoolArray, count: int, known: tuple[int, ...], deadline: float | None = None) -> tuple[int, ...]:
+def first_cover(
+    sets: BoolArray, count: int, known: tuple[int, ...], deadline: float | None = None
+) -> tuple[int, ...]:
     """The first cover of some number of sets (of S, M) in lexicographic order; ``known`` is one of that many.
 
     After the deadline it is the first that is known then.

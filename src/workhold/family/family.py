@@ -1,27 +1,39 @@
-"""A family of parts in one toolkit: its members, what was left out, and the curve."""
+"""A family of parts in one toolkit: its members, what was left out, the curve, and its file.
+
+The file has the members, the curve, and the plan at every point of it, as JSON. Its bytes depend on nothing but the family.
+Lengths are rounded to 1e-9 mm, angles to 1e-10 degree; figures and losses have twelve significant digits. A loss that is not
+finite is null.
+"""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from math import isfinite
 from time import monotonic
+from typing import Any
 
+import numpy as np
 from attrs import define, evolve, frozen
 
 from workhold.errors import InputError
 from workhold.family.covering import load_solver
 from workhold.family.curve import Point, Table, curve_of, table_of
-from workhold.family.losses import Threshold
-from workhold.family.members import Member, member_of
-from workhold.family.other_side import OTHER_SIDE, other_side, zero_of_other_side
-from workhold.family.plan import Plan, plan_of
+from workhold.family.members import OTHER_SIDE, Member, Threshold, member_of, other_side, zero_of_other_side
+from workhold.family.plan import Holding, Plan, SetUp, plan_of
+from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees
+from workhold.files.result.writer import toolkit_fields
+from workhold.fixels.contacts import CLAMP_TIP
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.part_zero import PartZero, part_zero
+from workhold.model.fixture import Fixture, Peg
 from workhold.model.quality import FIGURES, Figure, figure_number
 from workhold.model.query import Query
+from workhold.model.setup import PartZero, part_zero, settings_of
 from workhold.search.design import answer
+from workhold.version import __version__
 
-__all__ = ["Asked", "Family", "LeftOut", "family_of"]
+__all__ = ["FORMAT", "Asked", "Family", "LeftOut", "family_of", "family_text"]
 
 # The share of the work that the searches are, as progress tells it.
 SEARCHES = 0.95
@@ -92,7 +104,11 @@ class Family:
     @cached_property
     def plans(self) -> tuple[Plan, ...]:
         """The plan at each point of the curve."""
-        return () if self.table is None else tuple(plan_of(point, self.table, self.members) for point in self.points)
+        return (
+            ()
+            if self.table is None
+            else tuple(plan_of(point, self.table, self.members) for point in self.points)
+        )
 
     def plan(self, setups: int | None = None) -> Plan:
         """The plan with the least loss that has at most so many set-ups; None asks for as few set-ups as there can be.
@@ -129,7 +145,7 @@ def family_of(
     Parameters
     ----------
     asked : at least one part; all with the same toolkit and the same first figure of the ranking.
-    thresholds, unfit : which fixtures may be used, see ``family.losses.may_be_used``.
+    thresholds, unfit : which fixtures may be used, see ``family.members.may_be_used``.
     most_loss : larger losses are not accepted; None is any.
     seconds : after which the curve tells what is known until then; None proves all of it.
     same_zero : whether the zeros of all parts of a set-up must lie at one place, and the parts be turned alike.
@@ -158,9 +174,13 @@ def family_of(
     first = asked[0].query
     for one in asked:
         if one.query.toolkit != first.toolkit:
-            raise InputError(f"{one.name} is asked for in another toolkit: the parts of a family share theirs.")
+            raise InputError(
+                f"{one.name} is asked for in another toolkit: the parts of a family share theirs."
+            )
         if one.query.ranking[0] != first.ranking[0]:
-            raise InputError(f"{one.name} is ranked by another figure: the losses of a family are of one figure.")
+            raise InputError(
+                f"{one.name} is ranked by another figure: the losses of a family are of one figure."
+            )
     members, out, found = list[Member](), list(left_out), 0
     for place, one in enumerate(asked):
 
@@ -197,3 +217,118 @@ def reason_of(member: Member, has_patterns: bool) -> str:
     if has_patterns:
         return "no fixture of it that may be used is within the largest loss"
     return f"none of its {member.fixtures:,} fixtures {inside} may be used"
+
+
+FORMAT = "workhold-family/1"
+
+
+def family_text(family: Family) -> str:
+    """The text of a family's file."""
+    toolkit = family.toolkit
+    head = {
+        "toolkit": {"kind": toolkit.kind, **toolkit_fields(toolkit)},
+        "figure": family.figure.key,
+    }
+    parts = [
+        {
+            "name": one.name,
+            "path": one.path,
+            "hash": one.digest,
+            "zero": [length(value) for value in one.zero.point],
+            "fixtures": one.fixtures,
+            "patterns": one.patterns,
+            "best": significant(one.best),
+        }
+        for one in family.members
+    ]
+    out = [{"name": one.name, "path": one.path, "reason": one.reason} for one in family.left_out]
+    lines = ",\n".join(plan_text(plan, family) for plan in family.plans)
+    # Every part and every set-up has a line of its own.
+    return (
+        f'{{"format": "{FORMAT}", "program": "workhold {__version__}", "family": {{\n'
+        f"{json.dumps(head)[1:-1]},\n"
+        f'"parts": {listed(parts)},\n'
+        f'"left_out": {listed(out)},\n'
+        f'"curve": [\n{lines}\n]}}}}\n'
+    )
+
+
+def listed(entries: list[dict[str, Any]]) -> str:
+    """A list with a line for each entry."""
+    return "[\n" + ",\n".join(json.dumps(entry) for entry in entries) + "\n]" if entries else "[]"
+
+
+def plan_text(plan: Plan, family: Family) -> str:
+    """A point of the curve with its plan."""
+    numbers = {id(member): number for number, member in enumerate(family.members)}
+    point = {
+        "setups": plan.point.setups,
+        "loss": significant(plan.point.loss),
+        "lower_bound": plan.point.at_least,
+        "is_least": plan.point.is_least,
+        "pegs_moved": plan.moved,
+    }
+    setups = ",\n".join(json.dumps(setup_entry(setup, family.toolkit, numbers)) for setup in plan.setups)
+    return f'{json.dumps(point)[:-1]}, "plan": [\n{setups}]}}'
+
+
+def setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict[str, Any]:
+    """A set-up as it is written; ``numbers`` are those of members."""
+    fixture = setup.standing.fixture
+    return {
+        "pattern": {
+            "type": fixture.type,
+            **({"direction": fixture.direction} if toolkit.tips else {}),
+            "pegs": [peg_entry(peg, toolkit) for peg in fixture.placed],
+        },
+        "pegs_to_place": setup.moved,
+        "parts": [holding_entry(one, toolkit, numbers[id(one.member)]) for one in setup.holdings],
+    }
+
+
+def peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
+    """Where a peg of a pattern stands: its hole, or the line of a clamp of which no more is known."""
+    carrier, place = toolkit.carrier(peg.carrier), {"column": peg.column, "row": peg.row}
+    key, name = carrier.written_as
+    if carrier.contact is not CLAMP_TIP:
+        return {key: name, **place}
+    hole = [*place.values()] if carrier.measure == "stroke" else None
+    return {key: name, "direction": carrier.direction, carrier.line: place[carrier.line], "hole": hole}
+
+
+def holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:
+    """How a member lies, as it is written."""
+    fixture = one.fixture
+    entry = {
+        "part": number,
+        "fixture": one.number,
+        "turned": one.turned,
+        "pose": {
+            "theta_deg": float(rounded_degrees(fixture.pose.theta_deg)),
+            "x": length(fixture.pose.x),
+            "y": length(fixture.pose.y),
+        },
+        **opening_entry(fixture, toolkit),
+        "zero": [length(value) for value in fixture.pose.apply(*one.member.zero.point)],
+        "figure": significant(one.figure),
+        "loss": significant(one.loss),
+    }
+    if not one.in_place:
+        entry["pegs"] = [peg_entry(peg, toolkit) for peg in fixture.pegs]
+    return entry
+
+
+def opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
+    """What is set for a part: the opening of a vise, or the strokes or places of clamps."""
+    lengths = [length(setting.length) for setting in settings_of(fixture, toolkit)]
+    return {"opening": lengths[0] if len(lengths) == 1 else lengths}
+
+
+def length(value: float) -> float:
+    """A length as it is written."""
+    return float(rounded(np.array([value]), LENGTH_STEPS)[0])
+
+
+def significant(value: float) -> float | None:
+    """A figure as it is written; None where it is not finite."""
+    return float(f"{value:.12g}") if isfinite(value) else None

@@ -1,29 +1,186 @@
-"""A member of a family: a part with the patterns that hold it, each with the best fixture that has it."""
+"""A member of a family: a part, or its other side, with the patterns that hold it, each with its best fixture.
+
+A fixture is judged by its loss, and by whether it may be used at all. Turned over about its y axis for the second operation,
+a part shows the mirrored outline, and whatever was said of it in its own coordinates is mirrored with it: faces, zones,
+loads, and its zero, which stays the same point of the part.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import ceil, isfinite
 from tempfile import TemporaryFile
 from typing import Any
 
 import numpy as np
-from attrs import fields, frozen
+from attrs import evolve, fields, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.conventions import ANGLE_SLACK
+from workhold.conventions import ANGLE_SLACK, FIGURE_DECIMALS
 from workhold.errors import InputError
-from workhold.family.holding import turned
-from workhold.family.losses import Threshold, losses, may_be_used
-from workhold.family.patterns import half_turn, pattern_words, zero_words
+from workhold.family.patterns import half_turn, pattern_words, turned, zero_words
 from workhold.listing.canonical_form import changes
 from workhold.listing.ranking import measured
-from workhold.model.part_zero import PartZero, part_zero
-from workhold.model.quality import FIGURES, figure_number
-from workhold.model.query import Query
+from workhold.model.quality import FIGURES, Figure, figure_number
+from workhold.model.query import DEFAULT_RANKING, PAIR_RANKING, Query
+from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.result import FixtureTable, Result
+from workhold.model.setup import PartZero, part_zero
+from workhold.model.workpiece import Workpiece
+from workhold.statics.judging import unfit
 
-__all__ = ["Member", "member_of"]
+__all__ = [
+    "OTHER_SIDE",
+    "RANKINGS",
+    "Member",
+    "Threshold",
+    "loss_text",
+    "losses",
+    "may_be_used",
+    "member_of",
+    "other_side",
+    "threshold",
+    "zero_of_other_side",
+]
+
+# A family is asked for what it loses in location; after that what a machinist looks at counts, by how many things move.
+LOCATION = "location_error"
+RANKINGS = {1: (LOCATION, *DEFAULT_RANKING), 2: (LOCATION, *PAIR_RANKING)}
+# Losses are told apart to so many decimals.
+LOSS_DECIMALS = 9
+
+
+@frozen
+class Threshold:
+    """What a figure of every fixture used must reach.
+
+    Parameters
+    ----------
+    figure : which figure.
+    value : the largest it may be, or the smallest where more is better; in the figure's unit.
+    """
+
+    figure: Figure
+    value: float
+
+
+def threshold(name: str, value: float) -> Threshold:
+    """The threshold of a figure named as a user writes it.
+
+    Raises
+    ------
+    InputError
+        For a name that is no figure.
+    """
+    number = figure_number(name)
+    if number is None:
+        raise InputError(
+            f"{name!r} is no figure: choose among {', '.join(figure.option for figure in FIGURES)}."
+        )
+    return Threshold(FIGURES[number], value)
+
+
+def losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
+    """The losses (N,) of fixtures with values (N,) of a figure: over the best of them, 1 or more.
+
+    Beside a best of zero everything else is infinitely worse; what is no number is so, too.
+    """
+    values = np.round(values, FIGURE_DECIMALS)
+    known = values[~np.isnan(values)]
+    if len(known) == 0:
+        return np.full(len(values), np.inf)
+    best = known.max() if figure.more_is_better else known.min()
+    above, below = (
+        (np.full(len(values), best), values)
+        if figure.more_is_better
+        else (values, np.full(len(values), best))
+    )
+    usable = (below > 0.0) & np.isfinite(above) & np.isfinite(below)
+    ratio = np.full(len(values), np.inf)
+    np.divide(above, below, out=ratio, where=usable)
+    return np.where(values == best, 1.0, np.maximum(np.round(ratio, LOSS_DECIMALS), 1.0))
+
+
+def loss_text(loss: float) -> str:
+    """A loss as it is shown, rounded up, so that what is shown is one within which it is.
+
+    >>> loss_text(1.0), loss_text(1.1871), loss_text(float("inf"))
+    ('1.000', '1.188', 'any')
+    """
+    return f"{ceil(loss * 1000 - 1e-6) / 1000:.3f}" if isfinite(loss) else "any"
+
+
+def may_be_used(
+    table: FixtureTable, thresholds: Sequence[Threshold], tolerance: Tolerance, with_unfit: bool
+) -> NDArray[np.bool_]:
+    """Which fixtures (N,) may be used: those for a workshop, unless all are asked for, that reach every threshold."""
+    good = np.ones(len(table), np.bool_) if with_unfit else ~unfit(table.quality, tolerance)
+    for one in thresholds:
+        values = np.round(table.quality[:, FIGURES.index(one.figure)], FIGURE_DECIMALS)
+        good &= values >= one.value if one.figure.more_is_better else values <= one.value
+    return good
+
+
+# What stands behind the name of a part that is turned over.
+OTHER_SIDE = "side 2"
+
+
+def mirrored(loop: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Vertices (N, 3) of x, y and bulge with x the other way round."""
+    return np.asarray(loop * np.array([-1.0, 1.0, -1.0]) + 0.0)
+
+
+def mirrored_load(load: Load) -> Load:
+    """A load on the part as it acts when the part is turned over."""
+    low, high = load.directions
+    directions = ANY_DIRECTION if (low, high) == ANY_DIRECTION else (180.0 - high, 180.0 - low)
+    return evolve(
+        load, points=[(-x, y) for x, y in load.points], directions=directions, moment=0.0 - load.moment
+    )
+
+
+def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
+    """For each segment of a part its number in the part turned over: its loops run the other way round."""
+    out, first = dict[int, int](), 0
+    for loop in workpiece.loops:
+        out |= {first + k: first + len(loop) - 1 - k for k in range(len(loop))}
+        first += len(loop)
+    return out
+
+
+def other_side(query: Query) -> Query:
+    """What is asked for a part, for the same part turned over; angles in the vise stay as they are.
+
+    Examples
+    --------
+    >>> from workhold import Vise, Workpiece
+    >>> part = Workpiece.from_loops("wedge", [[[0, 0, 0], [40, 0, 0], [10, 30, 0]]])
+    >>> turned = other_side(Query(part, Vise(pitch=10, columns=1, peg_radius=3), restrictions=Restrictions(avoid=(1,))))
+    >>> turned.workpiece.name, turned.workpiece.loops[0][:, 0].tolist(), turned.restrictions.avoid
+    ('wedge, side 2', [0.0, -10.0, -40.0], (1,))
+    """
+    part, asked = query.workpiece, query.restrictions
+    loops = [mirrored(loop) for loop in part.loops]
+    numbers = segment_numbers(part)
+    return evolve(
+        query,
+        workpiece=Workpiece.from_loops(f"{part.name}, {OTHER_SIDE}", loops, departure=part.departure),
+        restrictions=Restrictions(
+            # A number that no face has is refused where the part as it is drawn is asked for.
+            avoid=[numbers.get(number, number) for number in asked.avoid],
+            zones=[zone_of(mirrored(zone.loop).tolist()) for zone in asked.zones],
+            angles=asked.angles,
+        ),
+        loads=[mirrored_load(load) for load in query.loads],
+    )
+
+
+def zero_of_other_side(zero: PartZero) -> PartZero:
+    """A part's zero in the coordinates of the part turned over: the same point of the part."""
+    x, y = zero.point
+    return PartZero((0.0 - x, y), zero.words)
+
 
 IntArray = NDArray[np.int64]
 
@@ -82,7 +239,7 @@ def member_of(
     Parameters
     ----------
     result : all fixtures, ranked; the first figure of its ranking is that of losses.
-    thresholds, unfit : what may be used, see ``family.losses.may_be_used``.
+    thresholds, unfit : what may be used, see ``family.members.may_be_used``.
     zero : the part's zero; the usual one if None.
     same_zero : whether patterns are told apart by where the zero lies as well, and how the part is turned.
 

@@ -1,17 +1,36 @@
-"""The pattern of each fixture of a table, as packed whole numbers that are the same for the same pattern."""
+"""The pattern of each fixture of a table, and a fixture moved so that its pegs stand where those of a set-up do.
+
+A pattern is written as packed whole numbers that are equal for equal patterns. A move is by whole lattice steps or half a
+turn. What is moved stays a fixture: it touches the faces it touched with the forces it had. Of a vise the half turn changes
+which jaw stands still, and with it the location error, so a fixture and its half turn are one fixture in a list, but not
+the same to a part that is machined.
+"""
 
 from __future__ import annotations
 
 import numpy as np
+from attrs import evolve
 from numpy.typing import NDArray
 
+from workhold.conventions import GAP_SLACK
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.rotation import rotated
+from workhold.geometry.symmetry import rotated
 from workhold.listing.canonical_form import packed
-from workhold.model.part_zero import PartZero
 from workhold.model.result import FixtureTable
+from workhold.model.setup import PartZero
 
-__all__ = ["column_groups", "half_turn", "pattern_words", "zero_words"]
+__all__ = [
+    "NOTHING",
+    "Hole",
+    "column_groups",
+    "half_turn",
+    "holes_of",
+    "moved_onto",
+    "pattern_words",
+    "shifted",
+    "turned",
+    "zero_words",
+]
 
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
@@ -38,7 +57,9 @@ def half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
     if places is None:
         return None
     known = all(place >= 0 or not count for place, count in zip(places, one.pegs, strict=True))
-    if not known or any(one.pegs[place] != count for place, count in zip(places, one.pegs, strict=True) if count):
+    if not known or any(
+        one.pegs[place] != count for place, count in zip(places, one.pegs, strict=True) if count
+    ):
         return None
     return places
 
@@ -87,3 +108,131 @@ def zero_words(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArra
         (degrees % 360.0) / SAME_TURN,
     ]
     return np.stack([np.floor(values + BEGINNING).astype(np.int64) for values in places], axis=1)
+
+
+# Number of a carrier, column and row.
+Hole = tuple[int, int, int]
+# What stands for a column or a row that tells nothing, as of a clamp of which only the line is known.
+NOTHING = 1 << 40
+
+
+def shifted(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: int) -> FixtureTable:
+    """A fixture moved by whole columns, for each group of carriers that share theirs (see
+    ``family.patterns.column_groups``), and rows; the part moves with the first carrier."""
+    carriers = toolkit.peg_carriers(one.arrangement)[0]
+    groups, pitch = column_groups(toolkit), toolkit.carriers[0].pitch
+    counts = np.array([toolkit.carriers[number].counted for number in carriers])
+    steps = np.array([columns.get(groups[number], 0) for number in carriers])
+    move = np.array([columns.get(0, 0) * pitch[0], rows * pitch[1]])
+    column = one.column + np.where(counts[:, 0], steps, 0).astype(np.int32)
+    row = one.row + np.where(counts[:, 1], rows, 0).astype(np.int32)
+    moved = evolve(one, column=column, row=row, position=one.position + move)
+    if not toolkit.tips:
+        return evolve(
+            moved, jaw_separation=one.jaw_separation + (columns.get(0, 0) - columns.get(1, 0)) * pitch[0]
+        )
+    return with_tips(moved, toolkit, tips_of(one, toolkit) + move)
+
+
+def turned(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
+    """Fixtures of one arrangement, which half a turn of everything leaves as it is, after that turn.
+
+    They are in the same rows and in the mirrored columns; their figures are those before it.
+    """
+    if not len(table):
+        return table
+    number = int(table.arrangement[0])
+    places = half_turn(toolkit, number)
+    assert places is not None
+    carriers, pitch = np.array(toolkit.arrangements[number].carriers), np.array(toolkit.carriers[0].pitch)
+    in_column, in_row = np.array([toolkit.carriers[number].counted for number in carriers]).T
+    rows = table.row[:, in_row]
+    ends = rows.min(axis=1) + rows.max(axis=1)
+    moving = toolkit.moving
+    if toolkit.tips:
+        last = table.column[:, in_column].max(axis=1)
+        middle = np.stack([last, ends], axis=1) * pitch
+    else:
+        last = np.full(len(table), moving.column_count - 1)
+        opening = np.stack([table.jaw_separation, np.zeros(len(table))], axis=1)
+        middle = np.stack([2 * last, ends], axis=1) * pitch + opening + np.array([0.0, moving.offset[1]])
+    column = np.where(in_column, last[:, None] - table.column, 0)
+    row = np.where(in_row, ends[:, None] - table.row, 0)
+    order = np.lexsort((row, column, np.broadcast_to(np.array(places)[carriers], row.shape)), axis=-1)
+    column, row, face = (np.take_along_axis(values, order, axis=1) for values in (column, row, table.face))
+    if table.force.ndim > 2:
+        force = np.take_along_axis(table.force, order[:, :, None], axis=1)[:, :, ::-1]
+    else:
+        force = np.take_along_axis(table.force, order, axis=1)
+    out = evolve(
+        table,
+        column=column.astype(np.int32),
+        row=row.astype(np.int32),
+        face=face,
+        theta=(table.theta + np.pi) % (2 * np.pi),
+        position=middle - table.position,
+        force=force,
+    )
+    if not toolkit.tips:
+        return out
+    return with_tips(out, toolkit, (middle[:, None] - tips_of(table, toolkit))[:, ::-1])
+
+
+def tips_of(table: FixtureTable, toolkit: Toolkit) -> NDArray[np.float64]:
+    """The places (N, K, 2) in mm of the tips of fixtures' clamps."""
+    x, y = toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
+    count = 1 if table.jaw_separation.ndim == 1 else table.jaw_separation.shape[1]
+    return np.stack([x[:, -count:], y[:, -count:]], axis=2)
+
+
+def with_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) -> FixtureTable:
+    """Fixtures of one arrangement whose clamps have travelled to some places (N, K, 2) in mm."""
+    carriers = toolkit.arrangements[int(table.arrangement[0])].carriers
+    travelled = np.zeros(tips.shape[:2])
+    for clamp, peg in enumerate(range(len(carriers) - tips.shape[1], len(carriers))):
+        carrier = toolkit.carriers[carriers[peg]]
+        assert carrier.travel is not None
+        x, y = carrier.place(table.column[:, peg], table.row[:, peg])
+        along, across = carrier.travel.unit
+        travelled[:, clamp] = (tips[:, clamp, 0] - x) * along + (tips[:, clamp, 1] - y) * across
+    return evolve(table, jaw_separation=travelled.reshape(table.jaw_separation.shape))
+
+
+def holes_of(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
+    """Where every peg of a fixture stands, in order; the ends of a wall are left out."""
+    out = []
+    for number, column, row in zip(
+        toolkit.peg_carriers(one.arrangement)[0].tolist(),
+        one.column[0].tolist(),
+        one.row[0].tolist(),
+        strict=True,
+    ):
+        in_column, in_row = toolkit.carriers[number].counted
+        if in_column or in_row:
+            out.append((number, column if in_column else NOTHING, row if in_row else NOTHING))
+    return sorted(out)
+
+
+def moved_onto(one: FixtureTable, target: FixtureTable, toolkit: Toolkit) -> FixtureTable | None:
+    """A fixture shifted so that its pegs stand in the holes of another one of the same pattern; None where the jaws would
+    then stand nearer than they may."""
+    mine, theirs, groups = holes_of(one, toolkit), holes_of(target, toolkit), column_groups(toolkit)
+    steps = {
+        groups[number]: column - own
+        for (number, own, _), (_, column, _) in reversed(list(zip(mine, theirs, strict=True)))
+        if own != NOTHING
+    }
+    rows = next(row - own for (_, _, own), (_, _, row) in zip(mine, theirs, strict=True) if own != NOTHING)
+    moved = shifted(one, toolkit, steps, rows)
+    if holes_of(moved, toolkit) != theirs:
+        return None
+    travel = toolkit.moving.travel
+    assert travel is not None
+    most = np.inf if travel.most is None else travel.most
+    # A clamp keeps its stroke, but jaws now stand nearer or farther apart.
+    if (
+        toolkit.moving.has_lattice
+        and not travel.least - GAP_SLACK <= moved.jaw_separation[0] <= most + GAP_SLACK
+    ):
+        return None
+    return moved

@@ -53,10 +53,18 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
     """
     seconds = SECONDS + SECONDS_PER_MILLION * len(content) / 1e6
     memory = MEMORY_BYTES + MEMORY_FACTOR * len(content)
-    order = {"module": module, "options": dict(options), "seconds": seconds, "memory": memory, "size": len(content)}
+    order = {
+        "module": module,
+        "options": dict(options),
+        "seconds": seconds,
+        "memory": memory,
+        "size": len(content),
+    }
     # The same modules as here, and none from the folder that happens to be the current one.
     command = [sys.executable, "-P", "-c", f"import sys; sys.path[:] = sys.argv[1:]; {START}", *sys.path]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    ) as process:
         assert process.stdin is not None and process.stdout is not None
         late = Event()
 
@@ -109,7 +117,9 @@ def outcome(told: bytes, code: int, given_up: bool, limits: tuple[float, int], w
         )
     if code == -getattr(signal, "SIGKILL", 0):
         # Nobody else ends a process so: the system does, when it has no memory left for all.
-        raise InputError(f"{what} ran out of memory while it was read: close other programs, or save less in it.")
+        raise InputError(
+            f"{what} ran out of memory while it was read: close other programs, or save less in it."
+        )
     raise InputError(f"{what} is damaged so that the library that reads it breaks down: save it anew.")
 
 

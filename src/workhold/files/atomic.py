@@ -77,7 +77,10 @@ def text_file(path: str | Path) -> Iterator[IO[str]]:
     InputError
         When the file cannot be written.
     """
-    with replacement(Path(path)) as descriptor, os.fdopen(descriptor, "w", encoding="utf-8", newline="\n") as stream:
+    with (
+        replacement(Path(path)) as descriptor,
+        os.fdopen(descriptor, "w", encoding="utf-8", newline="\n") as stream,
+    ):
         yield stream
 
 

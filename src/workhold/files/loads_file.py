@@ -22,7 +22,7 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.text import json_value, read_text, toml_table
-from workhold.model.load import ANY_DIRECTION, Load
+from workhold.model.requirements import ANY_DIRECTION, Load
 from workhold.units import unit_named
 
 __all__ = ["load_from_words", "read_loads"]
@@ -61,7 +61,9 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
     content = parsed(path)
     for key in content:
         if key not in ("unit", "load"):
-            raise InputError(f"{path} has an unknown key '{key}': give unit, and a table [[load]] for each load.")
+            raise InputError(
+                f"{path} has an unknown key '{key}': give unit, and a table [[load]] for each load."
+            )
     if "unit" in content:
         try:
             unit_scale = unit_named(str(content["unit"])).millimetres
@@ -69,7 +71,9 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
             raise InputError(f"{path}: {error}") from None
     tables = content.get("load")
     if not isinstance(tables, list) or not tables or not all(isinstance(table, dict) for table in tables):
-        raise InputError(f"{path} has no loads: write a table [[load]] for each, with force and at, path or moment.")
+        raise InputError(
+            f"{path} has no loads: write a table [[load]] for each, with force and at, path or moment."
+        )
     return tuple(load_from_words(table, f"{path}: load {n}", unit_scale) for n, table in enumerate(tables, 1))
 
 
@@ -112,7 +116,9 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
     """
     for key in words:
         if key not in KEYS:
-            raise InputError(f"{place} has an unknown key '{key}': give {', '.join(KEYS[:-1])} or {KEYS[-1]}.")
+            raise InputError(
+                f"{place} has an unknown key '{key}': give {', '.join(KEYS[:-1])} or {KEYS[-1]}."
+            )
     if "at" in words and "path" in words:
         raise InputError(f"{place} has both at and path: a force acts at a point or along a path.")
     if "force" not in words:
@@ -127,8 +133,12 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
     try:
         return Load(
             points=[(x * unit_scale, y * unit_scale) for x, y in points],
-            force=quantity(words.get("force", 0), f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf"),
-            directions=directions(words["direction"], f"{place}: direction") if "direction" in words else ANY_DIRECTION,
+            force=quantity(
+                words.get("force", 0), f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf"
+            ),
+            directions=directions(words["direction"], f"{place}: direction")
+            if "direction" in words
+            else ANY_DIRECTION,
             moment=quantity(
                 words.get("moment", 0), f"{place}: moment", MOMENT_UNITS, "5000, 5000N.mm, 5N.m or 40lbf.in"
             ),
@@ -194,7 +204,9 @@ def path_points(value: Any, place: str) -> list[tuple[float, float]]:
     """
     parts = value.split(";") if isinstance(value, str) else value
     if not isinstance(parts, list | tuple) or len(parts) < 2:
-        raise InputError(f"{place} {shown(value)} is not a path: give two points or more, such as 0,0;40,0;40,20.")
+        raise InputError(
+            f"{place} {shown(value)} is not a path: give two points or more, such as 0,0;40,0;40,20."
+        )
     return [point(part, place) for part in parts]
 
 

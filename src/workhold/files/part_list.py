@@ -99,9 +99,13 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
         for entry in entries:
             parts.setdefault(os.path.realpath(entry[2]), entry)
         if len(parts) > MOST_PARTS:
-            raise InputError(f"{path} brings more than {MOST_PARTS:,} parts: give fewer folders, or name the files.")
+            raise InputError(
+                f"{path} brings more than {MOST_PARTS:,} parts: give fewer folders, or name the files."
+            )
     times = Counter(name for name, _, _ in parts.values())
-    return tuple(ListedPart(name if times[name] == 1 else str(typed), file) for name, typed, file in parts.values())
+    return tuple(
+        ListedPart(name if times[name] == 1 else str(typed), file) for name, typed, file in parts.values()
+    )
 
 
 def is_folder(path: Path) -> bool:
@@ -138,7 +142,9 @@ def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
 def natural(name: str) -> tuple[list[tuple[bool, int, str]], str]:
     """A key by which names stand as people count: figures as numbers, capitals like small letters."""
     pieces = re.findall(r"[0-9]{1,18}|[^0-9]+", name)
-    return [(piece[0] > "9", int(piece) if "0" <= piece[0] <= "9" else 0, piece.lower()) for piece in pieces], name
+    return [
+        (piece[0] > "9", int(piece) if "0" <= piece[0] <= "9" else 0, piece.lower()) for piece in pieces
+    ], name
 
 
 def is_own(path: Path) -> bool:
@@ -170,5 +176,7 @@ def read_listed(part: ListedPart, **options: Any) -> ReadPart:
     except InputError as error:
         return ReadPart(part, None, str(error))
     except (ArithmeticError, LookupError, ValueError, RecursionError):
-        sentence = f"{part.path.name}: the file is damaged, or holds what this program cannot read: save it anew."
+        sentence = (
+            f"{part.path.name}: the file is damaged, or holds what this program cannot read: save it anew."
+        )
         return ReadPart(part, None, sentence)

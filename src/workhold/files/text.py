@@ -143,4 +143,6 @@ def refuse_long_numbers(value: Any) -> None:
         raise InputError(f"the file holds a number with more than {MOST_DIGITS} digits: correct it.")
 
 
-DECODER = json.JSONDecoder(parse_constant=refuse_constant, parse_int=whole_number, object_pairs_hook=each_once)
+DECODER = json.JSONDecoder(
+    parse_constant=refuse_constant, parse_int=whole_number, object_pairs_hook=each_once
+)

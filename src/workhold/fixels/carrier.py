@@ -1,21 +1,220 @@
 """What the contacts of a fixture stand on: a lattice of holes, a clamp on a line of holes, or a straight wall.
 
-A carrier is data, and it answers in words and places what drawings, files and sheets need of it.
+A carrier is data, and it answers in words and places what drawings, files and sheets need of it. Holes have names: letter
+of the carrier, column letters, row from 1, such as ``L-B3``; a name without a row is a whole column.
+
+Pegs in the holes are round, or have a flat, which lies on straight faces (Wallack and Canny 1996, section 2.3). Such a peg
+is turned in its hole so that its flat lies on the face: there its centre stands nearer to the part than its radius. On arcs
+it touches with its round side. Where its body may be turned any way, it must be clear of all else.
 """
 
 from __future__ import annotations
 
-from math import cos, sin
+import re
+from collections.abc import Iterable, Mapping
+from functools import cache
+from math import acos, cos, isfinite, nan, pi, radians, sin, sqrt
 from typing import Any, Literal
 
-from attrs import frozen
+from attrs import evolve, field, frozen
 
-from workhold.fixels.contact_kind import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
-from workhold.fixels.directions import TOWARDS
-from workhold.fixels.flat import Flat
-from workhold.fixels.holes import Holes, column_letters, hole_name, letter_of
+from workhold.errors import InputError
+from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, TOWARDS, WALL_END, ContactKind
+from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.limits import real
 
-__all__ = ["WALL", "Carrier", "Measure", "Travel"]
+__all__ = [
+    "WALL",
+    "Carrier",
+    "Flat",
+    "Holes",
+    "Measure",
+    "Travel",
+    "column_letters",
+    "flat_of",
+    "hole_name",
+    "holes_named",
+    "letter_of",
+    "peg_outline",
+    "resolved_flat",
+    "standoff",
+]
+
+# The carrier that is the only one with holes.
+ALONE = "plate"
+NAME = re.compile(r"([A-Z])-?([A-Z]{1,3})([1-9][0-9]{0,8})?")
+
+
+@cache
+def column_letters(column: int) -> str:
+    """Letters of a column counted from 0: A to Z, then AA, AB and so on.
+
+    >>> [column_letters(c) for c in (0, 25, 26, 51, 52)]
+    ['A', 'Z', 'AA', 'AZ', 'BA']
+    """
+    letters = ""
+    column += 1
+    while column:
+        column, rest = divmod(column - 1, 26)
+        letters = chr(ord("A") + rest) + letters
+    return letters
+
+
+def hole_name(carrier: str, column: int, row: int | None) -> str:
+    """The name of a hole, or of a whole column, of a carrier of a name; column and row count from 0.
+
+    >>> hole_name("left", 1, 2), hole_name("right", 0, None), hole_name("plate", 1, 2)
+    ('L-B3', 'R-A', 'B3')
+    """
+    letter = letter_of(carrier)
+    return f"{letter and letter + '-'}{column_letters(column)}{'' if row is None else row + 1}"
+
+
+def letter_of(carrier: str) -> str:
+    """What the names of a carrier's holes begin with; nothing where there is but one lattice."""
+    return "" if carrier == ALONE else carrier[0].upper()
+
+
+@frozen
+class Holes:
+    """A hole of a carrier, or a whole column of them.
+
+    Parameters
+    ----------
+    carrier : its name, such as "left".
+    column : counted from 0.
+    row : counted from 0; None is the whole column.
+    """
+
+    carrier: str
+    column: int
+    row: int | None = None
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        return hole_name(self.carrier, self.column, self.row)
+
+
+def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
+    """The hole or column of a name, as :func:`hole_name` gives it.
+
+    Parameters
+    ----------
+    name : in any mixture of capitals, with or without the hyphen.
+    carriers, noun : the names of the carriers it may be on, and what one of them is called.
+
+    Raises
+    ------
+    InputError
+        When it is no such name.
+
+    Examples
+    --------
+    >>> holes_named("R-A3", ("left", "right"), "jaw")
+    Holes(carrier='right', column=0, row=2)
+    """
+    match = NAME.fullmatch(name.strip().upper())
+    carrier = None if match is None else next((one for one in carriers if letter_of(one) == match[1]), None)
+    if match is None or carrier is None:
+        raise InputError(
+            f"{name!r} names no hole: give {noun}, column letter and row, such as L-B3, or L-B for a whole column."
+        )
+    column = 0
+    for letter in match[2]:
+        column = 26 * column + ord(letter) - ord("A") + 1
+    return Holes(carrier, column - 1, None if match[3] is None else int(match[3]) - 1)
+
+
+# Parts of the peg radius; a width that was rounded when it was written down is one still.
+ROUNDED = 1e-6
+
+
+@frozen
+class Flat:
+    """The flat of a peg.
+
+    Parameters
+    ----------
+    distance : from the peg's centre to its flat, in mm; no more than the peg radius.
+    half_width : of the flat in mm; NaN means all that there is at this distance.
+    """
+
+    distance: float = field(converter=real)
+    half_width: float = field(default=nan, converter=real)
+
+
+def flat_of(value: Any) -> Flat | None:
+    """A flat from what stands for it: its distance, that and half its width, or a mapping of both.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> flat_of({"distance": 2.0, "half_width": 1.5}) == flat_of((2.0, 1.5))
+    True
+    """
+    if value is None or isinstance(value, Flat):
+        return value
+    if isinstance(value, Mapping) and "distance" in value and set(value) <= {"distance", "half_width"}:
+        return Flat(**value)
+    numbers = (
+        tuple(value) if isinstance(value, Iterable) and not isinstance(value, (str, Mapping)) else (value,)
+    )
+    if not 1 <= len(numbers) <= 2 or any(isinstance(number, (str, Mapping)) for number in numbers):
+        raise InputError(
+            f"flat {value!r} is none: give its distance from the peg's centre, and half its width, in mm."
+        )
+    return Flat(*numbers)
+
+
+def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
+    """A flat on a peg of a radius in mm, as wide as it is.
+
+    Raises
+    ------
+    InputError
+        For a flat that such a peg cannot have.
+    """
+    if flat is None:
+        return None
+    if not (isfinite(flat.distance) and 0 <= flat.distance <= peg_radius):
+        raise InputError(
+            f"a flat {flat.distance:g} mm from the centre is none of a peg of radius {peg_radius:g}: give 0 or more, and no "
+            "more than the radius."
+        )
+    widest = sqrt(peg_radius**2 - flat.distance**2)
+    half_width = widest if flat.half_width != flat.half_width else flat.half_width
+    if not 0 <= half_width <= widest + ROUNDED * peg_radius:
+        raise InputError(
+            f"half a width of {half_width:g} mm is none of a flat {flat.distance:g} mm from the centre of a peg of radius "
+            f"{peg_radius:g}: give up to {widest:.4g}."
+        )
+    return evolve(flat, half_width=half_width)
+
+
+def standoff(peg_radius: float, flat: Flat | None, face: Segment) -> float:
+    """Distance in mm from a face to the centre of a peg that touches it."""
+    return flat.distance if flat is not None and isinstance(face, Line) else peg_radius
+
+
+def peg_outline(
+    center: Point, radius: float, flat: Flat | None = None, flat_deg: float | None = None
+) -> list[Segment]:
+    """The outline of a peg in mm, counter-clockwise: a circle, or one cut off by a flat that looks some way, in degrees."""
+    if flat is None or flat_deg is None or flat.distance >= radius:
+        return [Arc(center, radius, 0.0, pi, 1.0)]
+    looks, half = radians(flat_deg), acos(flat.distance / radius)
+    arc = Arc(center, radius, looks + pi, pi - half, 1.0)
+    end, start = (
+        (center[0] + radius * cos(looks + turn), center[1] + radius * sin(looks + turn))
+        for turn in (-half, half)
+    )
+    return [arc, Line(end, start)]
+
 
 # The name of the carrier that is a wall.
 WALL = "wall"
@@ -183,7 +382,11 @@ class Carrier:
             return hole_name(self.name, column, row)
         if self.has_a_hole:
             return f"{self.noun} {hole_name(self.on, column, row)}"
-        return f"{self.noun} row {row + 1}" if self.is_along_x else f"{self.noun} column {column_letters(column)}"
+        return (
+            f"{self.noun} row {row + 1}"
+            if self.is_along_x
+            else f"{self.noun} column {column_letters(column)}"
+        )
 
     @property
     def letter(self) -> str:

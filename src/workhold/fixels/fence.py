@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import ClassVar
 
 from workhold.fixels.carrier import WALL
-from workhold.fixels.directions import DIRECTIONS
+from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import (
     ALL_PAIRS,
     CLAMP_RADIUS,
@@ -147,7 +147,9 @@ class Fence(Plate):
         """A locator, the two ends of the fence's contact and a clamp, once for each direction; or two clamps."""
         names = self.distinct_directions
         if self.clamps == 1:
-            return tuple(Arrangement("edge", (1, 2, *(int(other == name) for other in names)), name) for name in names)
+            return tuple(
+                Arrangement("edge", (1, 2, *(int(other == name) for other in names)), name) for name in names
+            )
         return tuple(
             Arrangement("edge2", (1, 2, *(pair.count(name) for name in names)), " ".join(pair))
             for pair in self.directions

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import combinations_with_replacement
 
-from workhold.fixels.directions import DIRECTIONS, TOWARDS
+from workhold.fixels.contacts import DIRECTIONS, TOWARDS
 from workhold.fixels.table import CLAMPS_SECTION, REQUIRED, Choice, Label, Lifted, ToolkitField
 
 # The names of kinds that people give, and what they are.
@@ -31,7 +31,9 @@ def pair_words(one: str, other: str) -> str:
     if one == other:
         return f"both {TOWARDS[one]}"
     against = "against each other, " if one[1] == other[1] else ""
-    return f"{against}{TOWARDS[one]} and {TOWARDS[other].removeprefix('to the ') if against else TOWARDS[other]}"
+    return (
+        f"{against}{TOWARDS[one]} and {TOWARDS[other].removeprefix('to the ') if against else TOWARDS[other]}"
+    )
 
 
 ONE_CLAMP, TWO_CLAMPS = {"clamps": 1}, {"clamps": 2}

@@ -7,9 +7,8 @@ from functools import cached_property
 from math import pi
 from typing import ClassVar
 
-from workhold.fixels.carrier import WALL
+from workhold.fixels.carrier import WALL, Flat
 from workhold.fixels.fields import FLAT, MAX_OPENING, MIN_GAP, ON_A_PLATE, PEG_RADIUS
-from workhold.fixels.flat import Flat
 from workhold.fixels.making import finer, made_from_table, settle
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import Label, Table
@@ -124,7 +123,9 @@ class FlatJaw(Toolkit):
         size = self.pitch, self.columns, self.rows
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
         wall = Carrier(WALL, *size, 0.0, 0.0, noun="flat jaw", peg="end", is_wall=True)
-        jaw = Carrier("jaw", *size, self.peg_radius, self.peg_radius, travel=travel, noun="jaw", flat=self.flat)
+        jaw = Carrier(
+            "jaw", *size, self.peg_radius, self.peg_radius, travel=travel, noun="jaw", flat=self.flat
+        )
         return wall, jaw
 
     @property

@@ -1,7 +1,7 @@
 """Constructors of toolkits, made from their tables of fields, and what every constructor refuses.
 
 A kind names its fields by annotations alone. What each takes, what stands for nothing given, what it must be at least and
-which limit it sets are in its row of ``fixels.fields``.
+which limit it sets are in its row of ``fixels.fields``. Lattices of holes are held to the same limits in every kind.
 """
 
 from __future__ import annotations
@@ -9,23 +9,95 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import product
-from math import inf, isfinite, isnan
+from math import inf, isfinite, isnan, nan
 from typing import Any, TypeVar
 
 from attrs import NOTHING, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.fixels.directions import DIRECTIONS
-from workhold.fixels.flat import flat_of, resolved_flat
-from workhold.fixels.holes import Holes, holes_named
-from workhold.fixels.lattice import optional_length, pair, refuse_lattice, refuse_many_holes, whole
+from workhold.fixels.carrier import Holes, flat_of, holes_named, resolved_flat
+from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Change, Toolkit
-from workhold.limits import MOST_BLOCKED, refuse_long
-from workhold.real import real
+from workhold.limits import MOST_BLOCKED, MOST_HOLES, real, refuse_long
 
-__all__ = ["finer", "made_from_table", "settle"]
+__all__ = [
+    "finer",
+    "made_from_table",
+    "optional_length",
+    "pair",
+    "refuse_lattice",
+    "refuse_many_holes",
+    "settle",
+    "whole",
+]
+
+
+def pair(value: float | Iterable[float]) -> tuple[float, float]:
+    """One pitch for both directions, or one for x and one for y."""
+    numbers = tuple(value) if isinstance(value, Iterable) else (value, value)
+    if len(numbers) != 2:
+        raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
+    return real(numbers[0]), real(numbers[1])
+
+
+def whole(value: Any) -> Any:
+    """A whole number as an int; None and anything else as it is, to be looked at later."""
+    return int(value) if isfinite(real(value)) and value == int(value) else value
+
+
+def optional_length(value: float | None) -> float:
+    """A length, or NaN (which the vise resolves) for None."""
+    return nan if value is None else inf if isnan(real(value)) else real(value)
+
+
+def refuse_lattice(
+    pitch: tuple[float, float], columns: int | None, rows: int | None, peg_radius: float, noun: str, peg: str
+) -> None:
+    """Refuse a lattice that cannot be, and pegs too fat for neighbouring holes.
+
+    Parameters
+    ----------
+    noun, peg : what the lattice and what stands in its holes are called.
+
+    Raises
+    ------
+    InputError
+        Naming the value.
+    """
+    for value in pitch:
+        if not (isfinite(value) and value > 0):
+            raise InputError(
+                f"pitch {value} is not a positive length: give the distance between holes in mm."
+            )
+    for name, count in (("columns", columns), ("rows", rows)):
+        if count is not None and (not isinstance(count, int) or count < 1):
+            raise InputError(f"{name} {count} is not a positive whole number: a {noun} needs at least one.")
+    if not (isfinite(peg_radius) and peg_radius >= 0):
+        raise InputError(f"peg radius {peg_radius} is not a length: give 0 or more, in mm.")
+    if 2 * peg_radius > min(pitch):
+        raise InputError(
+            f"{peg}s of radius {peg_radius:g} overlap in neighbouring holes {min(pitch):g} apart: use a smaller {peg} or a "
+            "larger pitch."
+        )
+
+
+def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
+    """Refuse more holes than can be looked through.
+
+    Raises
+    ------
+    InputError
+        With their number and the limit.
+    """
+    holes = (columns or 1) * (rows or 1)
+    if holes > MOST_HOLES:
+        raise InputError(
+            f"a {noun} of {holes:,} holes is beyond the {MOST_HOLES:,} this program takes: give fewer columns or rows, as "
+            "many as the part can reach."
+        )
+
 
 Kind = TypeVar("Kind", bound=type[Toolkit])
 
@@ -114,11 +186,15 @@ def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
     pairs = [tuple(one) if isinstance(one, Iterable) else (one,) for one in names]
     for two in pairs:
         if len(two) != 2:
-            raise InputError(f"{two} is no pair of directions: give two for the two clamps, such as ('-x', '-y').")
+            raise InputError(
+                f"{two} is no pair of directions: give two for the two clamps, such as ('-x', '-y')."
+            )
         for name in two:
             refuse_direction(name)
     every = product(DIRECTIONS, repeat=2)
-    return tuple(one for one in every if one in {tuple(sorted(two, key=list(DIRECTIONS).index)) for two in pairs})
+    return tuple(
+        one for one in every if one in {tuple(sorted(two, key=list(DIRECTIONS).index)) for two in pairs}
+    )
 
 
 def refuse_direction(name: Any) -> None:
@@ -130,7 +206,9 @@ def refuse_direction(name: Any) -> None:
         Naming those that are.
     """
     if not isinstance(name, str) or name not in DIRECTIONS:
-        raise InputError(f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}.")
+        raise InputError(
+            f"direction {name!r} is none in which a clamp moves: choose among {', '.join(DIRECTIONS)}."
+        )
 
 
 CONVERTERS: dict[str, Callable[[Any], Any]] = {
@@ -223,7 +301,10 @@ def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
         if rows is not None and holes.row is not None and holes.row >= rows:
             raise InputError(f"hole {holes.name} is blocked, but each {noun} has only {rows} rows.")
     for carrier in row.carriers:
-        if len({holes.column for holes in blocked if holes.carrier == carrier and holes.row is None}) == columns:
+        if (
+            len({holes.column for holes in blocked if holes.carrier == carrier and holes.row is None})
+            == columns
+        ):
             raise InputError(f"every column of the {carrier} {noun} is blocked: leave at least one.")
 
 

@@ -15,9 +15,9 @@ from typing import Any, ClassVar
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.fixels.directions import DIRECTIONS
+from workhold.fixels.carrier import Flat
+from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import CLAMP_RADIUS, CLAMPS, DIRECTION, FLAT, ON_A_PLATE, TRAVEL
-from workhold.fixels.flat import Flat
 from workhold.fixels.making import finer, made_from_table, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import Table
@@ -129,7 +129,9 @@ class Plate(Toolkit):
         names = self.directions
         if self.clamps == 1:
             if any(not isinstance(name, str) for name in names):
-                raise InputError("the directions are pairs, but there is one clamp: give two clamps, or no pairs.")
+                raise InputError(
+                    "the directions are pairs, but there is one clamp: give two clamps, or no pairs."
+                )
             return names or self.usual_directions
         if not names:
             return self.usual_pairs
@@ -150,14 +152,18 @@ class Plate(Toolkit):
         """The directions that clamps have, without those that half a turn of the plate makes of another one."""
         if self.clamps == 2:
             return tuple(name for name in DIRECTIONS if any(name in pair for pair in self.distinct_pairs))
-        return tuple(name for name in self.directions if not (name[0] == "+" and f"-{name[1]}" in self.directions))
+        return tuple(
+            name for name in self.directions if not (name[0] == "+" and f"-{name[1]}" in self.directions)
+        )
 
     @property
     def distinct_pairs(self) -> tuple[tuple[str, str], ...]:
         """The pairs of directions without those that half a turn of the plate makes of another one."""
         out: list[tuple[str, str]] = []
         for one, other in self.directions:
-            if {(turned_half(one), turned_half(other)), (turned_half(other), turned_half(one))}.isdisjoint(out):
+            if {(turned_half(one), turned_half(other)), (turned_half(other), turned_half(one))}.isdisjoint(
+                out
+            ):
                 out.append((one, other))
         return tuple(out)
 
@@ -166,7 +172,9 @@ class Plate(Toolkit):
         """Three locators and a clamp, once for each direction; or two clamps, once for each pair of directions."""
         names = self.distinct_directions
         if self.clamps == 1:
-            return tuple(Arrangement("clamp", (3, *(int(other == name) for other in names)), name) for name in names)
+            return tuple(
+                Arrangement("clamp", (3, *(int(other == name) for other in names)), name) for name in names
+            )
         return tuple(
             Arrangement("clamp2", (3, *(pair.count(name) for name in names)), " ".join(pair))
             for pair in self.distinct_pairs

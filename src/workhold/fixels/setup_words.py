@@ -10,8 +10,7 @@ from typing import Any
 
 from attrs import frozen
 
-from workhold.fixels.carrier import Carrier
-from workhold.fixels.holes import column_letters, hole_name
+from workhold.fixels.carrier import Carrier, column_letters, hole_name
 
 __all__ = ["Datum", "PageWords", "SetupWords"]
 

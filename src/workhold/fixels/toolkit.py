@@ -23,9 +23,8 @@ from numpy.typing import NDArray
 
 from workhold.delegates import delegate
 from workhold.errors import InputError
-from workhold.fixels.arrangement import Arrangement, Symmetry
 from workhold.fixels.carrier import Carrier, Travel
-from workhold.fixels.contact_kind import CLAMP_TIP, ContactKind
+from workhold.fixels.contacts import CLAMP_TIP, Arrangement, ContactKind, Symmetry
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import Table, ToolkitField
 from workhold.units import Unit
@@ -53,7 +52,7 @@ class Wording:
     sets : what holds the part together, in the plural.
     clear : the rule that is asked last of what holds the part beside a wall.
     reasons : why it holds nothing, from what is asked first to what is asked last; empty for the usual ones
-        (``model.notes``).
+        (``model.search_report``).
     """
 
     two: str
@@ -141,7 +140,7 @@ class Toolkit:
 
     @property
     def law(self) -> str:
-        """The name of the law by which the time of a search grows, see ``batch.estimate``."""
+        """The name of the law by which the time of a search grows, see ``batch.durations``."""
         raise NotImplementedError
 
     @property
@@ -310,7 +309,9 @@ class Toolkit:
     def arrangements_counted(self, arrangement: NDArray[Any]) -> dict[str, int]:
         """How many fixtures there are of each arrangement, from the indices (N,) of theirs."""
         counts = dict.fromkeys(self.types, 0)
-        for one, count in zip(self.arrangements, np.bincount(arrangement, minlength=1).tolist(), strict=False):
+        for one, count in zip(
+            self.arrangements, np.bincount(arrangement, minlength=1).tolist(), strict=False
+        ):
             counts[one.name] += count
         return counts
 
@@ -334,17 +335,29 @@ class Toolkit:
     def arrangement_numbers(self, standing: NDArray[Any]) -> NDArray[np.int64]:
         """The indices (N,) of the arrangements with so many pegs (N,) on the carrier that stands still."""
         pegs = [one.pegs[0] for one in self.arrangements]
-        return np.asarray(np.array([pegs.index(k) if k in pegs else -1 for k in range(max(pegs) + 1)])[standing])
+        return np.asarray(
+            np.array([pegs.index(k) if k in pegs else -1 for k in range(max(pegs) + 1)])[standing]
+        )
 
     def places(
-        self, arrangement: NDArray[Any], column: NDArray[Any], row: NDArray[Any], travelled: NDArray[np.float64]
+        self,
+        arrangement: NDArray[Any],
+        column: NDArray[Any],
+        row: NDArray[Any],
+        travelled: NDArray[np.float64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """x and y (N, K) in mm of the holes of N fixtures; column and row are (N, K), arrangement (N,), and travelled (N,),
         or (N, M) of each of the last M pegs."""
-        moved = np.broadcast_to(travelled[:, None], column.shape) if travelled.ndim == 1 else np.zeros(column.shape)
+        moved = (
+            np.broadcast_to(travelled[:, None], column.shape)
+            if travelled.ndim == 1
+            else np.zeros(column.shape)
+        )
         if travelled.ndim > 1:
             moved[:, -travelled.shape[1] :] = travelled
-        offset, pitch = (np.array([getattr(one, name) for one in self.carriers]) for name in ("offset", "pitch"))
+        offset, pitch = (
+            np.array([getattr(one, name) for one in self.carriers]) for name in ("offset", "pitch")
+        )
         unit = np.array([(0.0, 0.0) if one.travel is None else one.travel.unit for one in self.carriers])
         carriers = np.array([one.carriers for one in self.arrangements])
 

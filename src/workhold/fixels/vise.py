@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from attrs import evolve
 
+from workhold.fixels.carrier import Flat, Holes
 from workhold.fixels.fields import (
     BLOCKED,
     BODY_RADIUS,
@@ -19,8 +20,6 @@ from workhold.fixels.fields import (
     ROW_OFFSET,
     ROWS,
 )
-from workhold.fixels.flat import Flat
-from workhold.fixels.holes import Holes
 from workhold.fixels.making import made_from_table, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import Table
@@ -162,7 +161,9 @@ class Vise(Toolkit):
             yield Change(f"with the right jaw's rows offset by {words(offset)}", {"row_offset": offset})
         if min(self.pitch) >= 4 * self.peg_radius:
             half = (self.pitch[0] / 2, self.pitch[1] / 2)
-            yield Change("with half the pitch", {"pitch": half, "min_gap": min(self.min_gap, half[0]), "blocked": ()})
+            yield Change(
+                "with half the pitch", {"pitch": half, "min_gap": min(self.min_gap, half[0]), "blocked": ()}
+            )
 
 
 @made_from_table

@@ -1,12 +1,30 @@
-"""Convex hull of points."""
+"""Convex hulls: of points, and the hull edges of an outline, on which it can lie flush.
+
+Hull edges are the straight pieces of the boundary of an outline's convex hull. Each is a common tangent of
+two corners, of a corner and a convex arc, or of two convex arcs, and has everything on its left. All pairs
+are looked at, so none is missed. Tangents of which one is a part of another, up to the rounding of a drawing,
+are one edge: it may run over several faces and the gaps between them.
+
+Glossary
+--------
+support : how far an outline reaches in a direction, the largest scalar product of a point with a unit vector.
+piece : a joint of two faces, or a convex arc, which supports in the directions of its normals.
+end : where a hull edge ends: at a corner, at the end of a face that lies along it, or where an arc leaves it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from math import hypot
 
-from workhold.geometry.segment import Point
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
 
-__all__ = ["convex_hull"]
+from workhold.conventions import LEAST_HULL_EDGE, TOUCHING
+from workhold.geometry.segment import Arc, Line, Point, Segment
+
+__all__ = ["HullEdge", "HullEnd", "convex_hull", "hull_edges"]
 
 
 def convex_hull(points: Iterable[Point]) -> list[Point]:
@@ -38,3 +56,203 @@ def half_hull(ordered: list[Point]) -> list[Point]:
             chain.pop()
         chain.append((x, y))
     return chain
+
+
+Array = NDArray[np.float64]
+
+# Pieces that are paired with all others at a time.
+BLOCK = 256
+
+
+@frozen
+class HullEnd:
+    """An end of a hull edge.
+
+    Parameters
+    ----------
+    point : in mm.
+    faces : indices of the faces that meet there: one that lies along the edge or is an arc, or the two of a corner.
+    center, radius : of the arc in mm; the point itself and 0 where there is none.
+    along : whether the face lies along the edge.
+    """
+
+    point: Point
+    faces: tuple[int, ...]
+    center: Point
+    radius: float
+    along: bool
+
+
+@frozen
+class HullEdge:
+    """A hull edge, run through with the outline on its left."""
+
+    start: HullEnd
+    end: HullEnd
+
+    @property
+    def length(self) -> float:
+        """Length in mm."""
+        (ax, ay), (bx, by) = self.start.point, self.end.point
+        return hypot(bx - ax, by - ay)
+
+    @property
+    def tangent(self) -> Point:
+        """Unit vector from start to end."""
+        (ax, ay), (bx, by) = self.start.point, self.end.point
+        return (bx - ax) / self.length, (by - ay) / self.length
+
+    def height(self, point: Point) -> float:
+        """How far in mm a point is to the left of the edge's line."""
+        (x, y), (tx, ty) = self.start.point, self.tangent
+        return (point[1] - y) * tx - (point[0] - x) * ty
+
+
+@frozen(eq=False)
+class HullPieces:
+    """N pieces of an outline that may lie on its hull.
+
+    Parameters
+    ----------
+    center, radius : (N, 2) and (N,), in mm.
+    middle : unit vectors (N, 2) to the middles of arcs.
+    cosine : (N,) of half their sweeps; -2 for a joint, which supports in every direction.
+    faces : those that each piece is of.
+    """
+
+    center: Array
+    radius: Array
+    middle: Array
+    cosine: Array
+    faces: tuple[tuple[int, ...], ...]
+
+    @classmethod
+    def of(cls, segments: Sequence[Segment]) -> HullPieces:
+        """The pieces of a closed chain of segments that may lie on its hull."""
+        joints: dict[Point, tuple[int, ...]] = {}
+        rows: list[tuple[float, ...]] = []
+        faces: list[tuple[int, ...]] = []
+        for k, segment in enumerate(segments):
+            if not (isinstance(segment, Arc) and segment.is_full):
+                joints[segment.start] = ((k - 1) % len(segments), k)
+            if isinstance(segment, Arc) and segment.sign > 0:
+                middle = np.cos(segment.mid_angle), np.sin(segment.mid_angle)
+                cosine = -2.0 if segment.is_full else np.cos(segment.half_sweep)
+                rows.append((*segment.center, segment.radius, *middle, cosine))
+                faces.append((k,))
+        for point in convex_hull(joints):
+            rows.append((*point, 0.0, 1.0, 0.0, -2.0))
+            faces.append(joints[point])
+        table = np.array(rows).reshape(-1, 6)
+        return cls(table[:, :2], table[:, 2], table[:, 3:5], table[:, 5], tuple(faces))
+
+    def supports(self, normal: Array, chosen: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.bool_]:
+        """Whether pieces support in directions, unit vectors (..., 2)."""
+        along = (normal * self.middle[chosen]).sum(axis=-1)
+        return np.asarray(along >= self.cosine[chosen])
+
+
+def tangents(pieces: HullPieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
+    """Common tangents of all pairs with both pieces on their left: indices (M,) at start and end, outward normals (M, 2).
+
+    With D from one centre to the other and n the outward normal, n . D is the difference of the radii, and D runs forward.
+    """
+    count = len(pieces.radius)
+    for first in range(0, count, BLOCK):
+        one = np.arange(first, min(first + BLOCK, count))
+        step = pieces.center[None, :] - pieces.center[one][:, None]
+        across = pieces.radius[one][:, None] - pieces.radius[None, :]
+        square = (step * step).sum(axis=2)
+        ahead = np.sqrt(np.maximum(square - across * across, 0.0))
+        start, end = np.nonzero(ahead >= LEAST_HULL_EDGE)
+        step, across, ahead, square = (v[start, end] for v in (step, across, ahead, square))
+        tangent = np.stack(
+            [ahead * step[:, 0] - across * step[:, 1], across * step[:, 0] + ahead * step[:, 1]], axis=1
+        )
+        tangent /= square[:, None]
+        # n = (t_y, -t_x), so that D . n is ``across``.
+        normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
+        good = pieces.supports(normal, one[start]) & pieces.supports(normal, end)
+        yield one[start[good]], end[good], normal[good]
+
+
+def farthest(pieces: HullPieces, normal: Array) -> Array:
+    """Supports (M,) in mm of all pieces together in directions (M, 2)."""
+    out = np.empty(len(normal))
+    for first in range(0, len(normal), BLOCK):
+        block = slice(first, first + BLOCK)
+        reach = normal[block] @ pieces.center.T + pieces.radius
+        there = pieces.supports(normal[block][:, None])
+        out[block] = np.where(there, reach, -np.inf).max(axis=1, initial=-np.inf)
+    return out
+
+
+def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
+    """The hull edges of an outline, those of the lowest faces first.
+
+    Parameters
+    ----------
+    segments : the outer loop's faces, a closed chain with material on the left.
+
+    Examples
+    --------
+    >>> from workhold.geometry.segment import Line
+    >>> points = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]
+    >>> outline = [Line(a, b) for a, b in zip(points, points[1:] + points[:1])]
+    >>> [(edge.start.faces, edge.end.faces) for edge in hull_edges(outline)]
+    [((0,), (0,)), ((1,), (1,)), ((1, 2), (3, 4)), ((4,), (4,)), ((5,), (5,))]
+    """
+    pieces = HullPieces.of(segments)
+    found: list[HullEdge] = []
+    for start, end, normal in tangents(pieces):
+        level = (pieces.center[start] * normal).sum(axis=1) + pieces.radius[start]
+        good = np.flatnonzero(farthest(pieces, normal) <= level + TOUCHING)
+        for k in good.tolist():
+            ends = [end_of(pieces, number, normal[k]) for number in (int(start[k]), int(end[k]))]
+            found.append(HullEdge(*ends))
+    # Longest first, and of equal ones those between corners, where a face ends at a tangent joint.
+    found.sort(
+        key=lambda edge: (-round(edge.length, 6), edge.start.radius + edge.end.radius, edge.start.faces)
+    )
+    kept: list[HullEdge] = []
+    for edge in found:
+        if edge.length >= LEAST_HULL_EDGE and not any(is_part(edge, other) for other in kept):
+            kept.append(edge)
+    with_faces = [with_faces_along(edge, segments) for edge in kept]
+    return tuple(sorted(with_faces, key=lambda edge: (edge.start.faces[-1], edge.end.faces)))
+
+
+def end_of(pieces: HullPieces, number: int, normal: Array) -> HullEnd:
+    """The end of a hull edge on a piece."""
+    (x, y), radius = pieces.center[number].tolist(), float(pieces.radius[number])
+    nx, ny = normal.tolist()
+    return HullEnd((x + radius * nx, y + radius * ny), pieces.faces[number], (x, y), radius, along=False)
+
+
+def is_part(edge: HullEdge, other: HullEdge) -> bool:
+    """Whether a hull edge lies on a longer one, up to the rounding of a drawing."""
+    (x, y), (tx, ty) = other.start.point, other.tangent
+    for px, py in (edge.start.point, edge.end.point):
+        ahead = (px - x) * tx + (py - y) * ty
+        if (
+            abs(other.height((px, py))) > 2 * TOUCHING
+            or not -2 * TOUCHING <= ahead <= other.length + 2 * TOUCHING
+        ):
+            return False
+    (ax, ay), (bx, by) = edge.start.point, edge.end.point
+    return (bx - ax) * tx + (by - ay) * ty > 0
+
+
+def with_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
+    """A hull edge of which an end at a corner belongs to the face that lies along the edge there, if one does."""
+    ends = []
+    # Outline and edge run the same way: at its start the face after the corner may lie along it, at its end the one before.
+    for end, index in ((edge.start, -1), (edge.end, 0)):
+        face = segments[end.faces[index]]
+        lies = isinstance(face, Line) and all(
+            abs(edge.height(p)) <= 2 * TOUCHING for p in (face.start, face.end)
+        )
+        if end.radius == 0.0 and lies:
+            end = HullEnd(end.point, (end.faces[index],), end.center, 0.0, along=True)
+        ends.append(end)
+    return HullEdge(*ends)

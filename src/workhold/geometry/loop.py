@@ -1,33 +1,54 @@
-"""Closed loops of segments: building them from vertices, their direction, and what is refused.
+"""Closed loops of segments: building them from vertices, their direction, what is refused, and their faces.
 
 Glossary
 --------
-vertices : (N, 3) rows x, y, bulge; segment k runs from vertex k to vertex k + 1, the last one back to vertex 0.
+vertices : (N, 3) rows x, y, bulge; segment k runs from vertex k to vertex k + 1, the last one back to vertex
+    0.
 joint : the common end of two neighbouring segments of a loop.
 place : words that say where something is, such as ``loop 0, segment 3 (LINE 2F)``.
+face : a run of neighbouring segments that continue the same line or the same circle.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
-from math import hypot, pi, sin
+from math import atan2, hypot, pi, sin
 
 import numpy as np
-from attrs import define
+from attrs import define, evolve, frozen
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.conventions import MEETS_AGAIN, READING, SAME_CARRIER, SAME_DIRECTION, SHORTEST, STRAIGHT, TOUCHING
+from workhold.conventions import (
+    MEETS_AGAIN,
+    READING,
+    SAME_CARRIER,
+    SAME_DIRECTION,
+    SHORTEST,
+    STRAIGHT,
+    TOUCHING,
+    WHOLE,
+)
 from workhold.errors import InputError
-from workhold.geometry.intersect import bounding_box, common_points
-from workhold.geometry.segment import Arc, Line, Point, Segment, segment_from_bulge, segment_rows
+from workhold.geometry.segment import (
+    Arc,
+    Line,
+    Point,
+    Segment,
+    bounding_box,
+    common_points,
+    segment_from_bulge,
+    segment_rows,
+)
 from workhold.kernels.base.distance import turns_around
 from workhold.limits import MOST_LENGTH, MOST_RADIUS
 
 __all__ = [
+    "Face",
     "LoopShape",
     "checked_vertices",
     "encloses",
+    "faces_of_loop",
     "loop_segments",
     "near_pairs",
     "refuse_meeting_loops",
@@ -95,10 +116,14 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
             f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
         ) from error
     if array.ndim != 2 or array.shape[1] != 3:
-        raise InputError(f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex.")
+        raise InputError(
+            f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
+        )
     bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
     if bad.size:
-        raise InputError(f"{place(int(bad[0]))} has a coordinate or bulge that is not a finite number: correct it.")
+        raise InputError(
+            f"{place(int(bad[0]))} has a coordinate or bulge that is not a finite number: correct it."
+        )
     if len(array) < 2 or (len(array) == 2 and not array[:, 2].any()):
         raise InputError(
             f"{loop} has too few segments to enclose an area: it needs three lines, or two segments with an arc."
@@ -153,7 +178,9 @@ def loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:
     """Segments of a loop given by (N, 3) vertices."""
     points = [(float(x), float(y)) for x, y in vertices[:, :2]]
     ends = points[1:] + points[:1]
-    return tuple(segment_from_bulge(p, q, float(b)) for p, q, b in zip(points, ends, vertices[:, 2], strict=True))
+    return tuple(
+        segment_from_bulge(p, q, float(b)) for p, q, b in zip(points, ends, vertices[:, 2], strict=True)
+    )
 
 
 def signed_area(segments: Sequence[Segment]) -> float:
@@ -269,3 +296,50 @@ def same_carrier(a: Segment, b: Segment) -> bool:
         apart = hypot(a.center[0] - b.center[0], a.center[1] - b.center[1])
         return apart < SAME_CARRIER and abs(a.radius - b.radius) < SAME_CARRIER and a.sign == b.sign
     return False
+
+
+# A whole circle has no joint, yet its parameter must start somewhere: at a direction no drawing is likely to use.
+SEAM_ANGLE = 2.2360679775 + pi
+
+
+@frozen
+class Face:
+    """A straight or circular side of the workpiece.
+
+    Parameters
+    ----------
+    number : the smallest number among its segments; it names the face.
+    segments : the numbers of its segments, in running order.
+    segment : the whole face as one segment.
+    """
+
+    number: int
+    segments: tuple[int, ...]
+    segment: Segment
+
+
+def merged(run: Sequence[Segment]) -> Segment:
+    """One segment for a run of segments of the same line or circle."""
+    first = run[0]
+    if len(run) == 1:
+        return first
+    if isinstance(first, Line):
+        return Line(first.start, run[-1].end)
+    half_sweep = sum(s.half_sweep for s in run if isinstance(s, Arc))
+    if half_sweep > pi - WHOLE:
+        return Arc(first.center, first.radius, SEAM_ANGLE - pi, pi, first.sign)
+    start = atan2(first.start[1] - first.center[1], first.start[0] - first.center[0])
+    return evolve(first, mid_angle=start + first.sign * half_sweep, half_sweep=half_sweep)
+
+
+def faces_of_loop(segments: Sequence[Segment], first_number: int) -> list[Face]:
+    """Faces of one loop whose segments are numbered from ``first_number``; ordered by their numbers."""
+    count = len(segments)
+    starts = [k for k in range(count) if not same_carrier(segments[k - 1], segments[k])] or [0]
+    faces = []
+    for position, start in enumerate(starts):
+        stop = starts[position + 1] if position + 1 < len(starts) else starts[0] + count
+        run = [k % count for k in range(start, stop)]
+        numbers = tuple(first_number + k for k in run)
+        faces.append(Face(min(numbers), numbers, merged([segments[k] for k in run])))
+    return sorted(faces, key=lambda face: face.number)

@@ -20,8 +20,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.conventions import CLEARANCE, FILLED
-from workhold.geometry.intersect import bounding_box, carrier_intersections, circle_circle, line_circle
-from workhold.geometry.segment import Arc, Line, Point, Segment, segment_rows
+from workhold.geometry.segment import (
+    Arc,
+    Line,
+    Point,
+    Segment,
+    bounding_box,
+    carrier_intersections,
+    circle_circle,
+    line_circle,
+    segment_rows,
+)
 from workhold.kernels.base.distance import is_inside, outline_distances
 
 __all__ = ["clear_parts", "raw_offset", "trimmed_offsets"]
@@ -38,7 +47,9 @@ def raw_offset(segment: Segment, radius: float) -> Segment | None:
     return segment.grown(segment.sign * radius)
 
 
-def cut_points(piece: Segment, others: Sequence[Segment], joints: Sequence[Point], radius: float) -> list[Point]:
+def cut_points(
+    piece: Segment, others: Sequence[Segment], joints: Sequence[Point], radius: float
+) -> list[Point]:
     """Points at which a raw piece may enter or leave the boundary."""
     points: list[Point] = []
     for other in others:
@@ -51,7 +62,9 @@ def cut_points(piece: Segment, others: Sequence[Segment], joints: Sequence[Point
     return points
 
 
-def trimmed_offsets(segments: Sequence[Segment], radius: float, flat: float | None = None) -> list[tuple[int, Segment]]:
+def trimmed_offsets(
+    segments: Sequence[Segment], radius: float, flat: float | None = None
+) -> list[tuple[int, Segment]]:
     """The boundary pieces of (part + disc of ``radius`` mm) that face the segments, without the rolled corners.
 
     Parameters

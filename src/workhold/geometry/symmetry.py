@@ -1,7 +1,8 @@
-"""Rotations and mirror images that carry an outline onto itself.
+"""Vectors of the plane turned, and the rotations and mirror images that carry an outline onto itself.
 
-The rotations form a cyclic group (those of a bounded figure do; H. S. M. Coxeter, *Introduction to Geometry*, 1969, section
-2.7), so the smallest of them makes all others by being repeated; and one mirror image makes all others by being turned.
+The rotations form a cyclic group (those of a bounded figure do; H. S. M. Coxeter, *Introduction to Geometry*,
+1969, section 2.7), so the smallest of them makes all others by being repeated; and one mirror image makes all
+others by being turned.
 """
 
 from __future__ import annotations
@@ -9,16 +10,35 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from math import gcd, tau
+from typing import Any
 
 import numpy as np
 from attrs import define, evolve
 from numpy.typing import NDArray
 
 from workhold.conventions import SAME_AFTER_TURN
-from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
-__all__ = ["Rotation", "centroid_of_joints", "is_own_mirror_image", "middle_of", "rotations_onto_itself", "symmetries"]
+__all__ = [
+    "Rotation",
+    "centroid_of_joints",
+    "is_own_mirror_image",
+    "middle_of",
+    "rotated",
+    "rotations_onto_itself",
+    "symmetries",
+]
+
+
+def rotated(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
+    """Vectors turned counter-clockwise by an angle in radians; numbers or arrays of them, of shapes that go together.
+
+    >>> [round(float(v), 12) for v in rotated(3.0, 1.0, np.pi / 2)]
+    [-1.0, 3.0]
+    """
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return cosine * x - sine * y, sine * x + cosine * y
+
 
 Array = NDArray[np.float64]
 
@@ -115,7 +135,8 @@ class CenteredOutline:
         level, order = other.levels
         # The anchor of an image is at most so far off, and so is its level, the direction being no longer than 1.
         first, end = (
-            np.searchsorted(level, turned[:, 0] @ ALONG + hair) for hair in (-SAME_AFTER_TURN, SAME_AFTER_TURN)
+            np.searchsorted(level, turned[:, 0] @ ALONG + hair)
+            for hair in (-SAME_AFTER_TURN, SAME_AFTER_TURN)
         )
         found = np.full(len(turned), -1)
         for step in range(int((end - first).max(initial=0))):

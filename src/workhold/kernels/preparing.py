@@ -15,13 +15,18 @@ from typing import Any
 
 import numpy as np
 
-from workhold.kernels.base.capsule import piece_distances
-from workhold.kernels.base.distance import is_inside, outline_distances, turns_around
+from workhold.kernels.base.distance import is_inside, outline_distances, piece_distances, turns_around
 from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Lattice, Limits, Setting
 from workhold.kernels.chord.coincidences import are_concentric
+from workhold.kernels.chord.columns import (
+    CURVE_INTEGERS,
+    CURVE_REALS,
+    SLIDING_PAIR_REALS,
+    Curves,
+    SlidingPairs,
+)
 from workhold.kernels.chord.stretches import STRETCH_LENGTH
-from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
 from workhold.kernels.contact.clamp_pairs import (
     CLAMP_LENGTH,
     HOLE_LENGTH,
@@ -30,13 +35,14 @@ from workhold.kernels.contact.clamp_pairs import (
     closures_of,
     pairs_of,
 )
-from workhold.kernels.contact.equations import WORK_LENGTH
-from workhold.kernels.contact.record import RECORD_LENGTH
-from workhold.kernels.crossing.sliding_pairs import sliding_three_and_one, sliding_two_and_two
-from workhold.kernels.crossing.three_and_one import three_and_one_cells
-from workhold.kernels.crossing.two_and_two import STATISTICS, two_and_two_cells
-from workhold.kernels.curves.columns import CURVE_INTEGERS, CURVE_REALS, SLIDING_PAIR_REALS, Curves, SlidingPairs
+from workhold.kernels.contact.contact_matrix import contact_matrices_of
+from workhold.kernels.contact.quality import LOAD_LENGTH, figures
+from workhold.kernels.contact.record import RECORD_LENGTH, WORK_LENGTH
+from workhold.kernels.curves.sliding_pairs import sliding_three_and_one, sliding_two_and_two
 from workhold.kernels.curves.table import tail_curves
+from workhold.kernels.curves.three_and_one import three_and_one_cells
+from workhold.kernels.curves.two_and_two import STATISTICS, two_and_two_cells
+from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
 from workhold.kernels.proof.newton_kantorovich import certified
 from workhold.kernels.seating.candidates import (
@@ -47,7 +53,7 @@ from workhold.kernels.seating.candidates import (
     judge_balance,
     settle,
 )
-from workhold.kernels.seating.closing import close_jaws
+from workhold.kernels.seating.closing import close_jaws, reach_out
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
     CELL_LENGTH,
@@ -61,30 +67,39 @@ from workhold.kernels.seating.columns import (
     Obstacles,
     SelfMotions,
 )
-from workhold.kernels.seating.concentric import about_one_center
-from workhold.kernels.seating.configuration_slices import free_poses
-from workhold.kernels.seating.descent_paths import begin_descents, free_until, take_up
-from workhold.kernels.seating.equilibrium_manifolds import first_sets, write_beyond, write_each_once
+from workhold.kernels.seating.descent_paths import (
+    begin_descents,
+    free_until,
+    leads_out,
+    take_up,
+    write_places,
+)
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
+from workhold.kernels.seating.free_space import free_poses, leave
 from workhold.kernels.seating.freedom import first_of_each, free_runs, keep_free
-from workhold.kernels.seating.leaving import leave
-from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
-from workhold.kernels.seating.parallel import ALPHA, THREE_FACES, at_tangencies, on_three_faces, tangent_chords
-from workhold.kernels.seating.pieces import clearances
-from workhold.kernels.seating.places import leads_out, write_places
-from workhold.kernels.seating.pocketed import tip_in_pocket
-from workhold.kernels.seating.reaching import reach_out
-from workhold.kernels.seating.silhouettes import cover_same
+from workhold.kernels.seating.gathering import (
+    GATHERED_LENGTH,
+    SUBSET_LENGTH,
+    first_sets,
+    gathered,
+    write_beyond,
+    write_each_once,
+)
+from workhold.kernels.seating.obstacles import clearances, cover_same
+from workhold.kernels.seating.parallel_and_concentric import (
+    ALPHA,
+    THREE_FACES,
+    about_one_center,
+    at_tangencies,
+    on_three_faces,
+    tangent_chords,
+)
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_blocked, slides_held, slides_squared
-from workhold.kernels.seating.standing import Stood, stationary
 from workhold.kernels.seating.sticking import least_friction
-from workhold.kernels.seating.subset_candidates import GATHERED_LENGTH, SUBSET_LENGTH, gathered
-from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
+from workhold.kernels.seating.three_contacts import MIDDLE_LENGTH, ROOT_LENGTH, three_contacts, write_middles
 from workhold.kernels.seating.turning import SHAPE_LENGTH
 from workhold.kernels.seating.two_contact_curves import make_cells
-from workhold.kernels.statics.contact_matrix import contact_matrices_of
-from workhold.kernels.statics.quality import figures
-from workhold.kernels.statics.reactions import LOAD_LENGTH
+from workhold.kernels.seating.wall_equilibria import Stood, stationary, tip_in_pocket
 
 # Numbers of a configuration.
 CONFIGURATION = 4
@@ -111,7 +126,12 @@ def crossings_and_pairs() -> Calls:
 
 def matrices_and_figures() -> Calls:
     """Kernels after the search that share hardly any with others."""
-    none, whole, fours, pairs = np.zeros(0, np.int64), np.zeros((0, 4), np.int64), np.zeros((0, 4)), np.zeros((0, 4, 2))
+    none, whole, fours, pairs = (
+        np.zeros(0, np.int64),
+        np.zeros((0, 4), np.int64),
+        np.zeros((0, 4)),
+        np.zeros((0, 4, 2)),
+    )
     yield to_canonical_form, (none, np.zeros(0), whole, whole, whole, 2, 0.0)
     given = (
         pairs,
@@ -133,11 +153,20 @@ def matrices_and_figures() -> Calls:
 def table_and_proof() -> Calls:
     """Most of the kernels that come before and after the search."""
     none, features = np.zeros(0, np.int64), np.zeros((1, SEGMENT_LENGTH))
-    records, checked, outline = (np.zeros((0, width)) for width in (RECORD_LENGTH, FEATURE_LENGTH, SEGMENT_LENGTH))
+    records, checked, outline = (
+        np.zeros((0, width)) for width in (RECORD_LENGTH, FEATURE_LENGTH, SEGMENT_LENGTH)
+    )
     outline.setflags(write=False)
     setting = Setting(LATTICE, LIMITS, 0.0, 0.0, 0.0)
-    yield tail_curves, (0, features, np.zeros(1, np.int64), np.zeros(0), none, np.zeros((0, 2), np.int64), np.zeros(0))
-    work, fours, pairs = (np.zeros((WORK_LENGTH, 4)), np.zeros((2, 4, 2))), np.zeros((0, 4)), np.zeros((0, 4, 2))
+    yield (
+        tail_curves,
+        (0, features, np.zeros(1, np.int64), np.zeros(0), none, np.zeros((0, 2), np.int64), np.zeros(0)),
+    )
+    work, fours, pairs = (
+        (np.zeros((WORK_LENGTH, 4)), np.zeros((2, 4, 2))),
+        np.zeros((0, 4)),
+        np.zeros((0, 4, 2)),
+    )
     yield certified, (records, checked, outline, fours, setting, fours, np.zeros(0, np.int8), *work)
     yield interval_newton, (records, checked, setting, np.zeros((0, 2, 4, 4)))
     yield jacobians, (records, checked, setting)
@@ -222,9 +251,24 @@ def seats_and_passes() -> Calls:
     yield begin_descents, (many, 1.0, ways, points)
     yield (
         take_up,
-        (none, none, none, none, nodes, begins, np.zeros(0, np.int8), ways, ways, points, np.zeros(0, np.int8)),
+        (
+            none,
+            none,
+            none,
+            none,
+            nodes,
+            begins,
+            np.zeros(0, np.int8),
+            ways,
+            ways,
+            points,
+            np.zeros(0, np.int8),
+        ),
     )
-    yield least_friction, (pegs, pegs, sides, np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 4)), np.zeros((4, 4)))
+    yield (
+        least_friction,
+        (pegs, pegs, sides, np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 4)), np.zeros((4, 4))),
+    )
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
     yield cover_same, (one, ways, known, outline, points, 0.0, np.zeros(0, np.int8))

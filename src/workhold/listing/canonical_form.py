@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.kernels.contact import record
-from workhold.kernels.contact.canonical_form import contacts_of, to_canonical_form
-from workhold.kernels.contact.equations import WORK_LENGTH
+from workhold.kernels.contact.record import WORK_LENGTH
+from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
 from workhold.listing.runs import key_of, order_of
 from workhold.proof.deciding import peg_integers
 
@@ -89,7 +89,7 @@ def joined(parts: list[Candidates]) -> Candidates:
 
 
 def canonical_form(c: Candidates, swapped: int) -> Candidates:
-    """Candidates in the one form each fixture is listed in, see ``kernels.contact.canonical_form``."""
+    """Candidates in the one form each fixture is listed in, see ``kernels.proof.canonical_form``."""
     theta, column, row = c.theta.copy(), c.column.copy(), c.row.copy()
     order = np.empty((len(c.standing), 4), np.int64)
     to_canonical_form(c.standing, theta, column, row, order, swapped, SAME_POSE)

@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 from workhold.contact.frame import QUARTERS
 from workhold.contact.problem import ROUNDINGS, Problem
 from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_POSE
-from workhold.geometry.rotation import rotated
+from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.clamp_placement import DIRECTION_NAMES, axis_of
 from workhold.listing.placing import LOCATORS, TIP, clamp_placement
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.deciding import BALLS
-from workhold.statics.wrenches import outward_normals, wrenches
+from workhold.statics.contact_matrix import outward_normals, wrenches
 
 if TYPE_CHECKING:
     from workhold.proof.interval_newton import CandidateBox
@@ -86,7 +86,10 @@ class ClampContacts:
         names = [one.name for one in fields(ClampContacts) if one.name != "hole_of"]
         starts = np.cumsum([0, *(len(part.theta) for part in parts)])
         hole_of = np.concatenate([part.hole_of + start for part, start in zip(parts, starts, strict=False)])
-        return cls(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names}, hole_of=hole_of)
+        return cls(
+            **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names},
+            hole_of=hole_of,
+        )
 
 
 def contacts_on_wall(found: WallFixtures, problem: Problem, direction: str) -> ClampContacts:
@@ -182,7 +185,7 @@ def sharpened(
     ----------
     push_off, doubt : (N,) how far pushes and forces may be off.
     """
-    from workhold.proof.clamp_reactions import sharp_reactions
+    from workhold.proof.exact_contacts import sharp_reactions
 
     taken, push, doubt = taken.copy(), push.copy(), doubt.copy()
     # Per unit of the clamp's own force, as parts of one and the largest force.
@@ -217,7 +220,7 @@ def box_beside(
     ``proof.interval_newton.CandidateBox``."""
     from flint import ctx
 
-    from workhold.proof.exact_rows import exact_rows
+    from workhold.proof.exact_contacts import exact_rows
     from workhold.proof.interval_newton import PRECISIONS, CandidateBox
 
     frame, reach = problem.frame, (BESIDE / problem.wrench_length, BESIDE, BESIDE, 2 * BESIDE)

@@ -15,12 +15,21 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import BODY_SLACK, GAP_SLACK
-from workhold.fixels.directions import DIRECTIONS
+from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.toolkit import Carrier, Travel
-from workhold.geometry.rotation import rotated
-from workhold.kernels.base.capsule import piece_distances
+from workhold.geometry.symmetry import rotated
+from workhold.kernels.base.distance import piece_distances
 
-__all__ = ["DIRECTION_NAMES", "FAR", "OPENING", "ClampPlacement", "axis_of", "is_bolted", "is_upright", "last_holes"]
+__all__ = [
+    "DIRECTION_NAMES",
+    "FAR",
+    "OPENING",
+    "ClampPlacement",
+    "axis_of",
+    "is_bolted",
+    "is_upright",
+    "last_holes",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -1,15 +1,18 @@
-"""Fixtures collected while a search goes on: decided, listed once, measured, counted and ranked.
+"""Fixtures collected while a search goes on, all of them or the best: decided, listed once, measured and ranked.
 
-Records come in the order of the search. Those decided are sorted by holes, so that fixtures found twice lie
-together; each part of that order is listed and measured on some thread; and the parts are sorted by rank.
-Rows of equal rank stay in the order of their identities. With a folder no more than a few parts are in memory
-at a time; the outcome does not depend on it.
+Records of the kernels are decided, brought to the listed form, placed in the toolkit and listed once. Of the
+best alone as many are kept as the query asks for, and they say which closure margin a further one must reach.
+
+Of all, records come in the order of the search. Those decided are sorted by holes, so that fixtures found
+twice lie together; each part of that order is listed and measured on some thread; and the parts are sorted by
+rank. Rows of equal rank stay in the order of their identities. With a folder no more than a few parts are in
+memory at a time; the outcome does not depend on it.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, Future, wait
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,16 +23,164 @@ from attrs import astuple, define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
-from workhold.listing.canonical_form import Candidates, listed_once, most_holes, packed_holes
-from workhold.listing.finish import Batches, listed_form
+from workhold.conventions import MARGIN_SLACK
+from workhold.kernels.contact import record
+from workhold.listing.canonical_form import (
+    Candidates,
+    candidates_of,
+    canonical_form,
+    joined,
+    listed_once,
+    most_holes,
+    packed_holes,
+)
 from workhold.listing.identity import Identity
-from workhold.listing.placing import placed
-from workhold.listing.ranking import measured, ranking_keys
+from workhold.listing.placing import placeable, placed
+from workhold.listing.ranking import best_marked, measured, ranking_keys
 from workhold.listing.runs import Runs, SortedRun, in_order, key_of
+from workhold.model.quality import CLOSURE_MARGIN
 from workhold.model.result import FixtureTable
-from workhold.proof.deciding import Account, Course
+from workhold.proof.deciding import Account, Course, decided
+from workhold.statics.judging import unfit
 
-__all__ = ["ResultCollector"]
+__all__ = ["BLOCK", "Batches", "BestFixtures", "ResultCollector", "blocks_of", "finish", "listed_form"]
+
+Array = NDArray[np.float64]
+
+# Records decided at a time; few enough that threads end together.
+BLOCK = 1 << 14
+
+
+def finish(records: list[Array], problem: Problem, cancel: Event | None = None) -> tuple[Candidates, Account]:
+    """Decides records, brings them to the listed form and lists them once, on this thread.
+
+    Parameters
+    ----------
+    records : (N, 19) arrays from the kernels.
+    cancel : when set, only what needs no ball arithmetic and the like is decided.
+
+    Returns
+    -------
+    (the fixtures, an account of all records)
+    """
+    course = Course(sum(map(len, records)), cancel=cancel)
+    parts, accounts = zip(*(listed_form(block, problem, course) for block in blocks_of(records)), strict=True)
+    return listed_once(joined(list(parts))), Account.together(list(accounts))
+
+
+def blocks_of(records: Iterable[Array]) -> Iterator[Array]:
+    """Records (N, 19) in blocks, of which there is at least one."""
+    batches = Batches()
+    for array in records:
+        yield from batches.add(array)
+    yield batches.rest()
+
+
+def listed_form(records: Array, problem: Problem, course: Course) -> tuple[Candidates, Account]:
+    """Records (N, 19) decided: the fixtures among them that fit the toolkit, in the form they are listed in,
+    and an account of all."""
+    proven, account = decided(records, problem, course)
+    candidates = canonical_form(candidates_of(proven, problem), problem.frame.swapped)
+    fits = placeable(candidates, problem)
+    return candidates if fits.all() else candidates.take(fits), account
+
+
+@define(eq=False)
+class Batches:
+    """Records put together and cut into blocks, for fewer steps of array arithmetic."""
+
+    waiting: list[Array] = field(factory=lambda: [np.zeros((0, record.RECORD_LENGTH))], init=False)
+
+    def add(self, records: Array) -> list[Array]:
+        """Takes records (N, 19); the blocks that are full."""
+        self.waiting.append(records)
+        if sum(map(len, self.waiting)) < BLOCK:
+            return []
+        together = np.concatenate(self.waiting)
+        self.waiting = [together[:0]]
+        return [together[k : k + BLOCK] for k in range(0, len(together), BLOCK)]
+
+    def rest(self) -> Array:
+        """The records that fill no block, which may be none."""
+        return np.concatenate(self.waiting)
+
+
+# Records are decided when so many are waiting, or as many as are to be kept if that is more: soon where they
+# tell a margin that further ones must reach, else in blocks that cost the least.
+WAITING, WAITING_LONG = 64, 1 << 13
+
+
+@define(eq=False)
+class BestFixtures:
+    """The best of the fixtures added so far, as many as the query asks for, and those that tie with the last
+    of them.
+
+    Parameters
+    ----------
+    problem : what is searched.
+    cancel : when set, only what needs no ball arithmetic and the like is decided, and soon after nothing.
+    """
+
+    problem: Problem
+    cancel: Event | None = None
+    margin: float = field(default=0.0, init=False)
+    has_dropped: bool = field(default=False, init=False)
+    waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
+    kept: Candidates | None = field(default=None, init=False)
+    accounts: list[Account] = field(factory=list, init=False)
+    course: Course = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.course = Course(0, cancel=self.cancel)
+
+    @property
+    def most(self) -> int:
+        """How many to keep."""
+        assert self.problem.query.best is not None
+        return self.problem.query.best
+
+    def add(self, records: NDArray[np.float64]) -> float:
+        """Takes records (N, 19) from the search; the closure margin that further ones must reach."""
+        self.waiting.append(records)
+        least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
+        if sum(map(len, self.waiting)) >= max(least, self.most):
+            self.decide()
+        return self.margin
+
+    def decide(self) -> None:
+        """Decides the records that wait, and keeps the best."""
+        waiting, self.waiting = self.waiting, []
+        parts = [] if self.kept is None else [self.kept]
+        fresh = 0
+        for block in blocks_of(waiting):
+            part, account = listed_form(block, self.problem, self.course)
+            self.accounts.append(account)
+            parts.append(part)
+            fresh += len(part.standing)
+            # Measured a share at a time, so that one who asks to stop does not wait for all.
+            if fresh >= max(BLOCK, self.most):
+                parts, fresh = [self.cut(listed_once(joined(parts)), ties=True)], 0
+        self.kept = self.cut(listed_once(joined(parts)), ties=True)
+
+    def cut(self, everything: Candidates, ties: bool) -> Candidates:
+        """The best ``most`` of fixtures that are listed once, and those that tie with the last."""
+        if len(everything.standing) <= self.most:
+            return everything
+        table = measured(placed(everything, self.problem), self.problem)
+        query = self.problem.query
+        chosen = best_marked(table.quality, query.ranking, query.tolerance, self.most, ties)
+        self.has_dropped |= not chosen.all()
+        # One that is none for a workshop is worse than any that is, whatever its margin.
+        if query.by_margin_alone and not unfit(table.quality[chosen], query.tolerance).any():
+            self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK, 0.0)
+        return everything.take(chosen)
+
+    def finished(self) -> tuple[Candidates, Account]:
+        """The best fixtures and the account of all records, once the search is over."""
+        self.decide()
+        assert self.kept is not None
+        return self.cut(self.kept, ties=False), Account.together(self.accounts)
+
 
 # Bits of a fixture's place in its part.
 PLACE_BITS = 40
@@ -156,7 +307,9 @@ class ResultCollector:
             self.distinct += self.found
         return done == len(parts)
 
-    def measured_part(self, numbered: tuple[int, Callable[[], SortedRun]]) -> tuple[SortedRun, SortedRun | None]:
+    def measured_part(
+        self, numbered: tuple[int, Callable[[], SortedRun]]
+    ) -> tuple[SortedRun, SortedRun | None]:
         """The fixtures of a part in the order of their ranks; and of a symmetric workpiece the smallest of
         the forms that its turns give them."""
         number, part = numbered

@@ -1,14 +1,23 @@
-"""When two fixtures are the same, and how many sets they form under the rotations of a part onto itself.
+"""When two fixtures are the same or near duplicates, and how many sets they form under rotations of a part.
 
 A fixture is named by whole numbers for its holes and lines, and by the pose, which says what is touched.
 Faces are left out, since a contact at a tangent joint is on two of them and only one is listed. Fixtures that
 a rotation of the part, or half a turn of the toolkit, carries into each other share the smallest of their
 images, which stands for the set.
+
+Glossary
+--------
+near duplicates : fixtures that a machinist would call one way to hold the part: of one arrangement, all
+    square or all tilted, whose pegs touch the same faces for each carrier. Rotations and mirror images of the
+    part onto itself and the half turn that swaps the carriers make no difference. Such fixtures differ by a
+    row or a column more or less, or by the part's symmetry.
+entry : the first of some near duplicates, and how many come after it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 from attrs import define, field, frozen
@@ -16,14 +25,30 @@ from numpy.typing import NDArray
 
 from workhold.conventions import SAME_IMAGE, SAME_POSE
 from workhold.fixels.toolkit import Arrangement, Toolkit
-from workhold.geometry.rotation import rotated
-from workhold.geometry.symmetry import Rotation, centroid_of_joints, rotations_onto_itself
+from workhold.geometry.symmetry import (
+    Rotation,
+    centroid_of_joints,
+    rotated,
+    rotations_onto_itself,
+    symmetries,
+)
 from workhold.listing.canonical_form import changes, clusters, packed
 from workhold.listing.clamp_placement import axis_of
-from workhold.model.result import FixtureTable
+from workhold.model.quality import TILT
+from workhold.model.result import FixtureTable, Result
 from workhold.model.workpiece import Workpiece
+from workhold.statics.judging import unfit
 
-__all__ = ["Identity", "SetCount", "half_turns", "identity_order"]
+__all__ = [
+    "Entries",
+    "Identity",
+    "SetCount",
+    "entries",
+    "first_of_each",
+    "half_turns",
+    "identity_order",
+    "near_duplicates",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -76,9 +101,12 @@ class Identity:
             # Only the images of the least orientation can be the smallest.
             chosen = np.flatnonzero(theta % period <= least + SAME_POSE)
             turned = halves & (theta % (2.0 * np.pi) >= np.pi)
-            numbers = [np.where(turned, two, one)[chosen] for one, two in zip(forms[0][0], forms[1][0], strict=True)]
+            numbers = [
+                np.where(turned, two, one)[chosen] for one, two in zip(forms[0][0], forms[1][0], strict=True)
+            ]
             anchor, ahead = (
-                np.where(turned[:, None], two, one)[chosen] for one, two in zip(forms[0][1:], forms[1][1:], strict=True)
+                np.where(turned[:, None], two, one)[chosen]
+                for one, two in zip(forms[0][1:], forms[1][1:], strict=True)
             )
             away = anchor - table.position[chosen]
             seen = rotated(away[:, 0], away[:, 1], -table.theta[chosen])
@@ -110,7 +138,9 @@ class Identity:
         own = places[[peg.on is None and not peg.is_wall for peg in pegs]]
         movers = clamps if len(clamps) else own[-1:]
         column, row = sign * table.column.astype(np.int64), sign * table.row.astype(np.int64)
-        each = [np.where(on[:, own] == k, column[:, own], MOST_HOLES).min(axis=1) for k in range(len(carriers))]
+        each = [
+            np.where(on[:, own] == k, column[:, own], MOST_HOLES).min(axis=1) for k in range(len(carriers))
+        ]
         first, lowest = np.stack(each, axis=1), row[:, own].min(axis=1, keepdims=True)
         numbers = [
             (table.arrangement[:, None], len(self.toolkit.arrangements)),
@@ -147,7 +177,9 @@ def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
     wall.
     """
     ways = [
-        toolkit.carriers[number].travel for number in arrangement.carriers if toolkit.carriers[number].on is not None
+        toolkit.carriers[number].travel
+        for number in arrangement.carriers
+        if toolkit.carriers[number].on is not None
     ]
     if not ways:
         swaps = any(one.half_turns % 2 and one.carriers == (1, 0) for one in toolkit.symmetries)
@@ -156,7 +188,9 @@ def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
     return half_turns(toolkit) and len(units) == 2 and not units.sum(axis=0).any()
 
 
-def precedes(words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array) -> BoolArray:
+def precedes(
+    words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array
+) -> BoolArray:
     """Which (N,) of some whole numbers (N,) each and poses (N, P) come before others in lexicographic
     order."""
     before = np.zeros(len(pose), np.bool_)
@@ -211,3 +245,102 @@ def identity_order(table: FixtureTable) -> NDArray[np.intp]:
     place = table.position @ np.array([1.0, 0.7548776662])
     columns = [*table.column.T, *table.row.T, np.round(table.theta / SAME_POSE), *table.face.T, place]
     return np.lexsort([*reversed(columns), table.arrangement])
+
+
+# Fixtures judged together, and those, from the best on, among which near duplicates are sought.
+BLOCK, MOST_LOOKED_AT = 1 << 14, 200_000
+
+
+@frozen(eq=False)
+class Entries:
+    """What to show of a list of fixtures.
+
+    Parameters
+    ----------
+    index : (E,) of the fixture that stands for each entry, in the order of the list.
+    like : (E,) how many near duplicates come after it.
+    unfit : how many fixtures are left out because they are none for a workshop.
+    """
+
+    index: IntArray
+    like: IntArray
+    unfit: int
+
+
+def entries(result: Result, with_unfit: bool = False) -> Entries:
+    """The entries of the best of a result; fixtures that are none for a workshop make entries only if asked
+    for, or if there are no others."""
+    table = result.table
+    blocks = (table.take(slice(start, start + BLOCK)) for start in range(0, len(table), BLOCK))
+    bad = np.concatenate(
+        [np.zeros(0, np.bool_), *(unfit(block.quality, result.query.tolerance) for block in blocks)]
+    )
+    shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
+    looked_at = shown[:MOST_LOOKED_AT]
+    index, like = first_of_each(near_duplicates(table.take(looked_at), result.workpiece, result.toolkit))
+    return Entries(shown[index], like, len(bad) - len(shown))
+
+
+def first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
+    """Places (E,) of the first member of each group, in order, and how many more members (E,) it has."""
+    _, first, count = np.unique(groups, return_index=True, return_counts=True)
+    order = np.argsort(first)
+    return first[order], count[order] - 1
+
+
+def near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
+    """A number (N,) for each fixture, the same for near duplicates."""
+    if len(table) == 0:
+        return np.zeros(0, np.int64)
+    carriers = toolkit.peg_carriers(table.arrangement)
+    # Faces of each carrier's pegs in order, the first carrier's in front; with the pegs of each type where
+    # they belong.
+    order = np.lexsort((table.face, carriers), axis=-1)
+    faces = np.take_along_axis(table.face.astype(np.int64), order, axis=1)
+    tilted = (table.quality[:, TILT] > 0.0).astype(np.int64)
+    keys = np.column_stack([table.arrangement, tilted, faces])
+    first, member = distinct_rows(keys)
+    _, group = distinct_rows(smallest_images(keys[first], workpiece, toolkit))
+    return np.asarray(group[member])
+
+
+def distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
+    """Where each distinct row of whole numbers (N, 6) from 0 upward comes first, in their order, and which
+    (N,) each is."""
+    words = np.column_stack(packed((keys, int(keys.max()))))
+    # One word, which is enough for most parts, is sorted far sooner than rows.
+    _, first, member = np.unique(
+        words.ravel() if words.shape[1] == 1 else words, axis=0, return_index=True, return_inverse=True
+    )
+    return first, member.ravel()
+
+
+def smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
+    """The first image of each row (K, 6) of arrangement, tilt and faces under the symmetries of the part."""
+    numbers = np.array([face.number for face in workpiece.faces])
+    carriers = toolkit.peg_carriers(keys[:, 0].astype(np.int8))
+    # Type I of a vise: as many pegs on either carrier, which a half turn swaps.
+    swaps = ((carriers.max(axis=1) == 1) & ((carriers == 1).sum(axis=1) * 2 == carriers.shape[1]))[:, None]
+    images = np.array(symmetries([face.segment for face in workpiece.faces]))
+    to = np.zeros((len(images), int(numbers.max()) + 1), np.int64)
+    to[:, numbers] = numbers[images]
+    # The first image begins with the lowest number that one of the faces can have, so of many symmetries only
+    # those are tried that give one of them its lowest.
+    lowest = to == to.min(axis=0)
+    few = np.argsort(~lowest, axis=0, kind="stable")[: lowest[:, numbers].sum(axis=0).max()]
+    tried = few[:, keys[:, 2:]].transpose(0, 2, 1).reshape(-1, len(keys))
+    if len(tried) >= len(images):
+        tried = np.repeat(np.arange(len(images))[:, None], len(keys), axis=1)
+    best = keys
+    for symmetry, turned in product(tried, (False, True) if swaps.any() else (False,)):
+        there = to[symmetry[:, None], keys[:, 2:]]
+        if turned:
+            there = np.where(swaps, there[:, [2, 3, 0, 1]], there)
+        there = np.take_along_axis(there, np.lexsort((there, carriers), axis=-1), axis=1)
+        candidate = np.column_stack([keys[:, :2], there])
+        differs = candidate != best
+        place = differs.argmax(axis=1)
+        rows = np.arange(len(keys))
+        better = differs.any(axis=1) & (candidate[rows, place] < best[rows, place])
+        best = np.where(better[:, None], candidate, best)
+    return best

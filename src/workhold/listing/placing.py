@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_SLACK, GAP_SLACK
-from workhold.geometry.rotation import rotated
+from workhold.geometry.symmetry import rotated
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
 from workhold.model.result import FixtureTable, unknown_quality
@@ -94,7 +94,9 @@ def half_turned(c: Candidates, swapped: int) -> Candidates:
     for carrier in (slice(0, swapped), slice(swapped, 2 * swapped)):
         column[:, carrier] = column[:, carrier].max(axis=1, keepdims=True, initial=0) - column[:, carrier]
     row = c.row.max(axis=1, keepdims=True, initial=0) - c.row
-    backward = [np.ascontiguousarray(values[:, ::-1]) for values in (c.feature, column, row, c.point, c.null, c.force)]
+    backward = [
+        np.ascontiguousarray(values[:, ::-1]) for values in (c.feature, column, row, c.point, c.null, c.force)
+    ]
     feature, column, row, point, null, force = backward
     return Candidates(c.standing, feature, column, row, c.theta + np.pi, point, c.gap, null, force)
 
@@ -138,7 +140,9 @@ def free_rows(c: Candidates, frame: Frame) -> IntArray:
     """How many rows (N,) are free above the pegs of a carrier with an end; 0 where none has."""
     if all(carrier.rows is None for carrier in frame.carriers):
         return np.zeros(len(c.standing), np.int64)
-    ends = np.where(is_standing(c.standing), *(np.inf if k.rows is None else k.rows - 1.0 for k in frame.carriers))
+    ends = np.where(
+        is_standing(c.standing), *(np.inf if k.rows is None else k.rows - 1.0 for k in frame.carriers)
+    )
     spare = smallest(ends - c.row)
     return np.where(np.isinf(spare), 0, spare).astype(np.int64)
 
@@ -208,7 +212,9 @@ def outward_moves(standing: int, moving: int) -> Iterator[tuple[int, int]]:
 def offsets(frame: Frame, endless: bool, spare: IntArray) -> list[int]:
     """Row shifts beyond the one without blocked holes, in the order they are tried: the smallest first."""
     if endless:
-        blocked = [holes.row for carrier in frame.carriers for holes in carrier.blocked if holes.row is not None]
+        blocked = [
+            holes.row for carrier in frame.carriers for holes in carrier.blocked if holes.row is not None
+        ]
         return list(range(max(blocked, default=-1) + 2))
     most = int(spare.max(initial=0))
     return sorted(range(-most, most + 1), key=lambda shift: (abs(shift), shift))
@@ -278,7 +284,8 @@ def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
     hole, _ = placement.nearest(problem)
     column = np.concatenate([c.column[:, LOCATORS], hole[:, None]], axis=1)
     column, row = (
-        numbers - numbers.min(axis=1, keepdims=True, initial=1 << 30) for numbers in frame.step_back(column, c.row)
+        numbers - numbers.min(axis=1, keepdims=True, initial=1 << 30)
+        for numbers in frame.step_back(column, c.row)
     )
     travelled = placement.place - hole * frame.lattice.pitch_x
     clamp = frame.toolkit.moving

@@ -19,8 +19,8 @@ from workhold.contact.problem import Problem
 from workhold.conventions import FIGURE_DECIMALS
 from workhold.model.quality import CLAMP_FREEDOM, CLOSURE_MARGIN, RANKED, ranked_number
 from workhold.model.query import Query
+from workhold.model.requirements import Tolerance
 from workhold.model.result import FixtureTable
-from workhold.model.tolerance import Tolerance
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import unfit
 from workhold.statics.quality import quality_of

@@ -242,9 +242,13 @@ class Runs:
         edges = [[0] * len(runs), *places, [len(run) for run in runs]]
         return [self.part(runs, first, end) for first, end in pairwise(edges)]
 
-    def part(self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]) -> Callable[[], SortedRun]:
+    def part(
+        self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]
+    ) -> Callable[[], SortedRun]:
         """What gives one part."""
-        return lambda: SortedRun.joined([run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)])
+        return lambda: SortedRun.joined(
+            [run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)]
+        )
 
     def close(self) -> None:
         """Gives back memory and disk."""
@@ -253,7 +257,9 @@ class Runs:
             self.scratch.file.close()
 
 
-def in_order(pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]) -> Iterator[Other]:
+def in_order(
+    pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]
+) -> Iterator[Other]:
     """What work gives for each item, in the order of the items; so many at a time are begun and not yet
     taken."""
     running: deque[Future[Other]] = deque()

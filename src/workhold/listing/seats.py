@@ -1,27 +1,58 @@
-"""Seats: locators, the faces they touch and the pose, with all the clamps that may push there.
+"""Seats, all the clamps that may push there, and the pairs of clamps that close together and not alone.
 
-Contacts of locators with one clamp (``listing.clamp_contacts``) that share their locators and the pose are
-one seat.
+A seat is locators, the faces they touch and the pose. Contacts of locators with one clamp
+(``listing.clamp_contacts``) that share their locators and the pose are one seat. With two clamps the pairs at
+each seat are counted, and the best is listed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
-from typing import Any
+from math import inf, pi
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from attrs import define
+from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE
-from workhold.kernels.contact.clamp_pairs import Clamps
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.symmetry import rotated
+from workhold.kernels.contact.clamp_pairs import (
+    CLAMPS,
+    COUNT,
+    DIRECTION,
+    DOUBT,
+    FREEDOM,
+    HOLES,
+    KIND,
+    LINE,
+    MARGIN,
+    OPEN,
+    PUSH,
+    SEAT,
+    TAKEN,
+    TIP,
+    Clamps,
+    Hardware,
+    pairs_of,
+)
 from workhold.listing.canonical_form import changes, clusters, packed
-from workhold.listing.clamp_contacts import ClampContacts
-from workhold.listing.clamp_placement import DIRECTION_NAMES, is_bolted, is_upright
+from workhold.listing.clamp_contacts import ClampContacts, box_beside
+from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_bolted, is_upright, last_holes
+from workhold.listing.identity import half_turns
+from workhold.listing.results import RankedTable, Work
+from workhold.model.quality import CLAMP_FREEDOM
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.model.search_report import AT_AN_EDGE, Undecided
+from workhold.proof.deciding import BALLS, Account
 
-__all__ = ["Seats", "seats_of"]
+if TYPE_CHECKING:
+    from workhold.proof.interval_newton import CandidateBox
+
+__all__ = ["ClampedSeats", "Seats", "seats_of", "undecided_pairs"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -62,7 +93,9 @@ class Seats:
         return np.stack([self.column.max(axis=1, initial=0), self.row.max(axis=1, initial=0)], axis=1)
 
 
-def seats_of(parts: Sequence[ClampContacts], problem: Problem, within: tuple[float, float] = (-inf, inf)) -> Seats:
+def seats_of(
+    parts: Sequence[ClampContacts], problem: Problem, within: tuple[float, float] = (-inf, inf)
+) -> Seats:
     """The seats of the contacts of some directions.
 
     Parameters
@@ -108,7 +141,10 @@ def clamps_of(found: ClampContacts, seat: IntArray, count: int, problem: Problem
     words = packed(
         (seat[chosen, None], max(count, 1)),
         (found.direction[chosen, None], len(DIRECTION_NAMES)),
-        (found.line[chosen, None] - found.line.min(initial=0), int(np.ptp(found.line)) if len(found.line) else 0),
+        (
+            found.line[chosen, None] - found.line.min(initial=0),
+            int(np.ptp(found.line)) if len(found.line) else 0,
+        ),
     )
     along = np.where(is_upright(found.direction), found.tip[:, 1], found.tip[:, 0])[chosen]
     order = np.lexsort(words[::-1])
@@ -119,7 +155,9 @@ def clamps_of(found: ClampContacts, seat: IntArray, count: int, problem: Problem
     # touch them.
     lowest = np.lexsort([found.clamp_feature[chosen], clamp])
     first = lowest[np.diff(clamp[lowest], prepend=-1) > 0]
-    listed = np.lexsort([along[first], found.clamp_feature[chosen[first]], *(word[first] for word in words[::-1])])
+    listed = np.lexsort(
+        [along[first], found.clamp_feature[chosen[first]], *(word[first] for word in words[::-1])]
+    )
     kept = chosen[first[listed]]
     rank = np.full(len(seat), -1)
     rank[kept] = np.arange(len(kept))
@@ -128,12 +166,193 @@ def clamps_of(found: ClampContacts, seat: IntArray, count: int, problem: Problem
     clamp_of, hole = rank[found.hole_of[there]], found.holes[there]
     tip = found.tip[kept][clamp_of]
     plate = problem.toolkit.carriers[0]
-    place = hole * np.array(plate.pitch) + np.array(plate.offset) if is_bolted(problem.toolkit.moving) else tip
+    place = (
+        hole * np.array(plate.pitch) + np.array(plate.offset) if is_bolted(problem.toolkit.moving) else tip
+    )
     ends = np.searchsorted(clamp_of, np.arange(len(kept) + 1))
     clamps = Clamps(
         starts=np.searchsorted(seat[kept], np.arange(count + 1)).astype(np.int64),
-        integers=np.stack([found.direction[kept], found.line[kept], ends[:-1], ends[1:]], axis=1).astype(np.int64),
+        integers=np.stack([found.direction[kept], found.line[kept], ends[:-1], ends[1:]], axis=1).astype(
+            np.int64
+        ),
         reals=np.column_stack([found.taken[kept], found.push[kept], found.doubt[kept], found.tip[kept]]),
         holes=np.column_stack([hole, place, np.hypot(*(tip - place).T)]).astype(np.float64),
     )
     return {"clamps": clamps, "clamp_feature": found.clamp_feature[kept]}
+
+
+@define(eq=False)
+class ClampedSeats:
+    """The fixtures with two clamps found so far, or the best of them.
+
+    Parameters
+    ----------
+    query : what is asked, in a toolkit with two clamps.
+    problem : the search of one of its directions, for what all have in common.
+    looked_at, seats, pairs : how many seats there were; how many, by pair of directions, two clamps close; in
+        how many ways.
+    """
+
+    query: Query
+    problem: Problem
+    toolkit: Toolkit = field(init=False)
+    hardware: Hardware = field(init=False)
+    ranked: RankedTable = field(init=False)
+    looked_at: int = field(default=0, init=False)
+    seats: int = field(default=0, init=False)
+    pairs: int = field(default=0, init=False)
+    undecided: list[Undecided] = field(factory=list, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.toolkit, self.ranked = self.query.toolkit, RankedTable(self.query, self.problem)
+        kinds = np.full((len(DIRECTION_NAMES), len(DIRECTION_NAMES)), -1, np.int64)
+        for number, arrangement in enumerate(self.toolkit.arrangements):
+            one, other = (arrangement.direction or "").split()
+            kinds[DIRECTION_NAMES.index(one), DIRECTION_NAMES.index(other)] = number
+        clamp = self.problem.toolkit.moving
+        self.hardware = Hardware(
+            kinds, 2 * clamp.peg_radius, *last_holes(self.toolkit.carriers[0]), is_bolted(clamp)
+        )
+
+    def __len__(self) -> int:
+        return len(self.ranked)
+
+    @property
+    def turns_half(self) -> bool:
+        """Whether half a turn of everything leaves the toolkit as it is."""
+        return half_turns(self.toolkit)
+
+    def add(self, seats: Seats) -> None:
+        """Pair the clamps of further seats."""
+        self.looked_at += len(seats)
+        # Of opposite directions half a turn makes one fixture another, so that only one half turn of seats is
+        # paired.
+        half = ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)
+        every = self.query.listing == "all"
+        rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
+        if self.turns_half and (rows[:, OPEN] != 0.0).any():
+            seats = self.sharpened(seats, rows[rows[:, OPEN] != 0.0])
+            rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
+        is_open = rows[:, OPEN] != 0.0
+        self.undecided += undecided_pairs(self.table_of(rows[is_open], seats), self.toolkit)
+        rows = rows[~is_open]
+        self.pairs += int(rows[:, COUNT].sum())
+        self.seats += len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
+        self.ranked.add(self.table_of(rows, seats))
+
+    def sharpened(self, seats: Seats, rows: Array) -> Seats:
+        """Seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""
+        from workhold.proof.exact_contacts import sharp_reactions
+
+        reals = seats.clamps.reals.copy()
+        with BALLS:
+            for seat, clamp in sorted(
+                {(int(row[SEAT]), int(row[CLAMPS + k])) for row in rows for k in range(2)}
+            ):
+                sharp = sharp_reactions(self.box(seats, seat, clamp), self.problem.limits)
+                if sharp is not None:
+                    reals[clamp, TAKEN : TAKEN + 3], reals[clamp, DOUBT] = sharp.taken, sharp.doubt
+        return evolve(seats, clamps=seats.clamps._replace(reals=reals))
+
+    def box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
+        """A seat and one of its clamps as contacts in the frame in which the clamp's travel is counted along
+        x."""
+        pitch, integers = np.array(self.toolkit.carriers[0].pitch), seats.clamps.integers[clamp]
+        carrier = self.toolkit.carrier(f"clamp {DIRECTION_NAMES[integers[DIRECTION]]}")
+        assert carrier.travel is not None
+        cosine, sine = carrier.travel.unit
+        turn = np.array([[cosine, sine], [-sine, cosine]])
+        holes = np.stack([seats.column[seat], seats.row[seat]], axis=1) * pitch
+        places, tip = (
+            (holes - holes[0]) @ turn.T,
+            turn @ (seats.clamps.reals[clamp, TIP : TIP + 2] - holes[0]),
+        )
+        x, y = (seats.point[seat] - self.problem.workpiece.center).tolist()
+        features = [*seats.feature[seat], seats.clamp_feature[clamp]]
+        offsets = [*map(tuple, places.tolist()), (0.0, line_of(integers, holes[0], pitch, turn))]
+        middle = carrier.travel.direction - float(seats.theta[seat]), x, y, float(tip[0])
+        return box_beside(features, offsets, middle, self.problem)
+
+    def table_of(self, rows: Array, seats: Seats) -> FixtureTable:
+        """Pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom are
+        known."""
+        seat, clamp = rows[:, SEAT].astype(np.int64), rows[:, [CLAMPS, CLAMPS + 1]].astype(np.int64)
+        direction, reals = seats.clamps.integers[clamp, DIRECTION], seats.clamps.reals[clamp]
+        plate, (column, row, lowest) = self.toolkit.carriers[0], self.holes_of(rows, seats)
+        at = np.stack([column, row], axis=2) * np.array(plate.pitch) + np.array(plate.offset)
+        tip = reals[..., TIP : TIP + 2] - (lowest * np.array(plate.pitch))[:, None]
+        push, force = reals[..., PUSH], np.zeros((len(rows), 5, 2))
+        force[:, :3] = np.swapaxes(reals[..., TAKEN : TAKEN + 3] / push[..., None], 1, 2)
+        force[:, 3, 0], force[:, 4, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]
+        quality = unknown_quality(rows[:, MARGIN])
+        quality[:, CLAMP_FREEDOM] = rows[:, FREEDOM]
+        theta, point = seats.theta[seat], seats.point[seat]
+        face = np.hstack([seats.face[seat], self.problem.faces[seats.clamp_feature[clamp]]])
+        return FixtureTable(
+            arrangement=rows[:, KIND].astype(np.int8),
+            column=column.astype(np.int32),
+            row=row.astype(np.int32),
+            face=face.astype(np.int32),
+            theta=theta,
+            position=at[:, 0]
+            - seats.start[seat]
+            - np.stack(rotated(point[:, 0], point[:, 1], theta), axis=1),
+            jaw_separation=((tip - at[:, 3:]) * OPENING[direction]).sum(axis=2),
+            force=force,
+            quality=quality,
+            pairs=rows[:, COUNT].astype(np.int32),
+        )
+
+    def holes_of(self, rows: Array, seats: Seats) -> tuple[IntArray, IntArray, IntArray]:
+        """Columns and rows (N, 5) of pairs (N, 10), and the lowest of each (N, 2) as seats and clamps count
+        them."""
+        seat, clamp, bolted = (
+            rows[:, columns].astype(np.int64) for columns in (SEAT, [CLAMPS, CLAMPS + 1], [HOLES, HOLES + 1])
+        )
+        direction, line = (seats.clamps.integers[clamp, number] for number in (DIRECTION, LINE))
+        upright, hole = is_upright(direction), seats.clamps.holes[bolted, :2].astype(np.int64)
+        if not self.hardware.bolted:
+            hole = np.full_like(hole, FAR)
+        locators, clamps = (
+            (seats.column[seat], seats.row[seat]),
+            (
+                np.where(upright, line, hole[..., 0]),
+                np.where(upright, hole[..., 1], line),
+            ),
+        )
+        lowest = np.stack(
+            [np.minimum(*(v.min(axis=1) for v in pair)) for pair in zip(locators, clamps, strict=True)],
+            axis=1,
+        )
+        # Rows count from a wall, whose ends are listed after the locator.
+        lowest[:, 1] *= self.turns_half
+        ends = np.zeros((len(rows), 3 - seats.column.shape[1]), np.int64)
+        column, row = (
+            np.hstack([standing - first, ends, np.where(moving == FAR, 0, moving - first)])
+            for standing, moving, first in zip(locators, clamps, lowest.T[..., None], strict=True)
+        )
+        return column, row, lowest
+
+    def result(self, account: Account, work: Work) -> Result:
+        """The result of all."""
+        account = evolve(account, undecided=(*account.undecided, *self.undecided))
+        return evolve(self.ranked.result(account, work), pairs=self.pairs, seats=self.seats)
+
+
+def undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
+    """Pairs of which it is not decided whether they close, for the account."""
+    columns = table.arrangement, table.face, table.column, table.row, np.degrees(table.theta) % 360.0
+    return [
+        Undecided(
+            toolkit.arrangements[kind].title, tuple(face), tuple(column), tuple(row), angle, AT_AN_EDGE, 0.0
+        )
+        for kind, face, column, row, angle in zip(*(values.tolist() for values in columns), strict=True)
+    ]
+
+
+def line_of(integers: IntArray, first: Array, pitch: Array, turn: Array) -> float:
+    """The height in mm of a clamp's line above the first locator (2,), in the frame that ``turn`` (2, 2)
+    leads to."""
+    upright = bool(is_upright(integers[DIRECTION]))
+    away = integers[LINE] * pitch[0 if upright else 1] - first[0 if upright else 1]
+    return float(turn[1] @ ((away, 0.0) if upright else (0.0, away)))

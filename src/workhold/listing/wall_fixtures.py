@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE
-from workhold.geometry.rotation import rotated
+from workhold.geometry.symmetry import rotated
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
-from workhold.listing.listed import Work
-from workhold.listing.ranked_table import RankedTable
+from workhold.listing.results import RankedTable, Work
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, unknown_quality
 from workhold.proof.deciding import Account
@@ -74,7 +73,9 @@ class WallFixtures:
     @classmethod
     def joined(cls, parts: list[WallFixtures]) -> WallFixtures:
         """All fixtures of several, at least one."""
-        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(WallFixtures)))
+        return cls(
+            *(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(WallFixtures))
+        )
 
     def listed_once(self) -> WallFixtures:
         """One of the fixtures that are the same: a contact at a tangent joint is found on both features that

@@ -11,10 +11,9 @@ from attrs import field, frozen
 
 from workhold.delegates import delegate
 from workhold.errors import InputError
-from workhold.fixels.carrier import WALL
-from workhold.fixels.holes import hole_name
-from workhold.geometry.rotation import rotated
+from workhold.fixels.carrier import WALL, hole_name
 from workhold.geometry.segment import Arc, Line, Segment
+from workhold.geometry.symmetry import rotated
 
 __all__ = ["Fixture", "Listed", "Pair", "Peg", "Pose"]
 
@@ -63,7 +62,11 @@ class Peg:
     @property
     def touching(self) -> str:
         """What it touches, in words."""
-        return f"face {self.face}" if self.beside is None else f"the corner of faces {self.face} and {self.beside}"
+        return (
+            f"face {self.face}"
+            if self.beside is None
+            else f"the corner of faces {self.face} and {self.beside}"
+        )
 
     @property
     def hole(self) -> str:
@@ -156,7 +159,9 @@ class Listed:
     @property
     def others(self) -> int:
         """How many other fixtures of the result use the same holes."""
-        return int(self.result.table.same_holes(self.row)) if self.in_same_holes is None else self.in_same_holes
+        return (
+            int(self.result.table.same_holes(self.row)) if self.in_same_holes is None else self.in_same_holes
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         alone = self.result.part(slice(self.row, self.row + 1))
@@ -199,9 +204,7 @@ class Fixture:
         if self.seating is not None:
             opening = self.seating.capture_opening
             caught = ", never lost" if opening is None else f", caught below {opening:.3f} mm"
-        return (
-            f"<{which}, {kind}: {' '.join(peg.hole for peg in self.pegs)} at {self.pose.theta_deg:.3f} degrees{caught}>"
-        )
+        return f"<{which}, {kind}: {' '.join(peg.hole for peg in self.pegs)} at {self.pose.theta_deg:.3f} degrees{caught}>"
 
     def _repr_svg_(self) -> str | None:
         return None if self.listed is None else str(self.draw())

@@ -80,7 +80,9 @@ FIGURES = (
     Figure("closure_margin", "", True, "The smallest share of a contact in holding the part."),
     Figure("clamp_amplification", "", False, "The largest peg force per unit of jaw force."),
     Figure("wrench_radius", "", True, "The smallest disturbance that a grip of unit forces does not resist."),
-    Figure("location_error", "mm", False, "The farthest a point of the part can be off when pegs and faces are."),
+    Figure(
+        "location_error", "mm", False, "The farthest a point of the part can be off when pegs and faces are."
+    ),
     Figure("end_distance", "mm", True, "The smallest distance from a contact to the end of its face."),
     Figure("load_reaction", "N", False, "The largest peg force when the loads act and no peg lets go.", 1),
     Figure("edge_distance", "mm", True, "The smallest distance from a contact to an edge or another face."),
@@ -91,13 +93,28 @@ FIGURES = (
         "The jaw force, the jaw locked by its screw, above which no peg lets go under any load.",
         1,
     ),
-    Figure("tilt", "deg", False, "How far the part's main straight faces are from lying square, along x and y.", 3),
     Figure(
-        "smallest_face", "mm", True, "The smallest face touched: the length of a straight one, the radius of an arc."
+        "tilt",
+        "deg",
+        False,
+        "How far the part's main straight faces are from lying square, along x and y.",
+        3,
+    ),
+    Figure(
+        "smallest_face",
+        "mm",
+        True,
+        "The smallest face touched: the length of a straight one, the radius of an arc.",
     ),
     Figure("warnings", "", False, "How many things there are to beware of.", 0),
     Figure("penalty", "", False, "Points for location error, tilt, a strong peg and a small face.", 0),
-    Figure("clamp_freedom", "deg", True, "By how much the forces of two clamps may differ: 90 is any two forces.", 1),
+    Figure(
+        "clamp_freedom",
+        "deg",
+        True,
+        "By how much the forces of two clamps may differ: 90 is any two forces.",
+        1,
+    ),
 )
 CLOSURE_MARGIN, CLAMP_AMPLIFICATION, WRENCH_RADIUS, LOCATION_ERROR, END_DISTANCE, LOAD_REACTION = range(6)
 EDGE_DISTANCE, JAW_FORCE_NEEDED, TILT, SMALLEST_FACE, WARNINGS, PENALTY, CLAMP_FREEDOM = range(6, 13)
@@ -116,7 +133,10 @@ SEATING_FIGURES = (
     Figure("sticking_friction", "", True, "The friction below which the part cannot stick near its seat."),
     Figure("wrong_seats", "", False, "In how many other places the same pegs can hold the part.", 0),
     Figure(
-        "reading", "mm", True, "What a measurement of the opening, or of the clamp, must resolve to tell a wrong seat."
+        "reading",
+        "mm",
+        True,
+        "What a measurement of the opening, or of the clamp, must resolve to tell a wrong seat.",
     ),
 )
 # All figures that fixtures can be ranked by.

@@ -10,8 +10,7 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.limits import refuse_long, refuse_strong
-from workhold.model.load import Load
+from workhold.limits import counting_number, real, refuse_long, refuse_strong
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLAMP_FREEDOM,
@@ -22,10 +21,8 @@ from workhold.model.quality import (
     RANKED,
     ranked_number,
 )
-from workhold.model.restrictions import Restrictions
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.workpiece import Workpiece
-from workhold.real import counting_number, real
 
 __all__ = ["DEFAULT_RANKING", "PREFERENCES", "Query", "asked_ranking"]
 
@@ -34,7 +31,14 @@ T = TypeVar("T")
 # docs/quality.md, "Which comes first", says why. With loads, the load reaction stands for the clamp amplification.
 DEFAULT_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
 # Of two clamps the one whose forces may differ most: it is set up without a torque wrench.
-PAIR_RANKING = ("warnings", "penalty", "clamp_freedom", "clamp_amplification", "closure_margin", "edge_distance")
+PAIR_RANKING = (
+    "warnings",
+    "penalty",
+    "clamp_freedom",
+    "clamp_amplification",
+    "closure_margin",
+    "edge_distance",
+)
 LISTINGS = ("best", "all")
 SEATING_KEYS = {figure.key for figure in RANKED[len(FIGURES) :]}
 # Orders by what a user wants most.
@@ -103,7 +107,9 @@ def refuse_other_kinds(query: Query) -> None:
     loads: tuple[Any, ...] = query.loads
     for load in loads:
         if not isinstance(load, Load):
-            raise InputError(f"a load cannot be {load!r}: give Load objects, such as workhold.model.load.Load.")
+            raise InputError(
+                f"a load cannot be {load!r}: give Load objects, such as workhold.model.requirements.Load."
+            )
 
 
 @frozen
@@ -160,7 +166,9 @@ class Query:
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
         pairs = self.toolkit.needs_pairs
         object.__setattr__(self, "seating", counting_number("seating", self.seating))
-        object.__setattr__(self, "ranking", chosen_ranking(self.ranking, self.loads, pairs, self.seating is not None))
+        object.__setattr__(
+            self, "ranking", chosen_ranking(self.ranking, self.loads, pairs, self.seating is not None)
+        )
         if self.listing is not None and (not pairs or self.listing not in LISTINGS):
             remedy = f"choose {' or '.join(LISTINGS)}" if pairs else "only fixtures with two clamps have one"
             raise InputError(f"the listing cannot be {self.listing!r}: {remedy}.")
@@ -253,14 +261,18 @@ def chosen_ranking(
         number = ranked_number(name)
         if number is None:
             known = RANKED if seated else FIGURES
-            raise InputError(f"{name!r} is no figure to rank by: choose among {', '.join(f.option for f in known)}.")
+            raise InputError(
+                f"{name!r} is no figure to rank by: choose among {', '.join(f.option for f in known)}."
+            )
         if number >= len(FIGURES) and not seated:
             raise InputError(
                 f"the {RANKED[number].words} is known of fixtures whose seating is worked out: give of how many, such as "
                 "seating 100."
             )
         if number in (LOAD_REACTION, JAW_FORCE_NEEDED) and not loads:
-            raise InputError(f"there is no load to rank by the {FIGURES[number].words}: give at least one load.")
+            raise InputError(
+                f"there is no load to rank by the {FIGURES[number].words}: give at least one load."
+            )
         if number == CLAMP_FREEDOM and not pairs:
             raise InputError(f"there is one clamp: nothing has a {FIGURES[number].words} to rank by.")
         keys.append(RANKED[number].key)

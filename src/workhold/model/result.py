@@ -11,15 +11,14 @@ from attrs import define, evolve, field, fields
 from numpy.typing import NDArray
 
 from workhold.delegates import delegate
-from workhold.fixels.contact_kind import WALL_END
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
+from workhold.model.clamps import ratios, working_forces
 from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
-from workhold.model.force_ratio import ratios, working_forces
-from workhold.model.notes import cut_note, fitted_note
-from workhold.model.proof import Proof
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES
 from workhold.model.query import Query
+from workhold.model.search_report import Proof, cut_note, fitted_note
 from workhold.model.seating import Seating
 from workhold.model.wall import ENDS
 from workhold.model.workpiece import Workpiece
@@ -167,7 +166,7 @@ class Result:
     notes : remarks a user should read, one sentence each; of an outline that departs from the drawn one there is one more.
     statistics : how much work the search was: numbers of contact features, chord curves, sliding pairs, pairs of curves
         compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
-    proof : the account of the search, see :class:`workhold.model.proof.Proof`; None for a result that came without.
+    proof : the account of the search, see :class:`workhold.model.search_report.Proof`; None for a result that came without.
     pairs, seats : of a toolkit with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
         directions; None of others.
     seating : of the first fixtures, as many as there are of these, what else their pegs can do with the part.
@@ -352,7 +351,10 @@ def fixture_at(
         beside = None
         if carrier.contact is WALL_END:
             end, flush = k - arrangement.carriers.index(number), workpiece.flush
-            place, beside = f"{carrier.noun} {ENDS[end]}", flush.touching[flush.number(one.theta)[0]][end].beside
+            place, beside = (
+                f"{carrier.noun} {ENDS[end]}",
+                flush.touching[flush.number(one.theta)[0]][end].beside,
+            )
         at, face = (float(across[0, k]), float(along[0, k])), int(one.face[0, k])
         pegs.append(Peg(carrier.name, column, row, *at, face, forces[k], place, beside, flats[k]))
     x, y = (float(v) for v in table.position[index])

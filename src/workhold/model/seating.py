@@ -220,7 +220,10 @@ class Seating:
     def in_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
         """A copy with what follows from a toolkit, and an opening up to which seats count."""
         travel, sign = toolkit.moving.travel, toolkit.clamping
-        most, opened = None if travel is None else travel.most, JAWS[sign] if toolkit.moving.on is None else CLAMP
+        most, opened = (
+            None if travel is None else travel.most,
+            JAWS[sign] if toolkit.moving.on is None else CLAMP,
+        )
         return evolve(self, opening=opening, most=most, clamping=sign, opened=opened)
 
     @property
@@ -272,7 +275,9 @@ class Seating:
         if self.is_untold:
             out.append("from where on the part is caught is not known")
         elif self.is_hardly_caught:
-            out.append(f"the part is caught only while {self.opened} by less than {self.capture_opening:.3f} mm")
+            out.append(
+                f"the part is caught only while {self.opened} by less than {self.capture_opening:.3f} mm"
+            )
         if reading is not None and round(reading, DECIMALS) < CLOSE_READING:
             words = f"only {reading:.3f} mm otherwise, which a caliper hardly tells"
             out.append(f"a wrong seat reads {'the same' if reading < SAME_READING else words}")
@@ -319,7 +324,9 @@ class Seating:
             "way_out": length(self.way_out),
             "cage": None
             if self.cage is None
-            else {name: [length(end) for end in getattr(self.cage, name)] for name in ("theta_deg", "x", "y")},
+            else {
+                name: [length(end) for end in getattr(self.cage, name)] for name in ("theta_deg", "x", "y")
+            },
             "cage_short": None if self.cage is None else dict(CAGE_SHORT),
             "placing": length(self.placing),
             "sticking_friction": length(self.sticking_friction),

@@ -27,15 +27,14 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
-from workhold.fixels.contact_kind import WALL_END
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.box import Box
-from workhold.geometry.rotation import rotated
-from workhold.geometry.segment import Arc, Point
+from workhold.geometry.segment import Arc, Box, Point
+from workhold.geometry.symmetry import rotated
 from workhold.limits import MOST_STEPS
-from workhold.model.clamp import ShownClamp, clamping_direction, shown_clamps
+from workhold.model.clamps import ShownClamp, clamping_direction, shown_clamps
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.setting import Setting, settings_of
+from workhold.model.setup import Setting, settings_of
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -127,7 +126,11 @@ class ShownCarrier:
     @property
     def named_columns(self) -> list[tuple[int, float]]:
         """Every column that shows and has a name, and its x."""
-        return [(column, self.carrier.place(column, 0, self.travelled)[0]) for column in self.columns if column >= 0]
+        return [
+            (column, self.carrier.place(column, 0, self.travelled)[0])
+            for column in self.columns
+            if column >= 0
+        ]
 
     @property
     def named_rows(self) -> list[tuple[int, float]]:
@@ -154,7 +157,12 @@ class ShownCarrier:
             wanted = {(column + i, row + j) for column, row in self.used for i in near for j in near}
             cells = [cell for cell in cells if cell in wanted]
         return [
-            Hole(*cell, self.carrier.place(*cell, self.travelled), cell in self.used, self.carrier.is_blocked(*cell))
+            Hole(
+                *cell,
+                self.carrier.place(*cell, self.travelled),
+                cell in self.used,
+                self.carrier.is_blocked(*cell),
+            )
             for cell in cells
         ]
 

@@ -12,8 +12,8 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.geometry.hull_edges import HullEdge
-from workhold.geometry.rotation import rotated
+from workhold.geometry.hull import HullEdge
+from workhold.geometry.symmetry import rotated
 
 __all__ = ["ENDS", "ON_WALL", "Flush", "WallEnd"]
 
@@ -86,7 +86,9 @@ class Flush:
                 for end in (edge.start, edge.end)
             )
             touching.append((one, other))
-        shared = [[end.face if len(end.faces) == 1 else -1 - k for k, end in enumerate(pair)] for pair in touching]
+        shared = [
+            [end.face if len(end.faces) == 1 else -1 - k for k, end in enumerate(pair)] for pair in touching
+        ]
         return cls(
             theta=in_one_turn(-np.arctan2(tangent[:, 1], tangent[:, 0])),
             ends=np.array([(edge.start.point, edge.end.point) for edge in edges]).reshape(-1, 2, 2),

@@ -1,10 +1,10 @@
-"""The workpiece: a generalized polygon with holes (paper, section 2.1)."""
+"""The workpiece: a generalized polygon with holes (paper, section 2.1), and its diameter."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property, partial
-from math import isfinite
+from math import hypot, isfinite, pi, sin, tau
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.conventions import READING, SHORTEST
 from workhold.delegates import delegate
 from workhold.errors import InputError
-from workhold.geometry.chords import merged_chords
-from workhold.geometry.face import Face, faces_of_loop
-from workhold.geometry.hull_edges import HullEdge, hull_edges
-from workhold.geometry.intersect import bounding_box
+from workhold.geometry.hull import HullEdge, hull_edges
 from workhold.geometry.loop import (
+    Face,
     LoopShape,
     checked_vertices,
     encloses,
+    faces_of_loop,
     loop_segments,
     near_pairs,
     refuse_meeting_loops,
@@ -31,13 +30,13 @@ from workhold.geometry.loop import (
     reversed_vertices,
     signed_area,
 )
-from workhold.geometry.one_circle import on_one_circle
-from workhold.geometry.segment import Point, Segment
+from workhold.geometry.merged_runs import merged_chords, on_one_circle
+from workhold.geometry.segment import Arc, Point, Segment, bounding_box
+from workhold.limits import real
 from workhold.model.fixture import Pose
 from workhold.model.wall import Flush
-from workhold.real import real
 
-__all__ = ["Workpiece"]
+__all__ = ["Workpiece", "outline_diameter", "segments_diameter"]
 
 
 def numbers_of(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
@@ -106,7 +105,9 @@ class Workpiece:
         try:
             loops = list(loops)
         except TypeError as error:
-            raise InputError(f"{name} has no list of loops: give at least an outer loop in a list.") from error
+            raise InputError(
+                f"{name} has no list of loops: give at least an outer loop in a list."
+            ) from error
         if not loops:
             raise InputError(f"{name} has no loop: give at least an outer loop.")
 
@@ -189,7 +190,9 @@ class Workpiece:
     def _repr_svg_(self) -> str:
         return str(self.draw())
 
-    def draw(self, path: str | Path | None = None, *, peg_radius: float | None = None, unit: str = "mm") -> str:
+    def draw(
+        self, path: str | Path | None = None, *, peg_radius: float | None = None, unit: str = "mm"
+    ) -> str:
         """The part with its faces numbered: SVG text, which a notebook shows as a picture.
 
         Parameters
@@ -272,7 +275,9 @@ def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
     try:
         array = np.array(points, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(f"{loop} is not a list of corners [x, y]: give two numbers for every corner.") from error
+        raise InputError(
+            f"{loop} is not a list of corners [x, y]: give two numbers for every corner."
+        ) from error
     if array.ndim != 2 or array.shape[1] != 2:
         raise InputError(f"{loop} is not a list of corners [x, y]: give two numbers for every corner.")
     if len(array) > 1 and np.hypot(*(array[0] - array[-1])) < SHORTEST:
@@ -298,9 +303,9 @@ def straightened_remark(count: int) -> tuple[str, ...]:
     """What to say of arcs that were taken for lines."""
     arcs = "1 arc that is nowhere" if count == 1 else f"{count} arcs that are nowhere"
     taken = "one" if count == 1 else "lines"
-    return (f"{arcs} farther than {READING:g} mm, or a millionth of its length, from a line taken for {taken}.",)[
-        :count
-    ]
+    return (
+        f"{arcs} farther than {READING:g} mm, or a millionth of its length, from a line taken for {taken}.",
+    )[:count]
 
 
 def rounded_remark(count: int) -> tuple[str, ...]:
@@ -332,3 +337,66 @@ def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
                     f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: holes may not "
                     "overlap; load the inner piece as a part of its own."
                 )
+
+
+# Distances that differ by less in proportion may be equal but for rounding.
+ROUNDED = 1e-9
+
+
+def outline_diameter(workpiece: Workpiece) -> float:
+    """Largest distance in mm between two points of the silhouette.
+
+    It is reached between two joints, between a joint and the far side of an arc, or between the far sides of two arcs;
+    far sides lie on the line through the arcs' centres.
+    """
+    outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
+    middle = np.array([segment.at(0.0) for segment in outer])
+    reach = np.array([farthest_from_middle(segment) for segment in outer])
+    apart = [np.hypot(*(middle[index:] - middle[index]).T) for index in range(len(outer))]
+    best, least = 0.0, max(float(distances.max()) for distances in apart)
+    for index, distances in enumerate(apart):
+        # Only pairs that are far enough apart are looked at closely.
+        most = (distances + reach[index] + reach[index:]) * (1.0 + ROUNDED)
+        for other in index + np.flatnonzero(most >= max(best, least)):
+            best = max(best, segments_diameter(outer[index], outer[other]))
+    return best
+
+
+def farthest_from_middle(segment: Segment) -> float:
+    """Largest distance in mm between the middle of a segment and a point of it."""
+    if isinstance(segment, Arc):
+        return 2.0 * segment.radius * sin(min(segment.half_sweep, pi) / 2.0)
+    return segment.half_extent
+
+
+def segments_diameter(a: Segment, b: Segment) -> float:
+    """Largest distance in mm between a point of one segment and a point of another."""
+    best = max(hypot(p[0] - q[0], p[1] - q[1]) for p in (a.start, a.end) for q in (b.start, b.end))
+    for arc, other in ((a, b), (b, a)):
+        if isinstance(arc, Arc):
+            for q in (other.start, other.end):
+                best = max(best, far_side(arc, q))
+    if isinstance(a, Arc) and isinstance(b, Arc):
+        far_a, far_b = far_point(a, b.center), far_point(b, a.center)
+        if far_a is not None and far_b is not None:
+            best = max(best, hypot(far_a[0] - far_b[0], far_a[1] - far_b[1]))
+        opposite = abs((a.mid_angle - b.mid_angle) % tau - pi)
+        if a.center == b.center and opposite <= a.half_sweep + b.half_sweep:
+            best = max(best, a.radius + b.radius)
+    return best
+
+
+def far_point(arc: Arc, point: tuple[float, float]) -> tuple[float, float] | None:
+    """The point of an arc's circle farthest from a point, if it lies on the arc."""
+    dx, dy = arc.center[0] - point[0], arc.center[1] - point[1]
+    distance = hypot(dx, dy)
+    if distance == 0.0:
+        return None
+    far = (arc.center[0] + arc.radius * dx / distance, arc.center[1] + arc.radius * dy / distance)
+    return far if abs(arc.parameter(far)) <= arc.half_sweep else None
+
+
+def far_side(arc: Arc, point: tuple[float, float]) -> float:
+    """Distance in mm from a point to the far side of an arc, 0 if that is not on the arc."""
+    far = far_point(arc, point)
+    return 0.0 if far is None else hypot(far[0] - point[0], far[1] - point[1])

@@ -1,32 +1,41 @@
-"""What commands and tools say, as plain data for JSON: lengths in mm, angles in degrees, forces in N.
+"""Fixtures and results as plain data for JSON, and all fixtures of a result as a table of pandas or Arrow.
 
-A number that JSON does not have, such as an infinite force, is None. The page has answers of its own (``web.answers``),
-which also tell where everything is drawn.
+Lengths are in mm, angles in degrees, forces in N. A number that JSON does not have, such as an infinite
+force, is None. The page has answers of its own (``web.answers``), which also tell where everything is
+drawn. A table has the columns of the CSV form and a row for each fixture; pandas and Arrow are needed for
+nothing else, and are imported only there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from importlib import import_module
 from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from workhold.errors import InputError
+from workhold.files.result.fixture_text import column_names, fixture_rows, seating_values
 from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields, written
 from workhold.fixels.carrier import Carrier
+from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.face import Face
+from workhold.geometry.loop import Face
 from workhold.geometry.segment import Arc
-from workhold.model.explanation import Explanation
+from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
-from workhold.model.proof import Proof
+from workhold.model.quality import SEATING_FIGURES
 from workhold.model.result import Result
-from workhold.model.setting import settings_of
-from workhold.model.tightening import order_words
+from workhold.model.search_report import Explanation, Proof
+from workhold.model.setup import settings_of
 from workhold.model.workpiece import Workpiece
-from workhold.seating.by_hand import by_hand
+from workhold.seating.clamping import by_hand
 
 if TYPE_CHECKING:
-    from workhold.files.toolkit.reader import LoadedToolkit
-    from workhold.listing.near_duplicates import Entries
+    from workhold.files.toolkit_file import LoadedToolkit
+    from workhold.listing.identity import Entries
+    from workhold.model.result import Result
     from workhold.search.exploring import Explored
     from workhold.statics.loads import LoadCase, Worst
     from workhold.verification import Verification
@@ -39,6 +48,8 @@ __all__ = [
     "load_case_data",
     "part_data",
     "result_data",
+    "to_arrow",
+    "to_pandas",
     "toolkit_data",
     "verification_data",
 ]
@@ -60,7 +71,10 @@ def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, An
         "bounds": list(workpiece.bounds),
         "departure": workpiece.departure,
         "holes": len(workpiece.loops) - 1,
-        "faces": [{"number": face.number, "loop": loop_of[face.number], **face_data(face)} for face in workpiece.faces],
+        "faces": [
+            {"number": face.number, "loop": loop_of[face.number], **face_data(face)}
+            for face in workpiece.faces
+        ],
         "remarks": list(remarks),
     }
 
@@ -99,12 +113,17 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
         ],
         "pose": {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y},
         "settings": [
-            {"name": one.name, "sign": one.sign, "length": one.length} for one in settings_of(fixture, toolkit)
+            {"name": one.name, "sign": one.sign, "length": one.length}
+            for one in settings_of(fixture, toolkit)
         ],
         **(
             {}
             if pair is None
-            else {"pairs": pair.count, "ratio": [finite(one) for one in pair.ratio], "order": order_words(fixture)}
+            else {
+                "pairs": pair.count,
+                "ratio": [finite(one) for one in pair.ratio],
+                "order": order_words(fixture),
+            }
         ),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
         **({} if fixture.seating is None else {"seating": fixture.seating.as_fields()}),
@@ -134,7 +153,9 @@ def load_case_data(case: LoadCase) -> dict[str, Any]:
         "largest": [finite(value) for value in case.largest],
         "reaction": worst_data(case.reaction),
         "needed": worst_data(case.needed),
-        "needed_with_friction": None if case.needed_with_friction is None else finite(case.needed_with_friction),
+        "needed_with_friction": None
+        if case.needed_with_friction is None
+        else finite(case.needed_with_friction),
         "keeps_contact": bool(case.keeps_contact),
     }
 
@@ -171,7 +192,8 @@ def proof_data(proof: Proof) -> dict[str, Any]:
     """The account of a search as a result file has it, but that faces are called so."""
     entry = proof_entry(proof)
     lost = [
-        {("faces" if key == "segments" else key): value for key, value in one.items()} for one in entry["undecided"]
+        {("faces" if key == "segments" else key): value for key, value in one.items()}
+        for one in entry["undecided"]
     ]
     return {**entry, "undecided": lost}
 
@@ -182,7 +204,8 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
     return {
         "contacts": explanation.contacts,
         "removals": [
-            {"rule": removal.rule, "before": removal.before, "after": removal.after} for removal in explanation.removals
+            {"rule": removal.rule, "before": removal.before, "after": removal.after}
+            for removal in explanation.removals
         ],
         "last_rule": explanation.last_rule,
         "nearest": None
@@ -193,7 +216,9 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
                 "change": help.change,
                 "fixtures": help.fixtures,
                 "complete": help.complete,
-                "fields": None if help.fields is None else {key: written(value) for key, value in help.fields.items()},
+                "fields": None
+                if help.fields is None
+                else {key: written(value) for key, value in help.fields.items()},
             }
             for help in explanation.helps
         ],
@@ -239,5 +264,73 @@ def verification_data(outcome: Verification) -> dict[str, Any]:
         "bits": outcome.bits,
         "is_compared": outcome.is_compared,
         "faults": list(outcome.faults),
-        "unproven": [{"rank": one.index + 1, "verdict": one.verdict, "reason": one.reason} for one in outcome.unproven],
+        "unproven": [
+            {"rank": one.index + 1, "verdict": one.verdict, "reason": one.reason} for one in outcome.unproven
+        ],
+    }
+
+
+# What the extra ``tables`` asks for.
+REQUIREMENTS = {"pandas": "pandas>=2.2", "pyarrow": "pyarrow>=17"}
+
+
+def to_pandas(result: Result) -> Any:
+    """A DataFrame, see :meth:`workhold.Result.to_pandas`."""
+    return library("pandas").DataFrame(columns_of(result))
+
+
+def to_arrow(result: Result) -> Any:
+    """A table of Arrow, see :meth:`workhold.Result.to_arrow`."""
+    return library("pyarrow").table(columns_of(result))
+
+
+def library(name: str) -> Any:
+    """A library of an extra.
+
+    Raises
+    ------
+    InputError
+        When it is not installed.
+    """
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise InputError(
+            f"this needs a library that is not installed: pip install '{REQUIREMENTS[name]}'."
+        ) from error
+
+
+def columns_of(result: Result) -> dict[str, Any]:
+    """The columns by name: numbers as arrays (N,), words as lists; lengths in mm, angles in degrees."""
+    toolkit = result.toolkit
+    names, count = column_names(result), 6 * toolkit.peg_count
+    titles = np.array([one.title for one in toolkit.arrangements])
+    carriers = [[toolkit.carriers[k] for k in one.carriers] for one in toolkit.arrangements]
+    blocks: list[list[Any]] = []
+    for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
+        looks: list[Any] = []
+        if FLAT_PIN in toolkit.contacts:
+            *before, flats = zip(*rows, strict=True)
+            rows, looks = zip(*before, strict=True), list(np.array(flats, np.float64).T)
+        numbers = [np.array(column) for column in zip(*rows, strict=True)]
+        block: list[Any] = [titles[kinds], *numbers[count:]]
+        for peg in range(toolkit.peg_count):
+            column, row, *others = numbers[6 * peg : 6 * peg + 6]
+            jaws = [carriers[kind][peg] for kind in kinds]
+            holes = [
+                jaw.place_name(a, b) for jaw, a, b in zip(jaws, column.tolist(), row.tolist(), strict=True)
+            ]
+            block += [np.array(holes), np.array([jaw.name for jaw in jaws]), column, row, *others]
+        block += looks
+        blocks.append(block)
+    told = len(SEATING_FIGURES) if result.seating else 0
+    joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)] or [np.zeros(0)] * (
+        len(names) - 1 - told
+    )
+    columns = [np.arange(1, len(result) + 1), *joined]
+    if result.seating:
+        columns += list(np.array(seating_values(result)).T)
+    return {
+        name: column.tolist() if column.dtype.kind == "U" else column
+        for name, column in zip(names, columns, strict=True)
     }

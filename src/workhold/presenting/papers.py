@@ -1,4 +1,4 @@
-"""Papers of a fixture: its setup sheet, and its set-up for a CAM system or as a list of pins."""
+"""Pictures that a notebook shows, setup sheets, and set-ups for a CAM system or as a list of pins."""
 
 from __future__ import annotations
 
@@ -7,17 +7,90 @@ from hashlib import file_digest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workhold.drawing.sheet_details import PAPERS
+from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
+from workhold.drawing.part_pictures import draw_features
+from workhold.drawing.render import render
+from workhold.drawing.sheet_facts import PAPERS
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.model.part_zero import part_zero
+from workhold.listing.identity import entries
+from workhold.model.setup import part_zero
 from workhold.units import unit_named
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
+    from workhold.model.workpiece import Workpiece
 
-__all__ = ["MODEL_ENDINGS", "PAPER_ENDINGS", "save_sheet", "write_model", "write_paper"]
+__all__ = [
+    "MODEL_ENDINGS",
+    "PAPER_ENDINGS",
+    "Picture",
+    "fixture_picture",
+    "result_picture",
+    "save_sheet",
+    "workpiece_picture",
+    "write_model",
+    "write_paper",
+]
+
+
+class Picture(str):
+    """SVG text. A notebook shows it as the picture it is."""
+
+    __slots__ = ()
+
+    def _repr_svg_(self) -> str:
+        return str(self)
+
+    def save(self, path: str | Path) -> Picture:
+        """Write the picture; itself again.
+
+        Parameters
+        ----------
+        path : of a file whose name ends in .svg or .png.
+
+        Raises
+        ------
+        InputError
+            For another ending, and when the file cannot be written.
+        """
+        write_bytes(path, render(str(self), Path(path).suffix))
+        return self
+
+
+def saved(svg: str, path: str | Path | None) -> Picture:
+    """A picture, written where a path is given."""
+    picture = Picture(svg)
+    return picture if path is None else picture.save(path)
+
+
+def workpiece_picture(
+    workpiece: Workpiece, path: str | Path | None = None, *, peg_radius: float | None = None, unit: str = "mm"
+) -> Picture:
+    """The workpiece with its faces numbered, see :meth:`workhold.Workpiece.draw`."""
+    return saved(draw_features(workpiece, peg_radius=peg_radius, unit=unit_named(unit)), path)
+
+
+def fixture_picture(
+    fixture: Fixture, path: str | Path | None = None, *, title: str | None = None, unit: str = "mm"
+) -> Picture:
+    """The fixture to set up from, see :meth:`workhold.Fixture.draw`."""
+    listed = fixture.listing
+    words = f"Fixture {listed.rank} of {listed.count}" if title is None else title
+    toolkit = listed.result.toolkit
+    return saved(
+        draw_fixture(fixture, listed.result.workpiece, toolkit, title=words, unit=unit_named(unit)), path
+    )
+
+
+def result_picture(result: Result, path: str | Path | None = None, *, unit: str = "mm") -> Picture:
+    """The best fixtures at a glance, see :meth:`workhold.Result.draw`."""
+    if not len(result):
+        why = f" {result.reasons[0]}" if result.reasons else ""
+        raise InputError(f"there is no fixture to draw.{why}")
+    return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path)
+
 
 PAPER_ENDINGS = (".pdf", ".svg", ".png")
 MODEL_ENDINGS = (".dxf", ".step", ".stp", ".csv")
@@ -37,11 +110,13 @@ def save_sheet(
     **asked: Any,
 ) -> None:
     """Write the papers of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
-    from workhold.statics.jaw import jaw_stiffness
+    from workhold.statics.loads import jaw_stiffness
 
     listed, ending = fixture.listing, Path(path).suffix.lower()
     if fixture != listed.result[listed.row]:
-        raise InputError("this fixture was changed since it was listed: take the sheet of the one in its result.")
+        raise InputError(
+            "this fixture was changed since it was listed: take the sheet of the one in its result."
+        )
     settings = {"zero": None, "dowel": None, **dict.fromkeys(SIZES), **asked, "unit": unit_named(unit)}
     if ending in MODEL_ENDINGS:
         write_model(path, listed.result, listed.row + 1, settings, clearance)
@@ -78,7 +153,9 @@ def write_paper(
     ending = Path(path).suffix.lower()
     if ending not in PAPER_ENDINGS:
         endings = ", ".join((*PAPER_ENDINGS, *MODEL_ENDINGS[:-1]))
-        raise InputError(f"{path} names no kind of setup sheet: let the name end in {endings} or {MODEL_ENDINGS[-1]}.")
+        raise InputError(
+            f"{path} names no kind of setup sheet: let the name end in {endings} or {MODEL_ENDINGS[-1]}."
+        )
     pages = result_sheet(result, rank, result_hash=hash_of(result_file), **settings)
     if ending == ".pdf":
         from workhold.drawing.pdf import svg_to_pdf
@@ -107,7 +184,9 @@ def hash_of(result_file: str | Path | None) -> str:
         raise InputError(f"{result_file} cannot be read: {error.strerror or error}.") from error
 
 
-def write_model(path: str | Path, result: Result, rank: int, settings: dict[str, Any], clearance: float | None) -> None:
+def write_model(
+    path: str | Path, result: Result, rank: int, settings: dict[str, Any], clearance: float | None
+) -> None:
     """Write the set-up for a CAM system, or the list of its pins.
 
     Parameters
@@ -124,20 +203,20 @@ def write_model(path: str | Path, result: Result, rank: int, settings: dict[str,
     fixture, toolkit, unit = result[rank - 1], result.toolkit, settings["unit"]
     zero, ending = part_zero(result.workpiece, settings["zero"], unit), Path(path).suffix.lower()
     if ending == ".csv":
-        from workhold.files.pin_list import pin_list
-        from workhold.model.dowel import fit_words
+        from workhold.files.result.fixture_text import pin_list
+        from workhold.model.dowels import fit_words
 
         fit, diameter = result.query.tolerance.fit, 2 * toolkit.plates[0].peg_radius
         dowel = settings["dowel"] or (None if fit is None else fit_words(fit, diameter))
         text = pin_list(fixture, toolkit, unit, dowel, settings["peg_length"])
         write_bytes(path, text.encode("utf-8"))
     elif ending == ".dxf":
-        from workhold.files.dxf.setup import CLEARANCE, write_setup_dxf
+        from workhold.files.dxf.writer import CLEARANCE, write_setup_dxf
 
         keep_off = CLEARANCE if clearance is None else clearance
         write_setup_dxf(fixture, result.workpiece, toolkit, path, zero=zero, clearance=keep_off)
     else:
-        from workhold.files.step.setup import write_setup_step
+        from workhold.files.step.writer import write_setup_step
 
         sizes = {name: settings[name] for name in SIZES}
         write_setup_step(fixture, result.workpiece, toolkit, path, zero=zero, **sizes)

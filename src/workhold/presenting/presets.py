@@ -1,14 +1,14 @@
-"""Toolkits that people own, by name, for their classes (``files.toolkit.presets`` has them)."""
+"""Toolkits that people own, by name, for their classes (``files.toolkit_file`` has them)."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from workhold.errors import InputError
-from workhold.files.toolkit.presets import load_toolkit, preset, preset_names
+from workhold.files.toolkit_file import load_toolkit, preset, preset_names
 from workhold.fixels.kinds import KINDS
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Tolerance
 
 __all__ = ["preset_fields", "preset_names_of", "preset_tolerance"]
 
@@ -24,7 +24,7 @@ def preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
     Raises
     ------
     InputError
-        As :func:`workhold.files.toolkit.presets.load_toolkit`, and for a toolkit of another class.
+        As :func:`workhold.files.toolkit_file.load_toolkit`, and for a toolkit of another class.
     """
     loaded = load_toolkit(name)
     is_of = KINDS[loaded.kind]
@@ -39,6 +39,6 @@ def preset_tolerance(name: str) -> Tolerance:
     Raises
     ------
     InputError
-        As :func:`workhold.files.toolkit.presets.load_toolkit`.
+        As :func:`workhold.files.toolkit_file.load_toolkit`.
     """
     return load_toolkit(name).tolerance

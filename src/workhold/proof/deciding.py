@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.kernels.base.given import Lattice, Setting
 from workhold.kernels.contact import record
-from workhold.kernels.contact.equations import WORK_LENGTH
+from workhold.kernels.contact.record import WORK_LENGTH
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
 from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certified, discs_around
-from workhold.model.proof import GIVEN_UP, UNBOUNDED, Undecided
+from workhold.model.search_report import GIVEN_UP, UNBOUNDED, Undecided
 from workhold.proof.degenerate import hold_nothing
 
 if TYPE_CHECKING:
@@ -144,7 +144,10 @@ def peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]]:
 
 def box_reach(records: Array, length: float) -> Array:
     """How far the exact unknowns (L psi, tail x, tail y, separation) may be from those of records, (N, 4) in mm."""
-    turn, radius = length * records[:, record.REACH] + LEAST_REACH, records[:, record.LARGEST_RADIUS] + LEAST_REACH
+    turn, radius = (
+        length * records[:, record.REACH] + LEAST_REACH,
+        records[:, record.LARGEST_RADIUS] + LEAST_REACH,
+    )
     return np.stack([turn, radius, radius, 2.0 * (radius + turn)], axis=1)
 
 

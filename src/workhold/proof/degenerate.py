@@ -1,6 +1,6 @@
 r"""Contacts that hold nothing wherever they are, recognized by what they touch and by the holes that their pegs stand in.
 
-Four wrenches close only if every three of them are independent (``kernels.contact.closure``). With two clamps the wrenches
+Four wrenches close only if every three of them are independent (``kernels.contact.rules``). With two clamps the wrenches
 of the three standing pegs must be independent. Where lengths of a part and of a lattice agree exactly, some three are
 dependent in the only place where they can touch. Such a place is a double root of the contact equations or one of a
 continuum of solutions. What the rounding of a drawing makes of it takes long to decide, and means nothing. Each family is a
@@ -69,7 +69,9 @@ class TouchedFeatures(NamedTuple):
     def take(self, numbers: NDArray[np.int64]) -> TouchedFeatures:
         """What the peg touches in some of the records."""
         is_arc, middle, axis, radius, place = self
-        return TouchedFeatures(is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers])
+        return TouchedFeatures(
+            is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers]
+        )
 
 
 def hold_nothing(records: Array, problem: Problem) -> Bools:
@@ -104,7 +106,9 @@ def touched(records: Array, rows: Array, lattice: Lattice) -> list[TouchedFeatur
     radius = np.where(is_arc, rows[..., RADIUS], 0.0)
     columns, lines = records[:, record.COLUMNS : record.ROWS], records[:, record.ROWS : record.PSI]
     place = columns * lattice.pitch_x + 1j * lines * lattice.pitch_y
-    return [TouchedFeatures(is_arc[:, k], middle[:, k], axis[:, k], radius[:, k], place[:, k]) for k in range(4)]
+    return [
+        TouchedFeatures(is_arc[:, k], middle[:, k], axis[:, k], radius[:, k], place[:, k]) for k in range(4)
+    ]
 
 
 def cross(a: Points, b: Points) -> Array:
@@ -148,7 +152,9 @@ def both(known: Array) -> Iterator[Array]:
     yield -root
 
 
-def turning(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float) -> Bools:
+def turning(
+    records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float
+) -> Bools:
     """Where the pegs of a and b turn about one centre, and that of c reaches what it touches at one place of its way."""
     chord = b.place - a.place
     apart = np.where(chord == 0.0, 1.0, np.abs(chord))
@@ -156,7 +162,10 @@ def turning(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFe
     psi, first = records[:, record.PSI], records[:, record.TAIL_X] + 1j * records[:, record.TAIL_Y]
     away = a.middle - first
     seen = away * np.exp(-1j * psi)
-    turn, off = records[:, record.REACH] + LEAST_REACH / length, records[:, record.LARGEST_RADIUS] + LEAST_REACH
+    turn, off = (
+        records[:, record.REACH] + LEAST_REACH / length,
+        records[:, record.LARGEST_RADIUS] + LEAST_REACH,
+    )
     reach = 1.5 * off + turn * np.abs(away)
     to_center = a.middle - c.middle
     far = np.where(c.is_arc, np.abs(to_center), np.abs(cross(c.axis, to_center)))

@@ -14,11 +14,10 @@ from flint import arb, ctx
 from workhold.contact.problem import Problem
 from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.fixels.toolkit import Carrier
-from workhold.geometry.hull_edges import HullEdge
+from workhold.geometry.hull import HullEdge
 from workhold.kernels.base.feature import HALF_EXTENT, HIGH_SLACK, LOW_SLACK, SIGN
-from workhold.proof.clamp_reactions import SharpReactions, rounded
 from workhold.proof.deciding import BALLS
-from workhold.proof.exact_rows import exact_rows
+from workhold.proof.exact_contacts import SharpReactions, exact_rows, rounded
 
 __all__ = [
     "Candidate",
@@ -72,7 +71,9 @@ class SharpContacts:
     null: list[float]
 
 
-def pressing(candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]) -> bool | None:
+def pressing(
+    candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
+) -> bool | None:
     """Whether a candidate presses the part, its contacts inside their features; None where that is not decided.
 
     Parameters
@@ -89,7 +90,9 @@ def pressing(candidate: Candidate, problem: Problem, plate: Carrier, push: tuple
     return None
 
 
-def verdict_on(candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]) -> bool | None:
+def verdict_on(
+    candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
+) -> bool | None:
     """The verdict at the precision in force."""
     contacts = contacts_of(candidate, problem, plate)
     if contacts is None:
@@ -153,7 +156,7 @@ def sharp_place(
 
 
 def null_of(contacts: tuple[arb, Contact, Contact], length: arb) -> list[arb]:
-    """The forces of the wall's two ends, locator and clamp, not scaled; see ``search.wall_closure.closure``."""
+    """The forces of the wall's two ends, locator and clamp, not scaled; see ``search.wall_contacts.closure``."""
     wall, ((u, v), a, _), ((p, q), b, _) = contacts
     across, ahead = abs(a[0]), abs(b[0])
     last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length

@@ -37,7 +37,7 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.base.given import Limits
-from workhold.model.proof import AT_AN_EDGE, NEARLY_DOUBLE
+from workhold.model.search_report import AT_AN_EDGE, NEARLY_DOUBLE
 
 __all__ = ["CandidateBox", "BoxOutcome", "contact_value", "solutions_in"]
 
@@ -177,7 +177,10 @@ def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> 
         if half >= pi:
             return []
         place, scale = arb.atan2(across, along), row[RADIUS]
-    return [(half - place) * scale - margin + row[HIGH_SLACK], (half + place) * scale - margin + row[LOW_SLACK]]
+    return [
+        (half - place) * scale - margin + row[HIGH_SLACK],
+        (half + place) * scale - margin + row[LOW_SLACK],
+    ]
 
 
 def wrench_minors(here: BoxContacts, length: float) -> list[arb]:
@@ -242,7 +245,8 @@ class SingularFrame:
         """The unknowns at a place in the frame."""
         steps = [sum((float(self.right[j, k]) * place[k] for k in range(4)), arb(0)) for j in range(4)]
         return [
-            m + (s / self.length if j == 0 else s) for j, (m, s) in enumerate(zip(self.box.middle, steps, strict=True))
+            m + (s / self.length if j == 0 else s)
+            for j, (m, s) in enumerate(zip(self.box.middle, steps, strict=True))
         ]
 
     def places(self, place: Sequence[arb]) -> BoxContacts:
@@ -259,7 +263,9 @@ class SingularFrame:
         slopes = self.combining * arb_mat(scaled) * self.turning
         return [[slopes[i, j] for j in range(4)] for i in range(4)]
 
-    def step(self, place: list[arb], here: BoxContacts, regular: bool = False) -> tuple[list[arb] | None, bool]:
+    def step(
+        self, place: list[arb], here: BoxContacts, regular: bool = False
+    ) -> tuple[list[arb] | None, bool]:
         """A step of the interval Newton method: the part of a place that may hold solutions (None when there is none), and
         whether it holds exactly one. ``here`` are the contacts at the place.
 
@@ -298,7 +304,9 @@ def never() -> bool:
     return False
 
 
-def solutions_in(box: CandidateBox, limits: Limits, is_stopped: Callable[[], bool] = never) -> BoxOutcome | None:
+def solutions_in(
+    box: CandidateBox, limits: Limits, is_stopped: Callable[[], bool] = never
+) -> BoxOutcome | None:
     """Finds every fixture of a box, or says why that cannot be decided; None when the work was stopped before."""
     with ctx.workprec(PRECISIONS[0]):
         frame = SingularFrame.of(box, limits)

@@ -1,18 +1,18 @@
-"""Why no contacts on a lattice make a fixture: every simultaneous contact is asked which rule it breaks
-first.
+"""Why no contacts on a lattice make a fixture: what each rule takes away of them until none is left.
 
-The rules are asked one after the other, as a person would. First comes what the user ruled out, then whether
-four pegs can touch at all, contact margin, smallest gap, closure, clamping, and the place on the carriers.
-The counts are of contacts as computed, in plain numbers; the proof that there is no fixture is the search's.
+Every simultaneous contact is asked which rule it breaks first. The rules are asked one after the other, as a
+person would. First comes what the user ruled out, then whether four pegs can touch at all, contact margin,
+smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts as computed, in
+plain numbers; the proof that there is no fixture is the search's.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 import numpy as np
-from attrs import define, evolve
+from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.features import end_distances
@@ -20,24 +20,63 @@ from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.rotation import rotated
+from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
 from workhold.kernels.contact import record
 from workhold.limits import thread_count
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import placeable, placed
-from workhold.model.explanation import NearestMiss, Removal
-from workhold.model.restrictions import Restrictions
+from workhold.model.requirements import Restrictions
 from workhold.model.result import fixture_at
+from workhold.model.search_report import NearestMiss, Removal
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks
-from workhold.search.contacts import contacts_of
-from workhold.search.removals import SECOND_CLAMP, Removals
-from workhold.search.toolkit_search import ToolkitSearch
-from workhold.statics.wrenches import outward_normals
+from workhold.search.toolkit_search import ToolkitSearch, contacts_of
+from workhold.statics.contact_matrix import outward_normals
 from workhold.units import Unit
 
-__all__ = ["all_contacts", "removals_of"]
+__all__ = ["SECOND_CLAMP", "Removals", "all_contacts", "removals_of"]
+
+# What is asked last of locators and a clamp, where two clamps are needed.
+SECOND_CLAMP = "a second clamp that holds the part together with the first, and is needed for it"
+
+
+def with_some_before(removals: Iterable[Removal]) -> tuple[Removal, ...]:
+    """Removals without those of rules for which no contact was left."""
+    return tuple(removal for removal in removals if removal.before > 0)
+
+
+@frozen
+class Removals:
+    """What rules take away, one after the other.
+
+    Parameters
+    ----------
+    first : how many contacts there are before any rule.
+    removals : of the rules for which contacts were left, in the order in which they are asked.
+    nearest : what comes nearest to a fixture, if anything is near.
+    """
+
+    first: int
+    removals: tuple[Removal, ...] = field(converter=with_some_before)
+    nearest: NearestMiss | None
+
+    @classmethod
+    def together(cls, found: Sequence[Removals]) -> Removals:
+        """The removals of several directions as one, with what came nearest where the most was left
+        longest."""
+        # A rule may be asked twice in one direction, early where that saves work and again at its place.
+        counts: dict[tuple[str, int], tuple[int, int]] = {}
+        for one in found:
+            rules = [removal.rule for removal in one.removals]
+            for number, removal in enumerate(one.removals):
+                asked = removal.rule, rules[:number].count(removal.rule)
+                before, after = counts.get(asked, (0, 0))
+                counts[asked] = before + removal.before, after + removal.after
+        nearest = max(found, key=lambda one: len(one.removals)).nearest
+        removals = tuple(Removal(rule, *numbers) for (rule, _), numbers in counts.items())
+        return cls(sum(one.first for one in found), removals, nearest)
+
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -156,7 +195,9 @@ def restriction_removals(problem: Problem, threads: int | None, left: int) -> tu
         steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free))
     if asked.zones:
         # What stands over a zone is a peg's body.
-        steps.append(("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), toolkit.without(holes)))
+        steps.append(
+            ("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), toolkit.without(holes))
+        )
     if holes or bodies:
         steps.append((toolkit.wording.holes, evolve(asked, angles=()), toolkit))
     if asked.angles:
@@ -185,11 +226,19 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
     out: list[Rule] = []
     if margin > 0.0:
         out.append(
-            ("contact margin", lambda c: c.end_distance >= margin - END_SLACK, partial(short_of_margin, margin, unit))
+            (
+                "contact margin",
+                lambda c: c.end_distance >= margin - END_SLACK,
+                partial(short_of_margin, margin, unit),
+            )
         )
     if frame.toolkit.gap is not None:
         out.append(
-            ("smallest gap", lambda c: c.candidates.gap >= frame.gap - GAP_SLACK, partial(too_near, frame, unit))
+            (
+                "smallest gap",
+                lambda c: c.candidates.gap >= frame.gap - GAP_SLACK,
+                partial(too_near, frame, unit),
+            )
         )
     out.append(("closure", lambda c: c.margin > LEAST_CLOSURE, open_contact))
     out.append(("clamping", lambda c: c.clamping > LEAST_CLAMPING, partial(unclamped, frame)))

@@ -65,7 +65,9 @@ def members_of_cell(table: CurveTable, low: float, high: float) -> NDArray[np.in
     return np.flatnonzero(there | (first <= end - tau) | (last >= begin + tau))
 
 
-def member_counts(table: CurveTable, low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.int64]:
+def member_counts(
+    table: CurveTable, low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.int64]:
     """How many curves exist somewhere in each of some cells (K,), but for a hair at their ends."""
     first, last = table.sorted_spans
     turns = [-tau, 0.0, tau]

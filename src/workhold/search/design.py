@@ -13,27 +13,28 @@ from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC
-from workhold.kernels.crossing.two_and_two import CANDIDATES, CONTACTS
-from workhold.limits import thread_count
-from workhold.listing.best import BestFixtures
-from workhold.listing.collector import ResultCollector
-from workhold.listing.listed import MEASURED, Work, best_result, collected_result, listed_result, stage
-from workhold.listing.ways import joined_ways
-from workhold.model.load import Load
-from workhold.model.notes import no_fixture_notes, no_place_note
+from workhold.kernels.curves.two_and_two import CANDIDATES, CONTACTS
+from workhold.limits import counting_number, thread_count
+from workhold.listing.collector import BestFixtures, ResultCollector
+from workhold.listing.results import (
+    MEASURED,
+    Work,
+    best_result,
+    collected_result,
+    joined_ways,
+    listed_result,
+    stage,
+)
 from workhold.model.query import Query, asked_ranking
-from workhold.model.restrictions import Restrictions
+from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
-from workhold.model.tolerance import Tolerance
+from workhold.model.search_report import no_fixture_notes, no_place_note
 from workhold.model.workpiece import Workpiece
-from workhold.real import counting_number
 from workhold.search.cells import Block, run_blocks
-from workhold.search.contacts import contacts_of
 from workhold.search.lattice_shares import LatticeShares
-from workhold.search.preview import Preview, Previews
 from workhold.search.seated import Sink, deliver_seated, seated_answer
-from workhold.search.shares import Locating, answer_in_shares
-from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
+from workhold.search.shares import Locating, Preview, Previews, answer_in_shares
+from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch, contacts_of
 
 __all__ = ["Sink", "answer", "design"]
 
@@ -165,8 +166,7 @@ def answer(
 def shares_beside_wall(query: Query, cancel: Event | None) -> Locating:
     """The search beside a wall: of what slides in holes of its own, or of a locator with clamps in the same holes."""
     # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
-    from workhold.search.lattice_pair_shares import LatticePairShares
-    from workhold.search.wall_shares import WallShares
+    from workhold.search.wall_shares import LatticePairShares, WallShares
 
     return (LatticePairShares if query.toolkit.moving.on is None else WallShares).of(query, cancel)
 
@@ -208,7 +208,9 @@ def answer_of_a_way(
             collector = ResultCollector(problem, pool, 2 * threads, cancel, sink.folder)
             with collector.given_up_on_errors():
                 _, done = run_blocks(blocks, threads, before, cancel, collector.take, look, search.stop, pool)
-                result = collected_result(collector, work_of(search, blocks, done), stage(rest, 0.0, MEASURED))
+                result = collected_result(
+                    collector, work_of(search, blocks, done), stage(rest, 0.0, MEASURED)
+                )
                 result = with_reason(result, search, threads, cancel)
                 listed = collector.listed
                 if listed < sum(result.found.values()):

@@ -44,7 +44,9 @@ class Explored:
         return sum(self.found.values())
 
 
-def explore(queries: Iterable[tuple[str, Query | InputError]], cancel: Event | None = None) -> Iterator[Explored]:
+def explore(
+    queries: Iterable[tuple[str, Query | InputError]], cancel: Event | None = None
+) -> Iterator[Explored]:
     """Answers the same query for one toolkit after the other.
 
     Parameters
@@ -83,5 +85,7 @@ def first_choice(
         return None
     quality = np.array([[item.figures.get(figure.key, np.nan) for figure in FIGURES] for item in able])
     keys = [(not item.fit, not is_sold(item.name)) for item in able]
-    order = sorted(range(len(able)), key=lambda k: (keys[k], *(key[k] for key in figure_keys(quality, ranking))))
+    order = sorted(
+        range(len(able)), key=lambda k: (keys[k], *(key[k] for key in figure_keys(quality, ranking)))
+    )
     return able[order[0]]

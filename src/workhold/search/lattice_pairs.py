@@ -37,9 +37,9 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
-from workhold.kernels.contact.closure import ROUNDING
+from workhold.kernels.contact.rules import ROUNDING
 from workhold.proof.lattice_pair import LatticePair, verdict_on_pair
-from workhold.search.pin_contacts import PartOnWall
+from workhold.search.wall_contacts import PartOnWall
 
 __all__ = ["LatticePairs", "are_pressed", "pairs_on"]
 
@@ -192,7 +192,9 @@ def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array
                 which, branch, offset = of_two_circles(between[chosen], radius[chosen], lying.off)
         chosen = chosen[which]
         point = rows[feature[chosen, 0]][:, [X, Y]] + offset
-        yield touching(lying, feature[chosen], step[chosen], branch, np.stack([point, point + shift[chosen]], axis=1))
+        yield touching(
+            lying, feature[chosen], step[chosen], branch, np.stack([point, point + shift[chosen]], axis=1)
+        )
 
 
 def of_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
@@ -209,7 +211,9 @@ def of_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
     return which, np.ones(len(which)), along[:, None] * axes[which, 0]
 
 
-def of_line_and_circle(between: Array, axis: Array, radius: Array, off: float) -> tuple[IntArray, Array, Array]:
+def of_line_and_circle(
+    between: Array, axis: Array, radius: Array, off: float
+) -> tuple[IntArray, Array, Array]:
     """Return which pairs (M,) of a line and a circle cross, at which branch, and the place (K, 2) from the line's middle.
 
     Parameters
@@ -237,7 +241,9 @@ def of_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray,
     away = ((one - other) * (one + other) / apart + apart) / 2.0
     square = np.where(apart > SAME_PLACE, (one - away) * (one + away), -inf)
     unit = between / apart[:, None]
-    which, branch, beside = both_of(square, np.maximum(one, apart), off * (1.0 + one / apart), 0.0, perpendicular(unit))
+    which, branch, beside = both_of(
+        square, np.maximum(one, apart), off * (1.0 + one / apart), 0.0, perpendicular(unit)
+    )
     return which, branch, beside + away[which, None] * unit[which]
 
 
@@ -253,7 +259,9 @@ def both_of(
     return which, branch, along[:, None] * axis[which]
 
 
-def touching(lying: PartOnWall, feature: IntArray, step: IntArray, branch: Array, point: Array) -> LatticePairs:
+def touching(
+    lying: PartOnWall, feature: IntArray, step: IntArray, branch: Array, point: Array
+) -> LatticePairs:
     """Return pairs of pegs with centres (N, 2, 2), which touch features (N, 2), as far as these reach."""
     rows = lying.rows[feature]
     is_arc, radius, half = (rows[:, :, k] for k in (IS_ARC, RADIUS, HALF_EXTENT))
@@ -267,7 +275,9 @@ def touching(lying: PartOnWall, feature: IntArray, step: IntArray, branch: Array
             (half - turned) * scale + rows[:, :, HIGH_SLACK], (half + turned) * scale + rows[:, :, LOW_SLACK]
         )
         slack[is_arc & (half >= np.pi)] = np.inf
-        normal = np.where(is_arc[:, :, None], rows[:, :, [SIGN]] * ray / radius[:, :, None], -perpendicular(axis))
+        normal = np.where(
+            is_arc[:, :, None], rows[:, :, [SIGN]] * ray / radius[:, :, None], -perpendicular(axis)
+        )
         sine = np.abs(cross(normal[:, 0], normal[:, 1]))
         reach = 16.0 * (lying.off + lying.turn * np.abs(ray).max(axis=(1, 2))) / sine
         swing = 2.0 * (lying.turn + np.where(is_arc, (reach[:, None] + lying.off) / radius, 0.0).max(axis=1))
@@ -286,7 +296,9 @@ def perpendicular(vectors: Array) -> Array:
     return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
-def closure_of(pairs: LatticePairs, lying: PartOnWall, problem: Problem) -> tuple[LatticePairs, BoolArray, BoolArray]:
+def closure_of(
+    pairs: LatticePairs, lying: PartOnWall, problem: Problem
+) -> tuple[LatticePairs, BoolArray, BoolArray]:
     """Return pairs with the forces of wall and pegs, which (N,) press the part on the wall, and of which that is open.
 
     With normals a, b of the part at the pegs and moments m, M about the start of the hull edge of length l, the null vector

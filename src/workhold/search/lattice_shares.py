@@ -19,17 +19,15 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_POSE
-from workhold.kernels.crossing.two_and_two import CANDIDATES
+from workhold.kernels.curves.two_and_two import CANDIDATES
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
-from workhold.listing.clamped_seats import ClampedSeats
-from workhold.listing.finish import Batches
-from workhold.listing.listed import Work, stage
+from workhold.listing.collector import Batches
 from workhold.listing.placing import at_angle
-from workhold.listing.seats import Seats, seats_of
-from workhold.listing.ways import summed
-from workhold.model.notes import no_pair_note
+from workhold.listing.results import Work, stage, summed
+from workhold.listing.seats import ClampedSeats, Seats, seats_of
 from workhold.model.query import Query
+from workhold.model.search_report import no_pair_note
 from workhold.proof.deciding import Account, Course, decided
 from workhold.search.cells import Block, run_blocks
 from workhold.search.shares import one_clamp
@@ -96,12 +94,19 @@ class LatticeShares:
             if self.shares > 1:
                 blocks = search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN, within)
             records, done = run_blocks(
-                blocks, self.threads, counting(part, len(self.collector)), self.cancel, stop=search.stop, pool=self.pool
+                blocks,
+                self.threads,
+                counting(part, len(self.collector)),
+                self.cancel,
+                stop=search.stop,
+                pool=self.pool,
             )
             self.cells += sum(block.cells for block in done)
             is_whole = is_whole and len(done) == len(blocks)
             direction = search.frame.toolkit.arrangements[0].direction or ""
-            parts.append(contacts_of_candidates(self.proven(records, search.problem), search.problem, direction))
+            parts.append(
+                contacts_of_candidates(self.proven(records, search.problem), search.problem, direction)
+            )
         return seats_of(parts, self.searches[0].problem, (low, high)), is_whole
 
     def proven(self, records: Sequence[Array], problem: Problem) -> Candidates:
@@ -112,7 +117,9 @@ class LatticeShares:
         def work(block: Array) -> tuple[Candidates, Account]:
             proven, account = decided(block, problem, course)
             candidates = canonical_form(candidates_of(proven, problem), 0)
-            return candidates.take(at_angle(candidates.theta, problem.restrictions.angles, problem.frame)), account
+            return candidates.take(
+                at_angle(candidates.theta, problem.restrictions.angles, problem.frame)
+            ), account
 
         parts, accounts = zip(*self.pool.map(work, blocks), strict=True)
         self.accounts += accounts

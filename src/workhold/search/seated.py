@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Progress
 from workhold.errors import InputError
-from workhold.listing.listed import stage
 from workhold.listing.ranking import rank
-from workhold.model.notes import best_note, by_hand_note, cut_note, seated_note
+from workhold.listing.results import stage
 from workhold.model.quality import SEATING_FIGURES, WARNINGS
 from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import FixtureTable, Result
+from workhold.model.search_report import best_note, by_hand_note, cut_note, seated_note
 from workhold.model.seating import Seating
 from workhold.seating.pattern import refuse_unseated
 
@@ -126,7 +126,9 @@ def deliver_seated(
     refuse_unasked(query)
     if is_put_in_by_hand(query):
         by_hand = SeatedSink(sink, SeatingWork(query, threads, None, cancel))
-        return put_in_by_hand(search(query.without_seating, progress=progress, cancel=cancel, sink=by_hand), query)
+        return put_in_by_hand(
+            search(query.without_seating, progress=progress, cancel=cancel, sink=by_hand), query
+        )
     whole = None if progress is None else rising(progress)
     work = SeatingWork(query, threads, stage(whole, SEARCHED, 1.0), cancel)
     share, taker = stage(whole, 0.0, SEARCHED), SeatedSink(sink, work)
@@ -187,7 +189,9 @@ def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Resu
     known = [one for one in seatings if one is not None]
     order = order_of(result.table.take(looked_at), known, query)
     kept = [place for place in order.tolist() if is_as_asked(known[place], query)]
-    notes = tuple(best_note(query.best) if is_best(note, result) and query.best else note for note in result.reasons)
+    notes = tuple(
+        best_note(query.best) if is_best(note, result) and query.best else note for note in result.reasons
+    )
     first = looked_at[kept]
     if query.has_seating_rules:
         # Why there is no fixture at all is said already.

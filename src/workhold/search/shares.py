@@ -1,28 +1,90 @@
-"""A search in shares, each of which is looked at whole before the next: what locators find in it, put
-together by the clamping.
+"""A search in shares, each looked at whole before the next, and the first fixtures while a search runs.
 
 Locators fix the pose in one of two ways. On a lattice of holes they are sought by ranges of orientation
 (``search.lattice_shares``), beside a wall by the hull edges that may lie on it (``search.wall_shares``). In
 each share the contacts of locators with one clamp are found. With one clamp they are the fixtures; of two
-clamps they make seats, whose clamps are paired (``listing.clamped_seats``).
+clamps they make seats, whose clamps are paired (``listing.seats``). A preview shows a part of what was found,
+decided ahead of the rest.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from threading import Event
+from time import perf_counter
 from typing import Any, Protocol
 
-from attrs import evolve
+import numpy as np
+from attrs import define, evolve, field
+from numpy.typing import NDArray
 
-from workhold.contact.problem import Progress
+from workhold.contact.problem import Problem, Progress
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.listed import Work, stage
+from workhold.listing.canonical_form import Candidates, joined, listed_once
+from workhold.listing.collector import finish
+from workhold.listing.results import Work, result_of, stage
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.proof.deciding import Account
-from workhold.search.preview import Preview
 
-__all__ = ["Collector", "Locating", "answer_in_shares", "one_clamp"]
+__all__ = ["Collector", "Locating", "Preview", "Previews", "answer_in_shares", "one_clamp"]
+
+Preview = Callable[[Result], None]
+
+# Seconds between previews, and how many times longer the search must have run than its previews took.
+PAUSE = 0.3
+SHARE = 25.0
+# Records decided for one preview, and fixtures after which there are no more of them.
+MOST_RECORDS = 300
+ENOUGH = 1_000
+
+
+@define(eq=False)
+class Previews:
+    """Shows fixtures while the search goes on; each preview holds those of the ones before it.
+
+    Only what is decided quickly is shown. The results are marked incomplete, and their counts are of what
+    they list.
+
+    Parameters
+    ----------
+    problem : what is searched.
+    show : called with a result from the thread that calls :meth:`add`.
+    """
+
+    problem: Problem
+    show: Preview
+    newest: NDArray[np.float64] | None = field(default=None, init=False)
+    shown: Candidates | None = field(default=None, init=False)
+    began: float = field(factory=perf_counter, init=False)
+    next_time: float = field(init=False)
+    spent: float = field(default=0.0, init=False)
+    hurry: Event = field(factory=Event, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.next_time = self.began + PAUSE
+        self.hurry.set()
+
+    def add(self, records: NDArray[np.float64]) -> None:
+        """Takes records (N, 19) that the search found, and shows some if it is time."""
+        if self.shown is not None and len(self.shown.standing) >= ENOUGH:
+            return
+        if len(records):
+            before = records[:0] if self.newest is None else self.newest
+            self.newest = np.concatenate([before, records[-MOST_RECORDS:]])[-MOST_RECORDS:]
+        start = perf_counter()
+        if self.newest is None or start < self.next_time:
+            return
+        fresh, account = finish([self.newest], self.problem, self.hurry)
+        self.newest = None
+        together = fresh if self.shown is None else listed_once(joined([self.shown, fresh]))
+        if len(fresh.standing):
+            self.shown = together
+            work = Work(complete=False, statistics={})
+            self.show(result_of(self.problem, together, account, work))
+        end = perf_counter()
+        self.spent += end - start
+        self.next_time = max(end + PAUSE, self.began + SHARE * self.spent)
 
 
 # Shares after which what has been found so far is shown.

@@ -1,8 +1,9 @@
-"""The search of a toolkit: its lattice steps and its blocks of work.
+"""The search of a toolkit: its lattice steps, its blocks of work, and the count of simultaneous contacts.
 
 Two pegs of one carrier are a lattice step apart; two carriers share the direction of rows and differ by the
 travel of the one that moves, along x in the frame of the search. What is particular to a toolkit is data
-(``fixels.toolkit``); which kernels seek an arrangement of pegs is said in ``KERNELS``.
+(``fixels.toolkit``); which kernels seek an arrangement of pegs is said in ``KERNELS``. The number of
+simultaneous contacts is the measure of how much there is to search (paper, section 5).
 """
 
 from __future__ import annotations
@@ -21,12 +22,13 @@ from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, joine
 from workhold.contact.frame import Frame
 from workhold.contact.problem import Problem
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK
-from workhold.fixels.toolkit import Arrangement, Carrier
+from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
 from workhold.kernels.base.feature import SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Limits
-from workhold.kernels.crossing.sliding_pairs import sliding_three_and_one, sliding_two_and_two
-from workhold.kernels.crossing.three_and_one import three_and_one_cells
-from workhold.kernels.crossing.two_and_two import (
+from workhold.kernels.chord.columns import FROM, ORIENTATION, TO
+from workhold.kernels.curves.sliding_pairs import sliding_three_and_one, sliding_two_and_two
+from workhold.kernels.curves.three_and_one import three_and_one_cells
+from workhold.kernels.curves.two_and_two import (
     CONTACTS,
     CROSSED,
     PAIRS,
@@ -34,10 +36,19 @@ from workhold.kernels.crossing.two_and_two import (
     STOPPED,
     two_and_two_cells,
 )
-from workhold.kernels.curves.columns import FROM, ORIENTATION, TO
-from workhold.search.cells import FIRST_ORIENTATION, Block, cell_edges, member_counts, members_of_cell
+from workhold.limits import thread_count
+from workhold.model.query import Query
+from workhold.model.workpiece import Workpiece
+from workhold.search.cells import (
+    FIRST_ORIENTATION,
+    Block,
+    cell_edges,
+    member_counts,
+    members_of_cell,
+    run_blocks,
+)
 
-__all__ = ["LEAST_BLOCKS", "ToolkitSearch", "lattice_steps"]
+__all__ = ["LEAST_BLOCKS", "ToolkitSearch", "contacts_of", "count_contacts", "lattice_steps"]
 
 Array = NDArray[np.float64]
 
@@ -238,7 +249,8 @@ class ToolkitSearch:
         # cross.
         cells = int(
             min(
-                max(CELLS_PER_PITCH * self.problem.wrench_length / self.frame.lattice.pitch_y, FEWEST_CELLS), MOST_CELLS
+                max(CELLS_PER_PITCH * self.problem.wrench_length / self.frame.lattice.pitch_y, FEWEST_CELLS),
+                MOST_CELLS,
             )
         )
         together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), cells // least))
@@ -299,7 +311,9 @@ class ToolkitSearch:
         ]
         members = member_counts(self.table, edges[cells], edges[np.add(cells, 1)])
         cost = float(members @ np.array([len(sliding_pairs[cell]) for cell in cells]))
-        return Block(lambda margin: np.concatenate([part(margin) for part in parts]), len(cells) + cost, len(cells))
+        return Block(
+            lambda margin: np.concatenate([part(margin) for part in parts]), len(cells) + cost, len(cells)
+        )
 
     def tally(self) -> NDArray[np.int64]:
         """A new row of statistics for a kernel to add to."""
@@ -316,8 +330,38 @@ class ToolkitSearch:
     ) -> Array:
         """Runs a kernel with the curves of some orientations, for fixtures of a closure margin or more."""
         limits, members = self.limits_from(margin), members_of_cell(self.table, low, high)
-        return kernel(members, self.features, self.table.curves, self.frame.lattice, limits, self.counting, stats)
+        return kernel(
+            members, self.features, self.table.curves, self.frame.lattice, limits, self.counting, stats
+        )
 
     def limits_from(self, margin: float) -> Limits:
         """The limits with a closure margin to reach."""
         return self.problem.limits._replace(least_margin=margin, most_listed=float(self.most_listed))
+
+
+def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | None = None) -> int:
+    """How many sets of four pegs of the two jaws touch a workpiece at the same time, each contact inside its
+    feature.
+
+    Nothing else is asked of them: neither the gap between the jaws nor closure nor clamping. Sets that rest
+    on a chord of parallel faces and right pegs on faces square to the jaws' motion count only where they can
+    be told apart.
+
+    Parameters
+    ----------
+    threads : how many threads share the work; None for one on each processor.
+
+    Raises
+    ------
+    InputError
+        For a peg that fits nowhere along the part.
+    """
+    return contacts_of(Problem.of(Query(workpiece, toolkit)), threads)
+
+
+def contacts_of(problem: Problem, threads: int | None, cancel: Event | None = None) -> int:
+    """Simultaneous contacts of a problem, see :func:`count_contacts`; fewer once ``cancel`` is set."""
+    workers = thread_count(threads)
+    search = ToolkitSearch.of(problem, counting=True, threads=workers, cancel=cancel)
+    run_blocks(search.blocks(problem.query.arrangements), workers, None, cancel, stop=search.stop)
+    return int(search.totals[CONTACTS])

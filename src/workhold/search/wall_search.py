@@ -28,8 +28,8 @@ from workhold.conventions import (
     SAME_PLACE,
 )
 from workhold.fixels.toolkit import Carrier, Toolkit
-from workhold.geometry.intersect import bounding_box
-from workhold.geometry.rotation import rotated
+from workhold.geometry.segment import bounding_box
+from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.listing.clamp_placement import axis_of
 from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_table
@@ -37,8 +37,17 @@ from workhold.model.fixture import Pose
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable
 from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
-from workhold.search.pin_contacts import PartOnWall, PinContacts, part_on_wall, pin_contacts_on
-from workhold.search.wall_closure import ContactPairs, closure, may_oppose, reaction_doubts, seating
+from workhold.search.wall_contacts import (
+    ContactPairs,
+    PartOnWall,
+    PinContacts,
+    closure,
+    may_oppose,
+    part_on_wall,
+    pin_contacts_on,
+    reaction_doubts,
+    seating,
+)
 
 __all__ = ["allowed_edges", "faces_are_square", "lying_on", "WallSearch", "fixtures_on", "searches_of"]
 
@@ -160,7 +169,9 @@ class WallSearch:
             locator, step = np.divmod(places.line, len(steps))
             locator += start
             # The column is as uncertain as the locator it is counted from.
-            grown = places.reach + 4.0 * locators.reach[locator] * (1.0 + (places.reach + lying.off) / lying.off)
+            grown = places.reach + 4.0 * locators.reach[locator] * (
+                1.0 + (places.reach + lying.off) / lying.off
+            )
             yield ContactPairs(evolve(places, line=steps[step], reach=grown), np.arange(len(places)), locator)
 
     def may_press(self, places: PinContacts) -> BoolArray:
@@ -217,7 +228,13 @@ class WallSearch:
         return found
 
     def sharpened(
-        self, pressed: WallFixtures, edge: int, lying: PartOnWall, one: PinContacts, two: PinContacts, locator: IntArray
+        self,
+        pressed: WallFixtures,
+        edge: int,
+        lying: PartOnWall,
+        one: PinContacts,
+        two: PinContacts,
+        locator: IntArray,
     ) -> WallFixtures:
         """Pairs told by balls where doubles do not tell well enough: of two clamps how far their forces may
         be off, too."""
@@ -249,7 +266,9 @@ class WallSearch:
                 null[k] = null[k] if self.problem.pairing else sharp.null
         return evolve(pressed, locator=places, tip=tip, null=null) if len(far) else pressed
 
-    def candidate(self, edge: int, one: PinContacts, two: PinContacts, locator: IntArray, k: int) -> Candidate:
+    def candidate(
+        self, edge: int, one: PinContacts, two: PinContacts, locator: IntArray, k: int
+    ) -> Candidate:
         """A pair as balls decide it."""
         behind = int(locator[k])
         return Candidate(
@@ -268,11 +287,15 @@ def allowed_edges(problem: Problem) -> list[int]:
     part, asked = problem.workpiece, problem.restrictions
     avoided = {face.number for face in part.faces if not set(face.segments).isdisjoint(asked.avoid)}
     out = []
-    for number, (theta, touching) in enumerate(zip(part.flush.theta.tolist(), part.flush.touching, strict=True)):
+    for number, (theta, touching) in enumerate(
+        zip(part.flush.theta.tolist(), part.flush.touching, strict=True)
+    ):
         if any(avoided.issuperset(end.faces) for end in touching):
             continue
         turned = float(np.degrees(theta))
-        off = [((turned - low + ANGLE_SLACK) % 360.0, high - low + 2 * ANGLE_SLACK) for low, high in asked.angles]
+        off = [
+            ((turned - low + ANGLE_SLACK) % 360.0, high - low + 2 * ANGLE_SLACK) for low, high in asked.angles
+        ]
         if off and not any(ahead <= width for ahead, width in off):
             continue
         x, y = part.flush.ends[number, 0].tolist()
@@ -337,5 +360,7 @@ def fixtures_on(searches: Sequence[WallSearch], edge: int) -> Iterator[tuple[Wal
 def reach_of(rows: Array, upward: bool) -> tuple[float, float]:
     """Least and largest v, or u, of features (F, 12)."""
     place = rows[:, 2 if upward else 1]
-    extent = np.where(rows[:, IS_ARC] != 0.0, rows[:, 6], rows[:, 5] * np.abs(rows[:, AXIS_Y if upward else AXIS_X]))
+    extent = np.where(
+        rows[:, IS_ARC] != 0.0, rows[:, 6], rows[:, 5] * np.abs(rows[:, AXIS_Y if upward else AXIS_X])
+    )
     return float((place - extent).min()), float((place + extent).max())

@@ -1,10 +1,15 @@
-"""Two pegs that press a part along one line, on a common normal of two pieces or in pockets, in closed form.
+"""Pegs that press a part along one line or along parallel lines: equilibria in closed form.
 
-With both pegs on one line and at a fixed height above each other, the jaw separation grows with their
-distance d on the part. It is counted along the outward normal of what moves, and is below 0 where both press
-from between, as in a hole. So equilibria are the critical points of d over the places on both pieces. With
-curvatures kappa (of convex pieces above 0) the second derivatives of d are 1 / d - kappa along each piece,
-and -1 / d across.
+With two pegs on one line, on a common normal of two pieces or in pockets, and at a fixed height above each
+other, the jaw separation grows with their distance d on the part. It is counted along the outward normal of
+what moves, and is below 0 where both press from between, as in a hole. So equilibria are the critical points
+of d over the places on both pieces. With curvatures kappa (of convex pieces above 0) the second derivatives
+of d are 1 / d - kappa along each piece, and -1 / d across.
+
+Of three parallel forces two are of pegs of one jaw on a line and an arc, and the third is on a parallel line.
+There the chord of the two is a tangency, and its instant centre infinitely far. S depends on the orientation
+alone, because two of the three lie on parallel lines. The orientation has an extremum along the chord's
+curve: so S has one too.
 
 Glossary
 --------
@@ -16,7 +21,7 @@ antipodal contacts : two places with opposite normals, each on the other's: I.-M
 from __future__ import annotations
 
 from functools import cached_property
-from itertools import product
+from itertools import permutations, product
 from math import asin, atan2, cos, hypot, nan, sin
 
 import numpy as np
@@ -35,11 +40,14 @@ from workhold.kernels.seating.columns import (
     SECOND,
     SEPARATION,
     THETA,
+    Given,
 )
+from workhold.kernels.seating.parallel_and_concentric import ALPHA, at_tangencies, tangent_chords
+from workhold.seating.closing import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary, contains
 from workhold.seating.pattern import Pattern
 
-__all__ = ["AntipodalContacts", "antipodal_contacts", "antipodal_candidates"]
+__all__ = ["AntipodalContacts", "antipodal_candidates", "antipodal_contacts", "parallel_candidates"]
 
 Array = NDArray[np.float64]
 # mm. Shorter distances are none.
@@ -175,7 +183,9 @@ def of_pocket(boundary: ObstacleBoundary, pocket: int, b: int) -> list[Antipodal
         q = reached(row, ux, uy, x, y)
         d = (q[0] - x) * ux + (q[1] - y) * uy
         if abs(d) > SHORTEST and contains(row, *q) and holds(boundary.pockets[pocket], -ux, -uy):
-            found.append(AntipodalContacts((pocket_pieces(boundary, pocket), (b,)), (x, y), q, d, (None, bend(row))))
+            found.append(
+                AntipodalContacts((pocket_pieces(boundary, pocket), (b,)), (x, y), q, d, (None, bend(row)))
+            )
     return found
 
 
@@ -206,7 +216,9 @@ def antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
     return np.array(out).reshape(-1, CANDIDATE_LENGTH)
 
 
-def pressed(pattern: Pattern, normal: AntipodalContacts, i: int, j: int, omega: float, separation: float) -> Array:
+def pressed(
+    pattern: Pattern, normal: AntipodalContacts, i: int, j: int, omega: float, separation: float
+) -> Array:
     """The candidate of antipodal contacts, pressed by peg i and peg j in direction omega."""
     (px, py), (qx, qy), d = normal.one, normal.two, normal.length
     theta = omega - atan2((qy - py) / d, (qx - px) / d)
@@ -227,3 +239,35 @@ def pressed(pattern: Pattern, normal: AntipodalContacts, i: int, j: int, omega: 
     wx, wy = -sin(omega) * along_one, cos(omega) * along_one
     row[MOTION], row[MOTION + 1], row[MOTION + 2] = turn, turn * ry - wx, -turn * rx - wy
     return row
+
+
+def parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: Given) -> list[Array]:
+    """Candidates (N, 24) of pegs of a jaw on a line and an arc, with a third peg on a parallel line.
+
+    The third line may be the first line itself.
+    """
+    out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
+    for i, j in permutations(range(len(pegs)), 2):
+        if right[i] != right[j]:
+            continue
+        chords = chords_at_tangencies(
+            boundary, hypot(pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]), right[i]
+        )
+        if len(chords):
+            reach = chords, pattern.stop, pattern.widest, given
+            out.append(filled(CANDIDATE_LENGTH, 256, at_tangencies, i, j, *reach))
+    return out
+
+
+def chords_at_tangencies(boundary: ObstacleBoundary, d: float, jaw: int) -> Array:
+    """Tangencies (C, 5) of the chords of a length, for pegs of a jaw: ``kernels.seating.parallel_and_concentric``."""
+    known, key = boundary.once(tangencies), (round(d, 9), jaw)
+    if key not in known:
+        first, end = boundary.parts[jaw].tolist()
+        known[key] = filled(ALPHA + 1, 256, tangent_chords, boundary.pieces, first, end, d)
+    return known[key]
+
+
+def tangencies(_: ObstacleBoundary) -> dict[tuple[float, int], Array]:
+    """Room for the tangencies on a part, by the length of the chord and the jaw."""
+    return {}

@@ -1,8 +1,12 @@
-"""How far a part can lie off its seat and still come home: the cage, and the placing.
+"""How far a part can lie off its seat and still come home: the cage, its extremes, and the placing.
 
 Closing the jaws from a pose decides whether it belongs to the cage. The placing is sought among poses in
 which the part is free with the jaws opened, on a grid of orientations and heights, and known to its step.
-Paths that begin in the seat and in such poses lead to the extremes of the cage (``seating.extents``).
+Paths that begin in the seat and in such poses lead to the extremes of the cage.
+
+In an extreme place something holds the part back: what touches balances a pull that way, perhaps with S at
+its largest. Closing the jaws leads home from such places (``kernels.seating.closing``), so that no extreme
+lies outside the cage. That none is missed is not proven but sampled: ``model.seating.CAGE_SHORT``.
 
 Glossary
 --------
@@ -13,28 +17,105 @@ caging set : the configurations from which a part cannot get away without the ja
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import asin, pi, tau
 
 import numpy as np
-from attrs import define
+from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST
-from workhold.kernels.seating.configuration_slices import MOST_CROSSINGS, MOST_INTERVALS, free_poses
-from workhold.kernels.seating.places import AT_SEAT, SAME_LEVEL
-from workhold.seating.closing import Closing
-from workhold.seating.extents import Extents
+from workhold.kernels.seating.descent_paths import AT_SEAT, SAME_LEVEL
+from workhold.kernels.seating.free_space import MOST_CROSSINGS, MOST_INTERVALS, free_poses
+from workhold.seating.closing import LONGEST_STEP, Closing
 from workhold.seating.join_tree import distances
 
-__all__ = ["CagingSet"]
+__all__ = ["CagingSet", "Extents"]
 
 Array = NDArray[np.float64]
+# mm. How long the first steps of paths are.
+FIRST_STEP = 0.05
+# By how much shorter steps are where a path that left the cage is followed anew, and how often that is done.
+SHORTER, TRIES = 8.0, 3
+# Along turn, x and y, forth and back.
+AIMS = np.vstack([np.eye(3, 4), -np.eye(3, 4)])
+# How far paths lead at most, in radians and in sizes of the part.
+FARTHEST = np.array([pi, 100.0, 100.0, 0.0])
+
+
+@define(eq=False)
+class Extents:
+    """The extremes of the poses of a cage that were found so far.
+
+    Parameters
+    ----------
+    closing : the jaws about the part.
+    seat : (4,) configuration.
+    most : the largest S in mm.
+    come_home : whether closing leads home from configurations (N, 4).
+    reach : (3, 2) least and largest turn in radians, and shifts in mm.
+    ends : (N, 4) configurations in which paths ended, all in the cage.
+    """
+
+    closing: Closing
+    seat: Array
+    most: float
+    come_home: Callable[[Array], NDArray[np.bool_]]
+    reach: Array
+    ends: Array = field(factory=lambda: np.empty((0, 4)))
+
+    @property
+    def farthest(self) -> Array:
+        """(6, 4) the ends that lie farthest each way."""
+        return np.array(
+            self.ends[np.append(self.ends[:, :3].argmin(axis=0), self.ends[:, :3].argmax(axis=0))]
+        )
+
+    def widen(self, starts: Array) -> None:
+        """Follows paths from configurations (N, 4) in the cage, and widens the extremes by their ends."""
+        configs, aims = np.repeat(starts, len(AIMS), axis=0), np.tile(AIMS, (len(starts), 1))
+        longest = LONGEST_STEP * min(self.closing.pattern.radii)
+        for _ in range(TRIES):
+            ends, left = self.along(configs, aims, longest)
+            self.ends = np.vstack([self.ends, ends])
+            off = ends[:, :3] - self.seat[:3]
+            self.reach[:, 0] = np.minimum(self.reach[:, 0], off.min(axis=0))
+            self.reach[:, 1] = np.maximum(self.reach[:, 1], off.max(axis=0))
+            # Beside a pass a step may lead over it, where shorter ones do not.
+            configs, aims, longest = ends[left], aims[left], longest / SHORTER
+            if not left.any():
+                return
+
+    def along(self, configs: Array, aims: Array, longest: float) -> tuple[Array, NDArray[np.bool_]]:
+        """The last configurations on paths along aims (N, 4) from which closing leads home.
+
+        Parameters
+        ----------
+        longest : how long steps are at most, in mm.
+
+        Returns
+        -------
+        tuple
+            Configurations (N, 4), and whether each path left the cage (N,).
+        """
+        size = self.closing.size
+        far = aims @ (self.seat * [size, 1.0, 1.0, 0.0]) + np.abs(aims) @ (size * FARTHEST)
+        nodes, begins = self.closing.reached(configs, aims, far, min(FIRST_STEP, longest), longest, self.most)
+        inside, outside = np.array(begins[:-1]), begins[1:] - 1
+        left = ~self.come_home(nodes[outside, :4])
+        inside[~left] = outside[~left]
+        while len(apart := np.flatnonzero(outside - inside > 1)):
+            middle = (inside[apart] + outside[apart]) // 2
+            home = self.come_home(nodes[middle, :4])
+            inside[apart[home]], outside[apart[~home]] = middle[home], middle[~home]
+        return nodes[inside, :4], left
+
+
 # Cells across the grid, how often it is fitted to the cage, and how much larger it is then.
 CELLS, FITS, ROOM = 25, 4, 1.3
 # Steepest lean of the grid, in mm per radian, and its least half sizes in radians and mm.
 STEEPEST, LEAST = 500.0, np.array([1e-4, 1e-3])
 # Steps of closing, in mm, of this part of the cage's size at most.
-FIRST_STEP = 0.05
 # Configurations that are closed together.
 TOGETHER = 64
 # Paths begin in as many cells to each side, and are followed on until no extreme moves by more than this part
@@ -72,7 +153,15 @@ class CagingSet:
         work = np.empty((MOST_CROSSINGS, 2)), np.empty((2, MOST_INTERVALS, 2))
         step, obstacles = 2.0 * half / CELLS, self.closing.obstacles
         count = free_poses(
-            self.seat if middle is None else middle, self.opening, CELLS, step, lean, self.arm, obstacles, *work, out
+            self.seat if middle is None else middle,
+            self.opening,
+            CELLS,
+            step,
+            lean,
+            self.arm,
+            obstacles,
+            *work,
+            out,
         )
         return out[:count][np.argsort(out[:count, 0], kind="stable")]
 

@@ -21,13 +21,12 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.kernels.base.distance import is_inside, outline_distances
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
-from workhold.kernels.seating.places import AT_SEAT, SAME_LEVEL
+from workhold.kernels.seating.descent_paths import AT_SEAT, SAME_LEVEL
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.seating import Seat
 from workhold.seating.closing import Closing
-from workhold.seating.closing_frame import ClosingFrame
 from workhold.seating.join_tree import distances
-from workhold.seating.pattern import Pattern
+from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
 
 __all__ = ["ENDINGS", "ClosingSimulation", "simulate_closing"]
@@ -105,13 +104,17 @@ def simulate_closing(
     first = max(FIRST_STEP, into / STEPS_DEEP)
     configs, how = closing.run(start[None], first, level=start[3])
     if how[0] == GAVE_UP:
-        raise InputError("a peg stands in the part there, and there is no room beside it: put the part elsewhere.")
+        raise InputError(
+            "a peg stands in the part there, and there is no room beside it: put the part elsewhere."
+        )
     path = follow(closing, configs[0], is_cancelled)
     end, how = closing.run(path[-1][None], FIRST_STEP)
     path.append(end[0])
     ending, seat = ended(solver, closing, center, end[0], int(how[0]), seats)
     poses = tuple(center.pose(config) for config in path)
-    return ClosingSimulation(poses, tuple(pattern.frame.sign * float(config[3]) for config in path), ending, seat)
+    return ClosingSimulation(
+        poses, tuple(pattern.frame.sign * float(config[3]) for config in path), ending, seat
+    )
 
 
 @frozen

@@ -1,4 +1,10 @@
-"""Forces of the contacts of candidates, how well they balance, and how near everything else is.
+"""Forces of the contacts of candidates, how well they balance, how near all else is, and a check of it.
+
+The check is independent of how equilibria are found: contacts touch, and press, and balance. Every pass is
+checked before a capture opening follows from it, with nothing but its pose and contacts.
+
+That fixtures are seats is proven. So one that is missing among the seats of its own pegs shows that what
+looks for seats missed it, and perhaps others. It is made a candidate of four contacts.
 
 Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
 and Automation 14 (1998).
@@ -6,13 +12,18 @@ and Automation 14 (1998).
 
 from __future__ import annotations
 
-from math import cos, inf, sin
+from collections.abc import Sequence
+from itertools import combinations
+from math import cos, hypot, inf, sin
+from operator import mul
 
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.candidates import MISFIT, judge_balance, settle
 from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
     CLEAR,
     CONFIG,
     CONTACTS,
@@ -24,11 +35,23 @@ from workhold.kernels.seating.columns import (
     THETA,
     Given,
 )
-from workhold.kernels.seating.pieces import clearances
+from workhold.kernels.seating.obstacles import clearances
+from workhold.seating.closing import Closing
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
+from workhold.seating.wall_equilibria import ON_WALL, WallEquilibria
 
-__all__ = ["contact_normals", "forces_of", "settle_on_wall", "verdicts", "with_forces"]
+__all__ = [
+    "OTHERS_MAY_BE",
+    "WAS_NOT_FOUND",
+    "as_candidate",
+    "contact_normals",
+    "forces_of",
+    "is_equilibrium",
+    "settle_on_wall",
+    "verdicts",
+    "with_forces",
+]
 
 Array = NDArray[np.float64]
 
@@ -62,7 +85,9 @@ def contact_normals(boundary: ObstacleBoundary, pattern: Pattern, row: Array) ->
         if peg >= len(pegs):
             assert pattern.half_plane is not None
             hull, (ux, uy, _) = boundary.hull.rows[piece - len(boundary.rows)], pattern.half_plane
-            places.append((c * hull[0] - s * hull[1] - hull[2] * ux, s * hull[0] + c * hull[1] - hull[2] * uy))
+            places.append(
+                (c * hull[0] - s * hull[1] - hull[2] * ux, s * hull[0] + c * hull[1] - hull[2] * uy)
+            )
             normals.append((-ux, -uy))
             moves.append(0)
             continue
@@ -88,10 +113,14 @@ def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Patte
         pegs = pattern.at(config[None])[0]
         if not np.isfinite(config).all() or not pattern.reaches(row[SEPARATION]) or row[CLEAR] < -MISFIT:
             continue
-        touching = dict(zip(row[PEG : PEG + count].astype(int), row[PIECE : PIECE + count].astype(int), strict=True))
+        touching = dict(
+            zip(row[PEG : PEG + count].astype(int), row[PIECE : PIECE + count].astype(int), strict=True)
+        )
         # The part is off the wall where a piece that should touch it does not support.
         misfit = row[CLEAR] if max(touching) >= len(pegs) else 0.0
-        for peg, piece in zip(row[PEG : PEG + count].astype(int), row[PIECE : PIECE + count].astype(int), strict=True):
+        for peg, piece in zip(
+            row[PEG : PEG + count].astype(int), row[PIECE : PIECE + count].astype(int), strict=True
+        ):
             if peg < len(pegs):
                 clearances(pegs[peg : peg + 1], boundary.loose, int(piece), int(piece) + 1, touched)
                 misfit = max(misfit, abs(float(touched[0])))
@@ -107,7 +136,9 @@ def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Patte
             row[FORCE : FORCE + count], row[RESIDUAL] = forces, residual
 
 
-def forces_of(boundary: ObstacleBoundary, pattern: Pattern, row: Array, size: float) -> tuple[Array, float, int]:
+def forces_of(
+    boundary: ObstacleBoundary, pattern: Pattern, row: Array, size: float
+) -> tuple[Array, float, int]:
     """The forces of the contacts of a candidate, per unit of the force on what moves.
 
     Parameters
@@ -121,6 +152,110 @@ def forces_of(boundary: ObstacleBoundary, pattern: Pattern, row: Array, size: fl
     """
     places, normals, moves = contact_normals(boundary, pattern, row)
     moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / size
-    balance, target = np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves]), [0.0, 0.0, 0.0, 1.0]
+    balance, target = (
+        np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves]),
+        [0.0, 0.0, 0.0, 1.0],
+    )
     forces, _, rank, _ = np.linalg.lstsq(balance, np.array(target), rcond=1e-10)
     return forces, float(np.abs(balance @ forces - target).max()), int(rank)
+
+
+# No unit, and mm: forces, per unit of the jaw's and with moments over the part's size, balance to this, and
+# contacts touch.
+SETTLED = 1e-9
+# No unit. A force above minus this does not pull.
+PULLS = 1e-9
+
+
+def is_equilibrium(row: Array, closing: Closing) -> bool:
+    """Whether a candidate (24,) is an equilibrium of its contacts, or of two or three of them."""
+    pegs = closing.pattern.at(row[CONFIG][None])[0].tolist()
+    for k in range(int(row[CONTACTS])):
+        peg, piece = int(row[PEG + k]), int(row[PIECE + k])
+        # Where a wall is touched follows from the pose.
+        if peg < len(pegs) and abs(beside(closing.boundary.rows[piece], *pegs[peg])) > SETTLED * max(
+            1.0, closing.size
+        ):
+            return False
+    places, normals, moves = contact_normals(closing.boundary, closing.pattern, row)
+    moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / closing.size
+    wrenches = np.stack([normals[:, 0], normals[:, 1], moments, normals[:, 0] * moves], axis=1).tolist()
+    # Loose rest may touch with more than three: some of them do.
+    return any(map(balance, combinations(wrenches, 3))) or any(map(balance, combinations(wrenches, 2)))
+
+
+def balance(wrenches: Sequence[Sequence[float]]) -> bool:
+    """Whether two or three wrenches (4,) of force, moment and force on the jaw balance it while none pulls."""
+    across, along, moments, on_jaw = zip(*wrenches, strict=True)
+    equations = across, along, moments
+    # Two forces that balance differ in their sense alone; three are square to the equations, of which two
+    # suffice.
+    forces: tuple[float, ...] = (1.0, 1.0)
+    if len(wrenches) == 3:
+        forces = max((cross(*two) for two in combinations(equations, 2)), key=largest)
+    jaw = sum(map(mul, forces, on_jaw))
+    if abs(jaw) <= PULLS * largest(forces):
+        return False
+    forces = tuple(force / jaw for force in forces)
+    most = SETTLED * (1.0 + sum(map(abs, forces)))
+    return min(forces) > -PULLS and all(abs(sum(map(mul, forces, one))) < most for one in equations)
+
+
+def cross(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
+    """The vector square to two."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def largest(vector: Sequence[float]) -> float:
+    """The largest component, whatever its sign."""
+    return max(map(abs, vector))
+
+
+def beside(row: Array, x: float, y: float) -> float:
+    """The distance in mm of a point from the carrier of a piece."""
+    piece = row.tolist()
+    dx, dy = x - piece[X], y - piece[Y]
+    if piece[IS_ARC] == 0.0:
+        return float(dx * piece[AXIS_Y] - dy * piece[AXIS_X])
+    return float(hypot(dx, dy) - piece[RADIUS])
+
+
+WAS_NOT_FOUND = (
+    "This fixture was not found among the seats of its own pegs, a fault of the program: from where on the part is caught "
+    "is not known, and seats may be missing."
+)
+OTHERS_MAY_BE = "A fixture on the same pegs was not found among their seats, a fault of the program: others may be missing."
+
+
+def as_candidate(
+    boundary: ObstacleBoundary, pattern: Pattern, config: Array, faces: Sequence[int], size: float
+) -> Array:
+    """The candidate (24,) of a fixture.
+
+    Parameters
+    ----------
+    config : (4,) theta, x, y and S, in the frame of seating.
+    faces : that the pegs touch, by their numbers.
+    size : of the part in mm.
+    """
+    row, away = np.zeros(CANDIDATE_LENGTH), np.empty(1)
+    row[CONFIG], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = config, -1.0, -1.0
+    contacts = []
+    for peg, (at, side) in enumerate(zip(pattern.at(config[None])[0], pattern.right.tolist(), strict=True)):
+        off = {}
+        for number in range(*boundary.parts[side].tolist()):
+            clearances(np.ascontiguousarray(at[None]), boundary.rows, number, number + 1, away)
+            is_another = boundary.touches[number].corner or boundary.touches[number].face != faces[peg]
+            off[number] = is_another, abs(float(away[0]))
+        contacts.append((peg, min(off, key=off.__getitem__)))
+    if pattern.half_plane is not None:
+        wall = WallEquilibria(boundary, pattern)
+        side = min(wall.sides, key=lambda one: 1.0 - np.cos(wall.outward() - one.angle - config[0]))
+        contacts += [
+            wall.on(piece, at > 0) for at, piece in zip(range(len(ON_WALL)), side.pieces, strict=True)
+        ]
+    row[CONTACTS] = len(contacts)
+    for k, (peg, piece) in enumerate(contacts):
+        row[PEG + k], row[PIECE + k] = peg, piece
+    row[FORCE : FORCE + 4] = forces_of(boundary, pattern, row, size)[0]
+    return row

@@ -1,7 +1,8 @@
-"""The join tree of the separation: which cages join at which pass, and from where a part gets out.
+"""The join tree of the separation: which cages join at which pass, where a part gets out, and rest poses.
 
 From a pass both descent paths are followed to what they end in. While the jaws are opened, cages grow, and
-join where the lowest pass between them is reached. So passes are taken in the order of their separation.
+join where the lowest pass between them is reached. So passes are taken in the order of their separation. Rest
+poses, as drawn and turned over, are rows for the seats of all fixtures on the same pegs.
 
 Glossary
 --------
@@ -10,6 +11,9 @@ join tree : which components of sublevel sets of a function join at which saddle
 place : what a descent path ends in: a seat, a loose set, something not settled, the outside or the stop.
 loose set : an equilibrium manifold, along which nothing locates the part.
 join : a pass, with the places that both of its descent paths end in.
+rest pose : a pose in which a part comes to rest by itself: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B.
+    Carlisle and J. Canny, "Part pose statistics: estimators and experiments", IEEE Transactions on Robotics
+    and Automation 15 (1999).
 """
 
 from __future__ import annotations
@@ -21,19 +25,92 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from workhold.kernels.seating.closing import AT_THE_STOP
-from workhold.kernels.seating.columns import CONFIG, CONTACTS, SEPARATION, Manifolds
-from workhold.kernels.seating.descent_paths import BESIDE
-from workhold.kernels.seating.equilibrium_manifolds import first_sets, write_beyond
-from workhold.kernels.seating.places import FALLS, leads_out, write_places
-from workhold.seating.closing import Closing
+from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONFIG,
+    CONTACTS,
+    PEG,
+    PIECE,
+    SEPARATION,
+    Manifolds,
+)
+from workhold.kernels.seating.descent_paths import BESIDE, FALLS, free_until, leads_out, take_up, write_places
+from workhold.kernels.seating.gathering import first_sets, write_beyond
+from workhold.seating.closing import LONGEST_STEP, Closing, descent_starts
 from workhold.seating.equilibria import Equilibria
-from workhold.seating.pass_descents import pass_descents
+from workhold.seating.obstacle_boundary import ObstacleBoundary
 
-__all__ = ["Join", "JoinTree", "distances"]
+__all__ = [
+    "CURVED",
+    "KINDS",
+    "LOOSE",
+    "POCKET",
+    "UNSETTLED",
+    "Join",
+    "JoinTree",
+    "RestPoses",
+    "distances",
+    "pass_descents",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+
+def pass_descents(found: Equilibria, closing: Closing, seats: Array) -> tuple[Array, Array, NDArray[np.int8]]:
+    """Where the descent paths off both sides of all passes begin, where they end (2 N, 4), and how.
+
+    Parameters
+    ----------
+    seats : (M, 4) configurations at which closing is known to end.
+    """
+    starts, lengths = descent_starts(found.passes, closing.size)
+    ends, how, left = np.array(starts), np.full(len(starts), AT_REST, np.int8), np.ones(len(starts), np.int8)
+    known = np.flatnonzero(found.origins[:, 0] >= 0)
+    if len(known):
+        cache, shifts = found.subsets[0][1].cache, shifts_of(found)
+        paths = free_paths(found, known, closing, shifts)
+        take_up(known, *paths, cache.nodes, cache.begins, cache.how, shifts, ends, lengths, left)
+    rest = np.flatnonzero(left)
+    ends[rest], how[rest] = closing.run(ends[rest], lengths[rest], seats)
+    return starts, ends, how
+
+
+def shifts_of(found: Equilibria) -> Array:
+    """The shifts (G, 4) by which configurations of each subset become those of the pattern."""
+    return np.array([subset.shift for subset, _ in found.subsets])
+
+
+def free_paths(
+    found: Equilibria, passes: IntArray, closing: Closing, shifts: Array
+) -> tuple[IntArray, IntArray, IntArray]:
+    """The paths off both sides of some passes, as far as the pattern's other pegs are not in the part.
+
+    Parameters
+    ----------
+    shifts : see ``shifts_of``.
+
+    Returns
+    -------
+    tuple
+        Numbers of the paths in the cache, their subsets, and the last node of each: all (2 N,).
+    """
+    whose, numbers = found.origins[passes, 0], found.origins[passes, 1]
+    cache = found.subsets[0][1].cache
+    new = cache.numbers[numbers, 0] < 0
+    for subset in dict.fromkeys(whose[new].tolist()):
+        found.subsets[subset][1].follow(numbers[new & (whose == subset)])
+    paths, whose = cache.numbers[numbers].ravel(), np.repeat(whose, 2)
+    others = np.ones((len(found.subsets), len(closing.pattern.pegs)), np.int8)
+    for row, (subset, _) in zip(others, found.subsets, strict=True):
+        row[list(subset.numbers)] = 0
+    most, lasts = LONGEST_STEP * min(closing.pattern.radii), np.empty(len(paths), np.int64)
+    work = shifts, others, most, closing.obstacles, np.empty((4, 4))
+    free_until(paths, whose, cache.nodes, cache.begins, *work, lasts)
+    return paths, whose, lasts
+
+
 # mm. How long the first steps of a descent path off a loose set are.
 FIRST_STEP = BESIDE / 2.0
 
@@ -195,4 +272,64 @@ def sets_at(configs: Array, loose: Manifolds, asked: IntArray, size: float) -> I
 def distances(configs: Array, others: Array, size: float) -> Array:
     """The distances in mm of configurations (..., 4) from others, where turns count by the size."""
     turn = np.abs((configs[..., 0] - others[..., 0] + pi) % tau - pi)
-    return np.asarray(turn * size + np.hypot(configs[..., 1] - others[..., 1], configs[..., 2] - others[..., 2]))
+    return np.asarray(
+        turn * size + np.hypot(configs[..., 1] - others[..., 1], configs[..., 2] - others[..., 2])
+    )
+
+
+# mm. Seats from which a part is out again with less are not listed: they may be or not.
+SHALLOW = 1e-3
+# The kinds of seats, and their numbers.
+KINDS = "curved", "corner", "pocket", "fixture", "loose", "unsettled"
+CURVED, CORNER, POCKET, FIXTURE, LOOSE, UNSETTLED = range(len(KINDS))
+# Kinds from here on are listed whatever their depth: they are fixtures of a complete list, or their depth is
+# not known.
+ALWAYS = FIXTURE
+
+
+@frozen(eq=False)
+class RestPoses:
+    """All rest poses that are listed.
+
+    Parameters
+    ----------
+    rows : (N, 24) candidates; of what is not settled only the configuration is known.
+    kinds : (N,) numbers of the kinds in ``KINDS``.
+    depths : (N,) how far in mm the jaws open before the part can get elsewhere; infinite where it never can,
+        or where that is not known.
+    turned_over : (N,) whether the part is.
+    """
+
+    rows: Array
+    kinds: NDArray[np.int64]
+    depths: Array
+    turned_over: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, trees: tuple[JoinTree, JoinTree], boundary: ObstacleBoundary, pegs: int) -> RestPoses:
+        """The rest poses of a part as drawn, and then turned over, on so many pegs besides a wall."""
+        parts, tops = list[Array](), list[Array]()
+        for tree in trees:
+            unknown = np.zeros((len(tree.doubtful), CANDIDATE_LENGTH))
+            unknown[:, CONFIG] = tree.doubtful
+            parts += [tree.seats, tree.loose, tree.slack, unknown]
+            tops += [tree.tops, tree.slack[:, SEPARATION], np.full(len(unknown), inf)]
+        counts = [len(part) for part in parts]
+        rows = np.concatenate(parts)
+        kinds = np.repeat([FIXTURE, LOOSE, LOOSE, UNSETTLED] * 2, counts)
+        kinds[kinds == FIXTURE] = kinds_of(rows[kinds == FIXTURE], boundary, pegs)
+        depths = np.concatenate(tops) - rows[:, SEPARATION]
+        listed = (kinds >= ALWAYS) | (depths >= SHALLOW)
+        turned_over = np.arange(len(rows)) >= sum(counts[:4])
+        return cls(rows[listed], kinds[listed], depths[listed], turned_over[listed])
+
+
+def kinds_of(rows: Array, boundary: ObstacleBoundary, pegs: int) -> NDArray[np.int64]:
+    """The kinds (N,) of strict seats (N, 24), by the number of contacts and by what they touch."""
+    who, where = (rows[:, at : at + 4].astype(np.int64) for at in (PEG, PIECE))
+    ordered = np.sort(who, axis=1)
+    twice = (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)
+    # A corner on a wall is not one that a peg has to keep to.
+    corner = (boundary.corners[where] & (who < pegs)).any(axis=1)
+    four = np.where(twice, POCKET, np.where(corner, CORNER, FIXTURE))
+    return np.where(rows[:, CONTACTS] < 4.0, CURVED, four)

@@ -25,12 +25,11 @@ from workhold.contact.problem import centered
 from workhold.conventions import END_SLACK, SAME_CENTER
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
-from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.chord.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import Obstacles
 from workhold.model.seating import SeatContact
 from workhold.model.workpiece import Workpiece
-from workhold.seating.boundary_pieces import Touch, pockets_of, touched_pieces
-from workhold.seating.hull import Hull
+from workhold.seating.part_features import Hull, Touch, pockets_of, touched_pieces
 from workhold.seating.pattern import Pattern
 
 __all__ = ["ObstacleBoundary", "contains"]
@@ -84,7 +83,9 @@ class ObstacleBoundary:
         every = np.concatenate(rows)
         every.setflags(write=False)
         parts = np.array([starts[:2], starts[-2:]], dtype=np.int64)
-        return cls(every, parts, tuple(touches), np.concatenate(pockets), np.concatenate(whose), Hull.of(workpiece))
+        return cls(
+            every, parts, tuple(touches), np.concatenate(pockets), np.concatenate(whose), Hull.of(workpiece)
+        )
 
     def fits(self, side: int, piece: int) -> bool:
         """Whether pegs that stand still (0), or that move (1), can touch a piece."""
@@ -155,7 +156,9 @@ class ObstacleBoundary:
         groups: list[list[int]] = []
         for k in np.flatnonzero(self.rows[:, IS_ARC] != 0.0).tolist():
             center = self.rows[k, [X, Y]]
-            group = next((g for g in groups if np.hypot(*(self.rows[g[0], [X, Y]] - center)) <= SAME_CENTER), None)
+            group = next(
+                (g for g in groups if np.hypot(*(self.rows[g[0], [X, Y]] - center)) <= SAME_CENTER), None
+            )
             groups.append([k]) if group is None else group.append(k)
         return groups
 
@@ -187,7 +190,9 @@ class ObstacleBoundary:
         """The contacts that have been asked for, see ``contacts_of``."""
         return {}
 
-    def contacts_of(self, pegs: NDArray[np.int64], pieces: NDArray[np.int64]) -> list[tuple[SeatContact, ...]]:
+    def contacts_of(
+        self, pegs: NDArray[np.int64], pieces: NDArray[np.int64]
+    ) -> list[tuple[SeatContact, ...]]:
         """What pegs of a fixture touch, made once for all seats that have it.
 
         Parameters
@@ -204,7 +209,9 @@ class ObstacleBoundary:
                     for peg, at in zip(pegs[k].tolist(), pieces[k].tolist(), strict=True)
                     if peg >= 0
                 )
-                self.contacts[key] = tuple([SeatContact(peg, touch.face, touch.corner) for peg, touch in touching])
+                self.contacts[key] = tuple(
+                    [SeatContact(peg, touch.face, touch.corner) for peg, touch in touching]
+                )
         return [self.contacts[key] for key in keys]
 
     @cached_property
@@ -239,7 +246,10 @@ class ObstacleBoundary:
         if key not in self.tables:
             # Rounded, so that whoever asks first gets the curves that all others get.
             steps = LatticeSteps(
-                np.array([round(length, 12)]), np.array([0, 1]), np.array([[1, 0]], dtype=np.int64), np.array([0.0])
+                np.array([round(length, 12)]),
+                np.array([0, 1]),
+                np.array([[1, 0]], dtype=np.int64),
+                np.array([0.0]),
             )
             table = curve_table(self.loose[first:end], steps, centers=self.centers[first])
             for integers in (table.curves.integers, table.sliding_pairs.integers):
@@ -267,7 +277,13 @@ class ObstacleBoundary:
         rows.setflags(write=False)
         pockets = self.pockets * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0])
         return ObstacleBoundary(
-            rows, self.parts, self.touches, pockets, self.pocket_pieces, self.hull.turned_over, not self.mirrored
+            rows,
+            self.parts,
+            self.touches,
+            pockets,
+            self.pocket_pieces,
+            self.hull.turned_over,
+            not self.mirrored,
         )
 
 

@@ -1,25 +1,32 @@
-"""Self-motions of a part between pegs: it slides on parallel faces, or turns on concentric arcs.
+"""Self-motions of a part between pegs, and equilibrium manifolds: where it rests anywhere along them.
 
 Glossary
--------- self-motion : a motion of a mechanism that leaves its output as it is, here of the part while the
-separation stays: J. W.
-    Burdick, "On the inverse kinematics of redundant manipulators: characterization of the self-motion
-    manifolds", IEEE International Conference on Robotics and Automation (1989).
+--------
+self-motion : a motion of a mechanism that leaves its output as it is, here of the part while the separation
+    stays: J. W. Burdick, "On the inverse kinematics of redundant manipulators: characterization of the
+    self-motion manifolds", IEEE International Conference on Robotics and Automation (1989).
+equilibrium manifold : equilibria that are not isolated, with one separation, where a part is free along its
+    self-motions: a nondegenerate critical manifold of R. Bott, "Nondegenerate critical manifolds", Annals of
+    Mathematics 60 (1954).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cached_property
 from itertools import combinations, product
-from math import asin, atan2, cos, hypot, sin, sqrt, tau
+from math import asin, atan2, cos, hypot, nan, sin, sqrt, tau
 
 import numpy as np
-from attrs import frozen
+from attrs import define, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, X, Y
-from workhold.kernels.seating.columns import Given
-from workhold.kernels.seating.parallel import (
+from workhold.kernels.seating.columns import Given, Manifolds, Obstacles, SelfMotions
+from workhold.kernels.seating.freedom import free_runs, keep_free
+from workhold.kernels.seating.gathering import write_each_once
+from workhold.kernels.seating.parallel_and_concentric import (
     AT_HIGH,
     AT_LOW,
     AT_SEPARATION,
@@ -31,11 +38,21 @@ from workhold.kernels.seating.parallel import (
     on_three_faces,
 )
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_ONE, SLIDE_SECOND, SLIDE_TWO
-from workhold.seating.growing_rows import filled
+from workhold.seating.closing import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
-from workhold.seating.pattern import Pattern
+from workhold.seating.pattern import Pattern, PegSubset
 
-__all__ = ["Opposed", "SelfMotion", "on_one_center", "on_one_line", "on_parallel_lines", "turning"]
+__all__ = [
+    "ManifoldFinder",
+    "Opposed",
+    "SelfMotion",
+    "joined",
+    "of_pattern",
+    "on_one_center",
+    "on_one_line",
+    "on_parallel_lines",
+    "turning",
+]
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -152,7 +169,9 @@ def on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion
                 a, b = pair.pieces
                 omega = asin(rise / pair.width)
                 theta, s = omega - pair.angle, pair.width * cos(omega) - run
-                out += sliding(pattern, theta, pegs[i], boundary.rows[a], pair.low, pair.high, s, [(i, a), (j, b)])
+                out += sliding(
+                    pattern, theta, pegs[i], boundary.rows[a], pair.low, pair.high, s, [(i, a), (j, b)]
+                )
         for standing, moving in boundary.rings:
             for (a, one), (b, two) in product(standing, moving):
                 d = one + two
@@ -163,11 +182,15 @@ def on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion
                 # Square to the line the centre gives way where both arcs bend away.
                 falls = 2.0 / d < 1.0 / one + 1.0 / two - 1e-12
                 across = (-sin(omega), cos(omega)) if falls else None
-                out += turning(pattern, boundary.rows[a], center, d * cos(omega) - run, [(i, a), (j, b)], across)
+                out += turning(
+                    pattern, boundary.rows[a], center, d * cos(omega) - run, [(i, a), (j, b)], across
+                )
     return out
 
 
-def on_parallel_lines(boundary: ObstacleBoundary, pattern: Pattern, slides: Array, given: Given) -> list[SelfMotion]:
+def on_parallel_lines(
+    boundary: ObstacleBoundary, pattern: Pattern, slides: Array, given: Given
+) -> list[SelfMotion]:
     """Self-motions on parallel faces: the middle one of three pegs presses against the outer two.
 
     Parameters
@@ -187,7 +210,9 @@ def on_parallel_lines(boundary: ObstacleBoundary, pattern: Pattern, slides: Arra
         ]
         x, y = pattern.pegs[first].tolist()
         start = x + s * int(pattern.right[first]), y
-        out += sliding(pattern, row[AT_THETA], start, boundary.rows[a], row[AT_LOW], row[AT_HIGH], s, contacts)
+        out += sliding(
+            pattern, row[AT_THETA], start, boundary.rows[a], row[AT_LOW], row[AT_HIGH], s, contacts
+        )
     return out
 
 
@@ -208,11 +233,16 @@ def on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMoti
                             continue
                         center = x + s * side, y
                         normals = [
-                            ((pegs[peg][0] + s * right[peg] - center[0]) / signed, (pegs[peg][1] - y) / signed)
+                            (
+                                (pegs[peg][0] + s * right[peg] - center[0]) / signed,
+                                (pegs[peg][1] - y) / signed,
+                            )
                             for peg, signed in ((p, one), (q, two), (k, three))
                         ]
                         if balance(normals, [side, side, 1 - side]):
-                            out += turning(pattern, boundary.rows[a], center, s, [(p, a), (q, b), (k, c)], None)
+                            out += turning(
+                                pattern, boundary.rows[a], center, s, [(p, a), (q, b), (k, c)], None
+                            )
     return out
 
 
@@ -235,3 +265,99 @@ def circles_meet(one: Point, r1: float, two: Point, r2: float) -> list[Point]:
         return []
     ex, ey, half = dx / d, dy / d, sqrt(square)
     return [(one[0] + along * ex - t * half * ey, one[1] + along * ey + t * half * ex) for t in (1.0, -1.0)]
+
+
+NO_MANIFOLDS = Manifolds.room(0, 0)
+NO_MOTIONS = SelfMotions.room(0, 0)
+
+
+def of_pattern(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
+    """The self-motions of subsets of pegs as those of their pattern."""
+    some = [(subset, motions) for subset, motions in found if len(motions.counts)]
+    if not some:
+        return NO_MOTIONS
+    out = SelfMotions(*(np.concatenate(same) for same in zip(*(motions for _, motions in some), strict=True)))
+    shifts = np.repeat(
+        [subset.shift for subset, _ in some], [len(motions.configs) for _, motions in some], axis=0
+    )
+    np.add(out.configs, shifts, out=out.configs)
+    numbers = [[*subset.numbers, -1, -1][:4] for subset, _ in some]
+    return out._replace(pegs=np.repeat(numbers, [len(motions.counts) for _, motions in some], axis=0))
+
+
+def joined(parts: Sequence[Manifolds]) -> Manifolds:
+    """Manifolds, one after the other."""
+    rows, configs, _, closed, across = (
+        np.concatenate(same) for same in zip(NO_MANIFOLDS, *parts, strict=True)
+    )
+    counts = [np.diff(part.begins) for part in parts]
+    return Manifolds(
+        rows, configs, np.cumsum(np.concatenate([np.zeros(1, np.int64), *counts])), closed, across
+    )
+
+
+@define(frozen=True, eq=False, slots=False)
+class ManifoldFinder:
+    """Finds the equilibrium manifolds of a pattern on a part.
+
+    Parameters
+    ----------
+    boundary, pattern : of the part and the pegs.
+    """
+
+    boundary: ObstacleBoundary
+    pattern: Pattern
+
+    @property
+    def rows(self) -> Array:
+        """The pieces."""
+        return self.boundary.rows
+
+    @cached_property
+    def lines(self) -> list[int]:
+        """Numbers of the straight pieces."""
+        return np.flatnonzero(self.rows[:, IS_ARC] == 0.0).tolist()
+
+    @cached_property
+    def around(self) -> Obstacles:
+        """What keeps the pegs off the part, where turns and the stop do not count."""
+        return self.boundary.obstacles(self.pattern, 1.0, 0.0)
+
+    @property
+    def obstacles(self) -> int:
+        """How many pegs and walls there are."""
+        return len(self.pattern.pegs) + (self.pattern.half_plane is not None)
+
+    def free(self, motions: Sequence[SelfMotion]) -> SelfMotions:
+        """The self-motions along which the part is free somewhere, with where it is known to be."""
+        every = SelfMotions.room(len(motions), sum(len(motion.configs) for motion in motions))
+        if not motions:
+            return every
+        np.concatenate([motion.configs for motion in motions], out=every.configs)
+        every.pegs[:, : self.obstacles] = np.arange(self.obstacles)
+        for k, motion in enumerate(motions):
+            every.counts[k], every.closed[k] = len(motion.configs), motion.is_closed
+            every.across[k] = motion.across or nan
+            for peg, piece in motion.contacts:
+                every.pieces[k, peg] = piece
+        count = keep_free(every, self.around, np.empty((len(self.pattern.pegs), 4)))
+        return every.first(count)
+
+    def cut(self, motions: SelfMotions) -> Manifolds:
+        """The free runs of self-motions at separations that are reached."""
+        if not len(motions.counts):
+            return NO_MANIFOLDS
+        # At least every second configuration hinders between runs; each has two ends besides.
+        most, pegs = len(motions.configs) // 2 + len(motions.counts), len(self.pattern.pegs)
+        out = Manifolds.room(most, len(motions.configs) + 2 * most)
+        low, high = self.pattern.stop + SAME, self.pattern.widest - SAME
+        clear, seen = np.empty((len(motions.configs), self.obstacles)), np.empty((pegs, 4))
+        touched, work = np.empty(pegs, np.int64), np.empty((4, 4))
+        return out.first(free_runs(motions, low, high, self.around, clear, seen, touched, work, out))
+
+    def distinct(self, found: Manifolds) -> Manifolds:
+        """The manifolds found, each once: of those that lie in each other the one with the most contacts."""
+        if not len(found.rows):
+            return found
+        out = Manifolds.room(len(found.rows), len(found.configs))
+        return out.first(write_each_once(found, 1.0, SAME, out))

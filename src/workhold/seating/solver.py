@@ -21,19 +21,21 @@ from workhold.model.fixture import Fixture, Pose
 from workhold.model.result import Result
 from workhold.model.seating import Cage, Pass, Seat, SeatContact, Seating
 from workhold.model.workpiece import Workpiece
-from workhold.seating.by_hand import by_hand
 from workhold.seating.caging_set import CagingSet
+from workhold.seating.clamping import by_hand, sticking_friction
 from workhold.seating.closing import Closing
-from workhold.seating.contact_forces import contact_normals
+from workhold.seating.contact_forces import (
+    OTHERS_MAY_BE,
+    WAS_NOT_FOUND,
+    as_candidate,
+    contact_normals,
+    is_equilibrium,
+)
 from workhold.seating.equilibria import equilibria
-from workhold.seating.equilibrium_check import is_equilibrium
-from workhold.seating.join_tree import Join, JoinTree, distances
-from workhold.seating.missed import OTHERS_MAY_BE, WAS_NOT_FOUND, as_candidate
+from workhold.seating.join_tree import KINDS, LOOSE, UNSETTLED, Join, JoinTree, RestPoses, distances
 from workhold.seating.obstacle_boundary import ObstacleBoundary
+from workhold.seating.part_features import Silhouette
 from workhold.seating.pattern import Pattern
-from workhold.seating.rest_poses import KINDS, LOOSE, UNSETTLED, RestPoses
-from workhold.seating.silhouette import Silhouette
-from workhold.seating.sticking_friction import sticking_friction
 
 __all__ = ["Solver", "seatings"]
 
@@ -42,7 +44,9 @@ Array = NDArray[np.float64]
 AGREES = 1e-5
 # A share of the opening, by which less than the capture opening is less.
 LESS = 1e-6
-NO_PASS = "The pass at which its cage opens could not be settled: from where on the part is caught is not known."
+NO_PASS = (
+    "The pass at which its cage opens could not be settled: from where on the part is caught is not known."
+)
 
 
 @define(eq=False)
@@ -57,7 +61,9 @@ class Solver:
     workpiece: Workpiece
     toolkit: Toolkit
     boundaries: dict[tuple[float, float], ObstacleBoundary] = field(factory=dict)
-    solved: dict[tuple[object, ...], tuple[Pattern, tuple[JoinTree, JoinTree], tuple[Array, ...]]] = field(factory=dict)
+    solved: dict[tuple[object, ...], tuple[Pattern, tuple[JoinTree, JoinTree], tuple[Array, ...]]] = field(
+        factory=dict
+    )
     outline: Silhouette = field(init=False)
 
     def __attrs_post_init__(self) -> None:
@@ -110,7 +116,9 @@ class Solver:
         self.solved[key] = found.known, self.trees(found.known, missed), missed
         return FixtureInPattern(self, fixture, pattern, *self.solved[key])
 
-    def of_all(self, fixtures: Iterable[Fixture], with_cage: bool = True, threads: int | None = None) -> list[Seating]:
+    def of_all(
+        self, fixtures: Iterable[Fixture], with_cage: bool = True, threads: int | None = None
+    ) -> list[Seating]:
         """The seatings of many fixtures, in their order; patterns are shared out among threads.
 
         Parameters
@@ -199,7 +207,9 @@ class FixtureInPattern:
     def shift(self) -> Array:
         """The shift (4,) by which configurations of the solved pattern become the fixture's."""
         # Of the pegs that stand still, and of those that move, the first.
-        (still, moving), (there, then) = (p.pegs[p.order[[0, -int(p.right.sum())]]] for p in (self.pattern, self.known))
+        (still, moving), (there, then) = (
+            p.pegs[p.order[[0, -int(p.right.sum())]]] for p in (self.pattern, self.known)
+        )
         dx, dy = still - there
         return np.array([0.0, dx, dy, dx - (moving[0] - then[0])])
 
@@ -215,7 +225,9 @@ class FixtureInPattern:
         """The configuration (4,) of the fixture."""
         pose = self.fixture.pose
         x, y = pose.apply(*self.solver.workpiece.center)
-        return self.pattern.frame.enter(np.array([radians(pose.theta_deg), x, y, self.fixture.jaw_separation]))
+        return self.pattern.frame.enter(
+            np.array([radians(pose.theta_deg), x, y, self.fixture.jaw_separation])
+        )
 
     @cached_property
     def place(self) -> int | None:
@@ -249,14 +261,18 @@ class FixtureInPattern:
     def contacts(self, rows: Array) -> list[tuple[SeatContact, ...]]:
         """The contacts of each of some candidates (N, 24)."""
         # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
-        numbers = self.order.tolist() + [k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers]
+        numbers = self.order.tolist() + [
+            k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers
+        ]
         pegs, pieces = (rows[:, at : at + 4].astype(np.int64) for at in (PEG, PIECE))
         pegs = np.where(np.arange(4) < rows[:, CONTACTS, None], np.array(numbers)[pegs], -1)
         return self.solver.closing(self.known, False).boundary.contacts_of(pegs, pieces)
 
     def seats(self) -> tuple[Seat, ...]:
         """All seats, by their separations."""
-        rests = RestPoses.of(self.trees, self.solver.closing(self.known, False).boundary, len(self.known.pegs))
+        rests = RestPoses.of(
+            self.trees, self.solver.closing(self.known, False).boundary, len(self.known.pegs)
+        )
         rows, kinds, own, sign = rests.rows, rests.kinds, self.own, self.pattern.frame.sign
         configs = rows[:, CONFIG] + self.shift
         away, rise = distances(configs, own, self.solver.outline.arm), configs[:, 3] - own[3]
@@ -355,14 +371,16 @@ def unsettled_words(count: int) -> tuple[str, ...]:
     """The sentence about so many places that could not be settled, or none."""
     if count == 0:
         return ()
-    return (f"{'A place' if count == 1 else f'{count} places'} where the part may rest could not be settled.",)
+    return (
+        f"{'A place' if count == 1 else f'{count} places'} where the part may rest could not be settled.",
+    )
 
 
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
     """The seatings of fixtures: from how wide open each catches the part, and where else it can rest.
 
     Each is a ``model.seating.Seating``. With two clamps the part is put in by hand, and each is a
-    ``seating.by_hand.ByHand``, which says how.
+    ``seating.clamping.ByHand``, which says how.
 
     Parameters
     ----------

@@ -20,8 +20,7 @@ import numpy as np
 from attrs import define, frozen
 from numpy.typing import NDArray
 
-from workhold.kernels.chord.stretches import STRETCH_LENGTH
-from workhold.kernels.curves.columns import (
+from workhold.kernels.chord.columns import (
     CURVE_INTEGERS,
     CURVE_REALS,
     DIRECTION,
@@ -32,6 +31,7 @@ from workhold.kernels.curves.columns import (
     SLIDE_TO,
     TAIL,
 )
+from workhold.kernels.chord.stretches import STRETCH_LENGTH
 from workhold.kernels.seating.columns import (
     ANGLE,
     CELL_LENGTH,
@@ -47,13 +47,12 @@ from workhold.kernels.seating.columns import (
     Given,
     JawCells,
 )
-from workhold.kernels.seating.middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
+from workhold.kernels.seating.three_contacts import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.two_contact_curves import make_cells
-from workhold.seating.growing_rows import filled
+from workhold.seating.closing import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
-from workhold.seating.pattern import Pattern
-from workhold.seating.peg_subsets import PegSubset, jaw_subsets
+from workhold.seating.pattern import Pattern, PegSubset, jaw_subsets
 
 __all__ = ["TwoContactCurves", "JawCurves"]
 
@@ -74,7 +73,7 @@ class JawCurves:
     rows, curves, reals : ``holdings``, ``curves`` and ``reals`` of ``Given``, with pegs and curves counted
         from 0.
     cells, middles : (C, 7) and (C, 19) of all curves, one curve after the other, see
-        ``kernels.seating.middles``.
+        ``kernels.seating.three_contacts``.
     slides : (S, 7) what is no curve over the orientation: ``kernels.seating.slides``.
     """
 
@@ -89,7 +88,11 @@ class JawCurves:
     def of(cls, boundary: ObstacleBoundary, pegs: Array, right: NDArray[np.int64]) -> JawCurves:
         """The two-contact curves of pegs (K, 2) of a jaw, the first at the origin."""
         made, slides = [pocket_rows(boundary, right)], list[tuple[float, ...]]()
-        integers, reals, stretches = [np.zeros((0, CURVE_INTEGERS), np.int64)], [np.zeros((0, CURVE_REALS))], []
+        integers, reals, stretches = (
+            [np.zeros((0, CURVE_INTEGERS), np.int64)],
+            [np.zeros((0, CURVE_REALS))],
+            [],
+        )
         stretches.append(np.zeros((0, STRETCH_LENGTH)))
         curves_before = stretches_before = 0
         for one, two in combinations(range(len(pegs)), 2):
@@ -113,10 +116,18 @@ class JawCurves:
             integers.append(whole)
             reals.append(table.curves.reals)
             stretches.append(table.curves.stretches)
-            curves_before, stretches_before = curves_before + len(whole), stretches_before + len(stretches[-1])
+            curves_before, stretches_before = (
+                curves_before + len(whole),
+                stretches_before + len(stretches[-1]),
+            )
         rows, curves = np.concatenate(made), (np.concatenate(integers), np.concatenate(reals))
-        given, every = Given(rows, *curves, boundary.loose, pegs, right, boundary.parts), np.concatenate(stretches)
-        cells = filled(CELL_LENGTH, 2 * len(every) + 64 * len(boundary.pockets) + 64, make_cells, given, every)
+        given, every = (
+            Given(rows, *curves, boundary.loose, pegs, right, boundary.parts),
+            np.concatenate(stretches),
+        )
+        cells = filled(
+            CELL_LENGTH, 2 * len(every) + 64 * len(boundary.pockets) + 64, make_cells, given, every
+        )
         known = np.empty((len(cells), MIDDLE_LENGTH))
         write_middles(cells, given, known)
         return cls(rows, *curves, cells, known, np.array(slides).reshape(-1, SLIDE_LENGTH))
@@ -232,7 +243,9 @@ def given_of(
 ) -> tuple[Given, Given]:
     """``given`` and ``sought`` of ``TwoContactCurves``."""
     after = np.array(pattern.pegs), pattern.right, boundary.parts
-    return Given(rows, curves, reals, boundary.pieces, *after), Given(rows, curves, reals, boundary.loose, *after)
+    return Given(rows, curves, reals, boundary.pieces, *after), Given(
+        rows, curves, reals, boundary.loose, *after
+    )
 
 
 def pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:

@@ -4,8 +4,8 @@ The wall is along x or y. Where a piece of the part's hull lies on it, one coord
 follows from the orientation. The other follows from the locator on a piece, and the separation from the tip
 on a piece. So a part that stands on one piece of its hull and touches all three has one freedom. It balances
 where the normals of locator, tip and wall go through one point, which is where S is stationary over the
-orientation. All such poses are isolated (``kernels.seating.standing``). Four contacts are in closed form, or
-roots of polynomials (``kernels.seating.pocketed``).
+orientation. All such poses are isolated (``kernels.seating.wall_equilibria``). Four contacts are in closed form, or
+roots of polynomials (``kernels.seating.wall_equilibria``).
 
 Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
 and Automation 14 (1998), where three frictionless contacts balance on concurrent normals.
@@ -21,7 +21,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.curves.columns import CURVE_INTEGERS, CURVE_REALS
+from workhold.kernels.chord.columns import CURVE_INTEGERS, CURVE_REALS
 from workhold.kernels.seating.candidates import fourths
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -38,13 +38,12 @@ from workhold.kernels.seating.columns import (
     THETA,
     Given,
 )
-from workhold.kernels.seating.pocketed import tip_in_pocket
-from workhold.kernels.seating.standing import LOCATOR, TIP, Stood, stationary
-from workhold.kernels.seating.standing import ON_WALL as FIRST_ON_WALL
 from workhold.kernels.seating.turning import SHAPE_LENGTH
-from workhold.seating.growing_rows import filled
-from workhold.seating.hull import HullSide
+from workhold.kernels.seating.wall_equilibria import LOCATOR, TIP, Stood, stationary, tip_in_pocket
+from workhold.kernels.seating.wall_equilibria import ON_WALL as FIRST_ON_WALL
+from workhold.seating.closing import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
+from workhold.seating.part_features import HullSide
 from workhold.seating.pattern import Pattern
 
 __all__ = ["LOCATOR", "ON_WALL", "TIP", "WallEquilibria", "wall_candidates"]
@@ -138,7 +137,9 @@ class WallEquilibria:
         none = np.zeros((0, PAIR_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
         return Given(*none, self.stood.rows, pegs, self.pattern.right, self.boundary.parts)
 
-    def begun(self, theta: float, place: tuple[float, float], separation: float, contacts: list[Contact]) -> Array:
+    def begun(
+        self, theta: float, place: tuple[float, float], separation: float, contacts: list[Contact]
+    ) -> Array:
         """A candidate without forces."""
         row = np.zeros(CANDIDATE_LENGTH)
         row[THETA], row[PLACE_X], row[PLACE_Y], row[SEPARATION] = theta, *place, separation
@@ -179,7 +180,10 @@ class WallEquilibria:
         fixed, out = [], []
         for side in self.sides:
             theta = self.outward() - side.angle
-            ends, known = [self.on(side.pieces[0]), self.on(side.pieces[1], True)], self.resting(side.pieces[0], theta)
+            ends, known = (
+                [self.on(side.pieces[0]), self.on(side.pieces[1], True)],
+                self.resting(side.pieces[0], theta),
+            )
             fixed.append(self.begun(theta, (known, 0.0) if self.is_upright else (0.0, known), 0.0, ends))
             for ahead, up, held in self.pocketed(theta) if self.is_upright else ():
                 place = known, float(self.pattern.pegs[TIP, 1]) - up
@@ -216,7 +220,9 @@ class WallEquilibria:
                     if theta <= high:
                         c, s = cos(theta), sin(theta)
                         contacts = [(LOCATOR, one), (LOCATOR, two), self.on(piece)]
-                        out.append(self.begun(theta, (lx - c * vx + s * vy, ly - s * vx - c * vy), 0.0, contacts))
+                        out.append(
+                            self.begun(theta, (lx - c * vx + s * vy, ly - s * vx - c * vy), 0.0, contacts)
+                        )
         return self.with_tip(rows_of(out))
 
     def tip_in_pocket(self) -> Array:
@@ -276,7 +282,9 @@ class WallEquilibria:
                 if is_arc and hypot(dx, dy) < SAME_PLACE:
                     continue
                 # Normals along x: of an arc its centre is level with the hull's piece, ahead or behind.
-                angles = [-atan2(dy, dx), pi - atan2(dy, dx)] if is_arc else [-atan2(-row[AXIS_X], row[AXIS_Y])]
+                angles = (
+                    [-atan2(dy, dx), pi - atan2(dy, dx)] if is_arc else [-atan2(-row[AXIS_X], row[AXIS_Y])]
+                )
                 for theta in (not_before(low, angle) for angle in angles):
                     if theta > high:
                         continue
@@ -306,7 +314,9 @@ def curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
         matrix = np.array([[ahead, -1.0], [-1.0, 0.0]])
     else:
         apart = ahead - signed
-        matrix = np.array([[-apart - apart * apart / signed, apart / signed], [apart / signed, -1.0 / signed]])
+        matrix = np.array(
+            [[-apart - apart * apart / signed, apart / signed], [apart / signed, -1.0 / signed]]
+        )
     values, ways = np.linalg.eigh(matrix)
     return (float(values[0]) if values[1] > 0.0 else np.nan), float(ways[0, 0]), float(ways[1, 0])
 

@@ -1,8 +1,9 @@
-"""Contacts of fixtures with the inverses of their contact matrices, from holes, poses and faces alone.
+"""Normals, wrenches and inverse contact matrices of sets of fixtures, from holes, poses and faces alone.
 
 Glossary
 --------
-contact matrix : see ``kernels.statics.contact_matrix``; its inverse turns errors into movements and loads into peg forces.
+contact matrix : see ``kernels.contact.contact_matrix``; its inverse turns errors into movements and loads
+    into peg forces.
 """
 
 from __future__ import annotations
@@ -17,21 +18,61 @@ from numpy.typing import NDArray
 
 from workhold.contact.features import ContactFeature, contact_features, end_slacks, feature_rows
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.rotation import rotated
 from workhold.geometry.segment import Line, segment_rows
-from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH, X, Y
-from workhold.kernels.statics.contact_matrix import contact_matrices_of
-from workhold.model.diameter import outline_diameter
+from workhold.geometry.symmetry import rotated
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    FEATURE_LENGTH,
+    IS_ARC,
+    RADIUS,
+    SEGMENT_LENGTH,
+    SIGN,
+    X,
+    Y,
+)
+from workhold.kernels.contact.contact_matrix import contact_matrices_of
+from workhold.model.clamps import working_forces
 from workhold.model.fixture import Fixture
-from workhold.model.force_ratio import working_forces
 from workhold.model.wall import Flush
-from workhold.model.workpiece import Workpiece
+from workhold.model.workpiece import Workpiece, outline_diameter
 from workhold.rowwise import largest
-from workhold.statics.wrenches import wrenches
 
-__all__ = ["ContactMatrices", "Touched"]
+__all__ = ["ContactMatrices", "Touched", "outward_normals", "wrenches"]
 
 Array = NDArray[np.float64]
+
+
+def outward_normals(rows: Array, points: Array) -> Array:
+    """Outward unit normals of features at peg centres on them.
+
+    Parameters
+    ----------
+    rows : (..., 10) feature rows, see ``geometry.segment.segment_rows``.
+    points : (..., 2) in mm.
+
+    Returns
+    -------
+    (..., 2) array
+    """
+    is_arc, radius, sign = (rows[..., k, None] for k in (IS_ARC, RADIUS, SIGN))
+    radial = sign * (points - rows[..., X : Y + 1]) / np.where(radius == 0.0, 1.0, radius)
+    straight = np.stack([rows[..., AXIS_Y], -rows[..., AXIS_X]], axis=-1)
+    return np.where(is_arc == 0.0, straight, radial)
+
+
+def wrenches(points: Array, normals: Array, length: float) -> Array:
+    """Wrenches (..., 3) of contacts: the normal, and its moment over L.
+
+    Parameters
+    ----------
+    points, normals : (..., 2) peg centres about the centre of the part, in mm, and outward unit normals there.
+    length : L in mm.
+    """
+    moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
+    return np.concatenate([normals, moments[..., None]], axis=-1)
+
+
 # Pegs of a fixture whose contact matrix has one inverse; with two clamps there is one more.
 PEGS, LOCATORS = 4, 3
 
@@ -130,11 +171,16 @@ class Touched:
             length=outline_diameter(workpiece) / 2 + radius if length is None else length,
             features=rows,
             starts=np.concatenate(
-                [np.searchsorted(faces, np.arange(len(loci) * segments)), np.arange(len(walls) + 1) + len(features)]
+                [
+                    np.searchsorted(faces, np.arange(len(loci) * segments)),
+                    np.arange(len(walls) + 1) + len(features),
+                ]
             ).astype(np.int64),
             segments=segments,
             moving=np.array([carrier.travel is not None for carrier in carriers], np.float64),
-            directions=np.array([(0.0, 0.0) if c.travel is None else c.travel.unit for c in carriers], np.float64)
+            directions=np.array(
+                [(0.0, 0.0) if c.travel is None else c.travel.unit for c in carriers], np.float64
+            )
             * -toolkit.clamping,
             lies_flush=lies_flush,
             flush=flush,

@@ -41,7 +41,7 @@ from workhold.model.quality import (
     SMALLEST_FACE,
     TILT,
 )
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Tolerance
 
 __all__ = ["Judging", "is_astray", "is_near_edge", "is_strong", "is_unfit", "is_weak", "lets_go", "unfit"]
 
@@ -71,7 +71,11 @@ class Judging:
     def warnings(self, quality: Array, edges: Array) -> Array:
         """How many warnings (N,) there are, from figures of quality (N, 12) and distances of contacts from edges (N, 4)."""
         count = is_near_edge(edges).sum(axis=1) + is_weak(quality[:, CLOSURE_MARGIN])
-        count = count + is_strong(quality[:, CLAMP_AMPLIFICATION]) + is_astray(quality[:, LOCATION_ERROR], self.off)
+        count = (
+            count
+            + is_strong(quality[:, CLAMP_AMPLIFICATION])
+            + is_astray(quality[:, LOCATION_ERROR], self.off)
+        )
         if self.jaw_force is not None:
             count = count + lets_go(quality[:, JAW_FORCE_NEEDED], self.jaw_force)
         return np.asarray(count, np.float64)

@@ -1,36 +1,227 @@
-"""What loads do to one fixture: peg forces, and the jaw force that keeps every peg in contact.
+"""What loads do to one fixture: peg forces, the jaw force that is needed, and what friction could add.
 
-Contacts are without friction and bodies are rigid, so the peg forces are known exactly once the force on what moves is:
-f = f0 + F h, where F is that force, of a vise the jaw force, h the peg forces per unit of it, and f0 balances the load
-without pushing that carrier. That is for a jaw that keeps its force; a screw vise locks its jaw, and f0 is then what
-``statics.jaw`` makes of it. Friction can only be told as what it would make possible, see ``statics.friction``.
+Contacts are without friction and bodies are rigid, so the peg forces are known exactly once the force on what
+moves is: f = f0 + F h. F is that force, of a vise the jaw force, h the peg forces per unit of it, and f0
+balances the load without pushing that carrier. A hydraulic or pneumatic jaw keeps its push, and the other
+contacts take a load as if it were not there. A screw vise is closed with a force F and then stands still. All
+contacts share a load according to their stiffness, as in a preloaded bolt (VDI 2230), and the push of the jaw
+changes with it.
+
+Let contacts be springs of the same stiffness and the jaw one of s times that, A be the contact matrix (see
+``kernels.contact.contact_matrix``), B = A^-T, and h its last column. A jaw that keeps its force answers a
+load g = (g_x, g_y, m / L, 0) with f0 = B g. All forces that balance the load are f0 + k h. A spring of the
+jaw takes up k / s, so the forces are those with the least energy sum f^2 + k^2 / s (Castigliano; S.
+Timoshenko and J. N. Goodier, *Theory of Elasticity*, 1970, section 92; for grasps A. Bicchi, Robotics and
+Autonomous Systems 13, 1994):
+
+    f = f0 - h (h . f0) / (1 / s + h . h),
+
+which is f0 for s = 0, and the part of f0 at right angles to h for a rigid jaw. It holds while every peg stays
+in contact. Two clamps have a column each in H, the forces are f0 + H k, and f = f0 - H (1 / s + H'H)^-1 H'f0.
+
+With friction every contact may press within its cone, along -n + mu t and -n - mu t with forces x >= 0 (V.-D.
+Nguyen, International Journal of Robotics Research 7, 1988). The least jaw force that balances a load g is the
+linear program
+
+    minimize r . x   subject to   W x = -g,  x >= 0,
+
+with r the share of each edge in pushing the carrier that moves. Its dual (V. Chvatal, *Linear Programming*,
+1983, chapter 5) asks for the motion y of the part that does the most work -g . y among those with W^T y <= r.
+These form a polytope, because the wrenches span the space, and its few corners answer every load.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import permutations
-from math import atan2, cos, degrees, hypot, isfinite, radians, sin
+from itertools import combinations, permutations
+from math import atan2, cos, degrees, hypot, inf, isfinite, radians, sin
 
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import NO_FORCE
+from workhold.conventions import FLAT, NO_FORCE, OUTSIDE
 from workhold.errors import InputError
+from workhold.fixels.carrier import standoff
 from workhold.fixels.toolkit import Toolkit
-from workhold.limits import MOST_FRICTION, refuse_strong
+from workhold.kernels.contact.quality import HALF, HIGH_X, HIGH_Y, LOW_X, LOW_Y, MIDDLE_X, MIDDLE_Y
+from workhold.limits import MOST_FRICTION, real, refuse_strong
 from workhold.model.fixture import Fixture
-from workhold.model.load import Load
+from workhold.model.requirements import Load
 from workhold.model.workpiece import Workpiece
-from workhold.real import real
-from workhold.statics.contact_matrix import Touched
-from workhold.statics.friction import contacts_on_part, possible_motions
-from workhold.statics.jaw import jaw_stiffness, shared_forces
+from workhold.statics.contact_matrix import ContactMatrices, Touched
 
-__all__ = ["LoadCase", "Worst", "largest_value", "load_cases"]
+__all__ = [
+    "LoadCase",
+    "Worst",
+    "cone_edges",
+    "contacts_on_part",
+    "jaw_forces_needed",
+    "jaw_stiffness",
+    "jaw_words",
+    "largest_value",
+    "load_cases",
+    "possible_motions",
+    "shared_forces",
+]
 
 Array = NDArray[np.float64]
+STIFFNESS = {"screw": inf, "constant": 0.0}
+
+
+def jaw_stiffness(jaw: str | float) -> float:
+    """How many times as stiff as one contact the closed jaw is.
+
+    Parameters
+    ----------
+    jaw : "screw" (rigid once it is closed), "constant" (it keeps its force), or the number itself.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> jaw_stiffness("screw"), jaw_stiffness("constant"), jaw_stiffness("2.5")
+    (inf, 0.0, 2.5)
+    """
+    if isinstance(jaw, str):
+        word = jaw.strip().lower()
+        if word in STIFFNESS:
+            return STIFFNESS[word]
+    try:
+        value = float(jaw) if isinstance(jaw, str) else real(jaw)
+    except ValueError:
+        value = -1.0
+    if not value >= 0:
+        raise InputError(
+            f"jaw {str(jaw)[:40]!r} is not known: give screw, constant, or how many times as stiff as one contact it is."
+        )
+    return value
+
+
+def jaw_words(stiffness: float, toolkit: Toolkit) -> str:
+    """What a jaw, or a clamp, is, for people.
+
+    >>> from workhold import Plate, Vise
+    >>> jaw_words(0.0, Plate(pitch=20, peg_radius=5)), jaw_words(5.0, Vise(pitch=10, columns=2, peg_radius=3))
+    ('a clamp that keeps its force', 'a screw vise, its jaw 5 times as stiff as a contact')
+    """
+    if stiffness == 0:
+        return f"a {toolkit.moving.noun} that keeps its force"
+    return f"{toolkit.locked} " + (
+        "locked" if stiffness == inf else f"{stiffness:g} times as stiff as a contact"
+    )
+
+
+def shared_forces(forces: Array, closing: Array, stiffness: float) -> Array:
+    """Peg forces per unit of g_x, g_y, moment and jaw force behind a jaw of a stiffness.
+
+    Parameters
+    ----------
+    forces : (P, 4) the same for a jaw that keeps its force.
+    closing : (P, M) peg forces per unit of the force of each jaw or clamp, H.
+
+    Returns
+    -------
+    (P, 4) array, whose last column is h still: the jaw was closed before the load came.
+    """
+    if stiffness == 0:
+        return forces
+    out = forces.copy()
+    springs = np.eye(closing.shape[1]) / stiffness + closing.T @ closing
+    out[:, :3] -= closing @ np.linalg.solve(springs, closing.T @ forces[:, :3])
+    return out
+
+
+def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
+    """Jaw forces (N,) in N above which no peg of a screw vise lets go under any load; never negative.
+
+    Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of their forces, at
+    the working ratio, and what is taken from f0 is its part in the plane of both.
+
+    Parameters
+    ----------
+    inverses : (N, 4, P) of the contact matrices; their last rows are h.
+    closing : (N, P, M) peg forces per unit of the force of each jaw or clamp.
+    length : L in mm.
+    loads : (M, 11) rows, see ``kernels.contact.quality``.
+    """
+    held = inverses[:, 3]
+    back = np.swapaxes(closing, 1, 2)
+    taken = np.linalg.solve(back @ closing, back @ np.swapaxes(inverses[:, :3], 1, 2))
+    shares = np.swapaxes(closing @ taken, 1, 2) / held[:, None]
+    a, b, c = np.moveaxis(shares - inverses[:, :3] / held[:, None], 1, 0)
+    most = np.zeros(len(inverses))
+    for load in loads:
+        force, px, py, moment = load[0], load[1] / length, load[2] / length, load[3] / length
+        x, y = a - py * c, b + px * c
+        size = np.hypot(x, y)
+        ends = np.maximum(x * load[LOW_X] + y * load[LOW_Y], x * load[HIGH_X] + y * load[HIGH_Y])
+        largest = np.where(x * load[MIDDLE_X] + y * load[MIDDLE_Y] >= size * load[HALF], size, ends)
+        most = np.maximum(most, (moment * c + force * largest).max(axis=1))
+    return most
+
+
+def contacts_on_part(
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, touched: Touched, matrices: ContactMatrices
+) -> tuple[Array, Array, Array, Array]:
+    """Contacts, normals, what moves, and against which way it clamps, of a fixture as :func:`cone_edges` takes them.
+
+    Parameters
+    ----------
+    touched, matrices : what the toolkit's pegs touch of the part, and the contact matrix of the fixture.
+    """
+    carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
+    faces = {face.number: face.segment for face in workpiece.faces}
+    pegs = zip(fixture.pegs, (toolkit.carriers[number] for number in carriers), strict=True)
+    radii = np.array([standoff(one.peg_radius, one.flat, faces[peg.face]) for peg, one in pegs])
+    normals = matrices.normals[0]
+    against = -np.stack(fixture.pose.inverse.turn(*touched.directions[carriers].T), axis=1)
+    return matrices.points[0] - radii[:, None] * normals, normals, touched.moving[carriers], against
+
+
+def cone_edges(
+    contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
+) -> tuple[Array, Array]:
+    """Wrenches (2 P, 3) of the edges of friction cones, and how much each pushes what moves back (2 P,).
+
+    Parameters
+    ----------
+    contacts : (P, 2) contact points about c in mm (with friction they are not the peg centres).
+    normals : (P, 2) outward unit normals.
+    moving : (P,) 1 for pegs on the carrier that moves, 0 for others.
+    against : (2,) unit vector in the part's frame against which that carrier clamps, or (P, 2) for each peg.
+    friction : the coefficient mu.
+    length : L in mm, which moments are divided by.
+    """
+    tangents = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
+    edges = np.concatenate([-normals + friction * tangents, -normals - friction * tangents])
+    at = np.concatenate([contacts, contacts])
+    moments = (at[:, 0] * edges[:, 1] - at[:, 1] * edges[:, 0]) / length
+    against = np.broadcast_to(against, normals.shape)
+    share = -(edges * np.concatenate([against, against])).sum(axis=1) * np.concatenate([moving, moving])
+    return np.column_stack([edges, moments]), share
+
+
+def possible_motions(
+    contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
+) -> Array:
+    """Corners (M, 3) of the dual polytope as jaw force per unit of (g_x, g_y, moment); parameters as :func:`cone_edges`.
+
+    The jaw force needed for a load is the largest product with it, or 0 if that is negative. There are no corners where
+    friction alone could jam the part between pegs of one carrier: then no load needs any jaw force.
+    """
+    wrenches, share = cone_edges(contacts, normals, moving, against, friction, length)
+    corners = []
+    for chosen in combinations(range(len(wrenches)), 3):
+        planes = wrenches[list(chosen)]
+        if abs(np.linalg.det(planes)) > FLAT:
+            corner = np.linalg.solve(planes, share[list(chosen)])
+            if (wrenches @ corner - share <= OUTSIDE * (1.0 + np.abs(corner).max())).all():
+                corners.append(corner)
+    return np.asarray(-np.array(corners).reshape(-1, 3) / [1.0, 1.0, length])
 
 
 @frozen
@@ -99,10 +290,10 @@ def load_cases(
     Parameters
     ----------
     fixture, workpiece, toolkit : the fixture, of what and in what.
-    loads : see :class:`workhold.model.load.Load`.
+    loads : see :class:`workhold.model.requirements.Load`.
     jaw_force : force in N that pushes the moving carrier; by default the one needed so that no peg lets go under any load.
     friction : Coulomb's coefficient of friction between peg and part, to tell what it could add.
-    jaw : "screw", "constant", or how many times as stiff as one contact the jaw is; see ``statics.jaw``.
+    jaw : "screw", "constant", or how many times as stiff as one contact the jaw is; see ``statics.loads``.
 
     Raises
     ------
@@ -114,10 +305,12 @@ def load_cases(
             raise InputError(f"{name} {real(value):g} cannot be used: give 0 or more.")
     refuse_strong("jaw force", jaw_force or 0.0)
     if friction is not None and friction > MOST_FRICTION:
-        raise InputError(f"friction {friction:g} is beyond {MOST_FRICTION:g}: give the coefficient, such as 0.15.")
+        raise InputError(
+            f"friction {friction:g} is beyond {MOST_FRICTION:g}: give the coefficient, such as 0.15."
+        )
     stiffness, touched = jaw_stiffness(jaw), Touched.of(workpiece, toolkit)
     contact_matrices = touched.of_fixture(fixture, toolkit)
-    # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.statics.contact_matrix.
+    # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.contact.contact_matrix.
     forces = contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
     forces = shared_forces(forces, contact_matrices.closing[0], stiffness)
     motions = None
@@ -135,14 +328,18 @@ def load_cases(
             jaw_stiffness=stiffness,
             jaw_force=jaw_force,
             smallest=forces_of(
-                -largest_of(-forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(len(forces))
+                -largest_of(-forces[i], load, center).value + jaw_force * forces[i, 3]
+                for i in range(len(forces))
             ),
             largest=forces_of(
-                largest_of(forces[i], load, center).value + jaw_force * forces[i, 3] for i in range(len(forces))
+                largest_of(forces[i], load, center).value + jaw_force * forces[i, 3]
+                for i in range(len(forces))
             ),
             reaction=reaction(forces, load, center),
             needed=need,
-            needed_with_friction=None if motions is None else with_friction(motions, load, center, need, stiffness),
+            needed_with_friction=None
+            if motions is None
+            else with_friction(motions, load, center, need, stiffness),
         )
         for load, need in zip(loads, needs, strict=True)
     )
@@ -179,13 +376,14 @@ def largest_of(coefficients: Array, load: Load, center: tuple[float, float]) -> 
 def needed(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
     """The jaw force needed so that no peg lets go: the largest -f0_i / h_i over pegs, points and directions."""
     worst = max(
-        (of_peg(-forces[i] / forces[i, 3], i, load, center) for i in range(len(forces))), key=lambda worst: worst.value
+        (of_peg(-forces[i] / forces[i, 3], i, load, center) for i in range(len(forces))),
+        key=lambda worst: worst.value,
     )
     return Worst(max(worst.value, 0.0), worst.peg, worst.point, worst.direction)
 
 
 def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
-    """The largest peg force with the least clamping (Brost & Goldberg 1996, see ``kernels.statics.reactions``)."""
+    """The largest peg force with the least clamping (Brost & Goldberg 1996, see ``kernels.contact.quality``)."""
     pairs = permutations(range(len(forces)), 2)
     return max(
         (of_peg(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], j, load, center) for j, i in pairs),
@@ -199,7 +397,9 @@ def of_peg(coefficients: Array, peg: int, load: Load, center: tuple[float, float
     return Worst(worst.value, peg, worst.point, worst.direction)
 
 
-def with_friction(motions: Array, load: Load, center: tuple[float, float], need: Worst, stiffness: float) -> float:
+def with_friction(
+    motions: Array, load: Load, center: tuple[float, float], need: Worst, stiffness: float
+) -> float:
     """The jaw force that friction leaves needed; no more than without it, which a locked jaw may need less of."""
     least = resisted(motions, load, center)
     return min(least, need.value) if stiffness else least

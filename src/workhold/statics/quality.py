@@ -1,4 +1,12 @@
-"""The figures of quality of whole tables of fixtures (model: "Quality"; what they mean is in docs/quality.md)."""
+"""The figures of quality of whole tables of fixtures (model: "Quality"; what they mean is in docs/quality.md).
+
+Glossary
+--------
+main direction : in degrees in [0, 90): of all directions of straight faces, those a quarter turn apart
+    counted as one, that with the most length of faces, given by the longest of them (the first of equally
+    long ones). Where no face is straight, or another direction has about as much, the drawing's own x.
+tilt : angle between the main direction and the nearest of the directions of the jaws, x and y.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +18,13 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
+from workhold.conventions import FIGURE_DECIMALS, MAIN_DIRECTION, SQUARE_TILT
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import convex_hull
-from workhold.geometry.segment import Arc
+from workhold.geometry.segment import Arc, Line
 from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
-from workhold.kernels.statics.quality import figures
-from workhold.kernels.statics.reactions import LOAD_LENGTH
+from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.model.fixture import Fixture
-from workhold.model.load import Load
 from workhold.model.quality import (
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
@@ -28,18 +35,53 @@ from workhold.model.quality import (
     TILT,
     WARNINGS,
 )
+from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import FixtureTable, Result, fixture_at, peg_places
-from workhold.model.tolerance import Tolerance
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import smallest
 from workhold.statics.contact_matrix import Touched
-from workhold.statics.jaw import jaw_forces_needed
 from workhold.statics.judging import Judging
-from workhold.statics.lying import face_sizes, main_direction, tilts
+from workhold.statics.loads import jaw_forces_needed
 
-__all__ = ["load_rows", "measured_fixture", "quality_of"]
+__all__ = ["face_sizes", "load_rows", "main_direction", "measured_fixture", "quality_of", "tilts"]
 
 Array = NDArray[np.float64]
+
+
+def main_direction(workpiece: Workpiece) -> float:
+    """The main direction of a part, in the frame of its drawing."""
+    lines = [face.segment for face in workpiece.faces if isinstance(face.segment, Line)]
+    if not lines:
+        return 0.0
+    ends = np.array([(*line.start, *line.end) for line in lines])
+    along = ends[:, 2:] - ends[:, :2]
+    angle, length = np.degrees(np.arctan2(along[:, 1], along[:, 0])) % 90.0, np.hypot(*along.T)
+    order = np.argsort(angle)
+    # Once more a quarter turn below and above, so that 0 and 90 degrees are neighbours.
+    around = np.concatenate([angle[order] + turn for turn in (-90.0, 0.0, 90.0)])
+    sums = np.concatenate([[0.0], np.cumsum(np.tile(length[order], 3))])
+    low, high = np.searchsorted(around, angle - SQUARE_TILT), np.searchsorted(around, angle + SQUARE_TILT)
+    total = sums[high] - sums[low]
+    rivals = total >= MAIN_DIRECTION * total.max()
+    chosen = angle[rivals][np.round(length[rivals], FIGURE_DECIMALS).argmax()]
+    alone = (np.abs((angle[rivals] - chosen + 45.0) % 90.0 - 45.0) < 2 * SQUARE_TILT).all()
+    return float(chosen) if alone else 0.0
+
+
+def tilts(theta: Array, direction: float) -> Array:
+    """Tilts (N,) in degrees, from 0 to 45, of a part turned by theta (N,) in radians; 0 where it lies square."""
+    off = np.abs((np.degrees(theta) + direction + 45.0) % 90.0 - 45.0)
+    return np.where(off < SQUARE_TILT, 0.0, off)
+
+
+def face_sizes(workpiece: Workpiece) -> Array:
+    """Size (S,) in mm of the face of each number, NaN where there is none: the length of a straight one, an arc's radius."""
+    sizes = np.full(len(workpiece.segments), np.nan)
+    for face in workpiece.faces:
+        sizes[face.number] = face.segment.radius if isinstance(face.segment, Arc) else face.segment.length
+    return sizes
+
+
 # Fixtures looked at together; what is needed for them beside the table and the figures takes 3 MB.
 BLOCK = 1 << 13
 
@@ -163,7 +205,9 @@ def measured_fixture(
     row = result.table.take(slice(index, index + 1))
     asked = result.query.loads if loads is None else loads
     force = result.query.jaw_force if jaw_force is None else jaw_force
-    quality = quality_of(row, result.workpiece, result.toolkit, result.query.tolerance, asked, jaw_force=force)
+    quality = quality_of(
+        row, result.workpiece, result.toolkit, result.query.tolerance, asked, jaw_force=force
+    )
     return fixture_at(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)
 
 
@@ -172,7 +216,7 @@ def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
 
     Returns
     -------
-    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as ``kernels.statics.quality``
+    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as ``kernels.contact.quality``
         takes them.
     """
     outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
@@ -188,7 +232,7 @@ def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
 
 
 def load_rows(loads: Sequence[Load], center: tuple[float, float]) -> Array:
-    """Rows (M, 11) of loads for ``kernels.statics.reactions``, one for each corner of a path's convex hull.
+    """Rows (M, 11) of loads for ``kernels.contact.quality``, one for each corner of a path's convex hull.
 
     The largest force is a convex function of the point, so no other point of a path can be worse.
     """

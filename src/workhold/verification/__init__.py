@@ -3,7 +3,6 @@
 :func:`verify` and :func:`verify_file` say of every fixture of a result: proven, refuted or undecided.
 """
 
-from workhold.verification.fixture_proof import Ruling, verify_fixture
-from workhold.verification.verify import Unproven, Verification, verify, verify_file
+from workhold.verification.verify import Ruling, Unproven, Verification, verify, verify_file, verify_fixture
 
 __all__ = ["Ruling", "Unproven", "Verification", "verify", "verify_file", "verify_fixture"]

@@ -32,7 +32,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from flint import ctx
 
-from workhold.model.notes import (
+from workhold.model.search_report import (
+    Proof,
     best_note,
     by_hand_note,
     cut_note,
@@ -45,10 +46,8 @@ from workhold.model.notes import (
     stopped_note,
     undecided_note,
 )
-from workhold.model.proof import Proof
-from workhold.verification.balls import PRECISIONS
+from workhold.verification.ball_geometry import PRECISIONS, BallOutline
 from workhold.verification.listing import Listing
-from workhold.verification.outline import BallOutline
 from workhold.verification.repeats import Seen
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat_clamps import pairs_at
@@ -94,7 +93,9 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
     listed, found, best = len(listing.fixtures), sum(listing.found.values()), listing.query.best
     if best is not None and listed > best:
         yield f"the best {best} are asked for, but {listed} are listed"
-    said = {kept_note(found, listed), cut_note(found, listed)} & set(listing.notes) or listing.query.has_seating_rules
+    said = {kept_note(found, listed), cut_note(found, listed)} & set(
+        listing.notes
+    ) or listing.query.has_seating_rules
     if found > listed != best and not said:
         yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
 

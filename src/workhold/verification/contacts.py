@@ -1,27 +1,57 @@
-"""The contact equations of a fixture in its unknowns theta, x, y and the travels of what moves.
+"""The contacts of a fixture in balls: their equations, force closure without friction, forces and wrench radius.
 
-A workpiece point q lies at R(theta) q + t, t = (x, y), and a peg that moves at its hole's place plus S times its way, S
-being its travel: of jaws the separation, of a clamp how far its tip is from its hole. With u the vector from t to the
-peg's centre, N = R n and C = R c, a peg of radius rho touches
+The equations (model: condition 1) are in the unknowns theta, x, y and the travels of what moves. A workpiece
+point q lies at R(theta) q + t, t = (x, y). A peg that moves is at its hole's place plus S times its way, S
+being its travel: of jaws the separation, of a clamp how far its tip is from its hole. With u the vector from
+t to the peg's centre, N = R n and C = R c, a peg of radius rho touches
 
 - a line with outward normal n and level l when N · u - l - rho = 0;
 - an arc about c when (|u - C|² - reach²) / 2 = 0, reach = r + rho on a convex and r - rho on a concave arc.
+
+Force closure and forces (model: conditions 4 and 5) follow from the null vector of four wrenches (n, q x n),
+which the signed 3 x 3 minors give. It depends neither on the point that moments are taken about nor on their
+scale, because both change the matrix by invertible row operations only.
+
+Glossary
+--------
+wrench radius : distance from the origin to the nearest facet of the hull of the wrenches, no unit. A wrench
+    here is (n, (q - c) x n / L), c being the centre of the part's bounding box.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import combinations
 from typing import ClassVar
 
 from attrs import field, frozen
 from flint import arb, arb_mat
 
-from workhold.fixels.flat import Flat
+from workhold.fixels.carrier import Flat
 from workhold.model import fixture as model
-from workhold.verification.balls import Point, cross, dot, turned
-from workhold.verification.sides import LineSide, Side
+from workhold.verification.ball_geometry import LineSide, Point, Side, cross, dot, least, root, turned
+from workhold.verification.tolerances import (
+    FLAT,
+    LEAST_CLAMPING,
+    LEAST_SHARE,
+    LEAST_SPAN,
+    Finding,
+    number,
+    rule,
+)
 
-__all__ = ["BallContact", "BallPose", "contact_system", "standoff"]
+__all__ = [
+    "Balance",
+    "BallContact",
+    "BallPose",
+    "closure_findings",
+    "contact_system",
+    "inverted",
+    "minors",
+    "span",
+    "standoff",
+    "wrench_radius",
+]
 
 
 @frozen(eq=False)
@@ -124,3 +154,171 @@ def contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[
         values.append(value)
         rows.append([*slopes, *(along if k == contact.travel else arb(0) for k in range(len(pose.travels)))])
     return arb_mat(len(values), 1, values), arb_mat(rows)
+
+
+def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
+    """The null vector of four wrenches, not scaled: (-1)^i det of the wrenches other than i, in mm; in balls."""
+    moments = [cross(q, n) for q, n in zip(points, normals, strict=True)]
+    vector = []
+    for i in range(4):
+        a, b, c = (k for k in range(4) if k != i)
+        det = (
+            cross(normals[a], normals[b]) * moments[c]
+            + cross(normals[b], normals[c]) * moments[a]
+            + cross(normals[c], normals[a]) * moments[b]
+        )
+        vector.append(-det if i % 2 else det)
+    return vector
+
+
+def span(vector: Sequence[arb], wrench_length: float) -> arb:
+    """Sizes of the minors summed, moments in parts of L in mm: how far the wrenches are from lying in one plane."""
+    return sum((abs(entry) for entry in vector), arb(0)) / wrench_length
+
+
+@frozen(eq=False)
+class Balance:
+    """How four contacts press on the workpiece when nothing else does.
+
+    Parameters
+    ----------
+    points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
+    vector : the null vector of the wrenches, not scaled, see :func:`minors`.
+    shares : the null vector scaled to sum 1; no numbers where the sum may be 0.
+    clamp : the force that what moves passes on in the direction in which it clamps, for these shares.
+    """
+
+    points: tuple[Point, ...]
+    normals: tuple[Point, ...]
+    vector: tuple[arb, ...]
+    shares: tuple[arb, ...]
+    clamp: arb
+
+    @classmethod
+    def of(cls, contacts: Sequence[BallContact], pose: BallPose, clamping: int) -> Balance:
+        """The balance of four contacts; ``clamping`` is 1 where less travel clamps, -1 where more does."""
+        points = tuple(contact.in_part(pose) for contact in contacts)
+        normals = tuple(contact.outward(pose) for contact in contacts)
+        vector = tuple(minors(points, normals))
+        total = sum(vector, arb(0))
+        shares = tuple(entry / total for entry in vector)
+        # A peg pushes along -n, and clamps against its way.
+        ways = [turned(contact.way, pose.cosine, -pose.sine) for contact in contacts]
+        push = sum((s * dot(way, n) for s, way, n in zip(shares, ways, normals, strict=True)), arb(0))
+        return cls(points, normals, vector, shares, clamping * push)
+
+    @property
+    def forces(self) -> list[arb]:
+        """Force of each peg per unit of clamping force."""
+        return [share / self.clamp for share in self.shares]
+
+    @property
+    def margin(self) -> arb:
+        """The closure margin."""
+        return least(self.shares)
+
+    def inverse(self, contacts: Sequence[BallContact], pose: BallPose) -> list[list[arb]] | None:
+        """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None where there may be none."""
+        rows = [
+            [*normal, cross(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal)]
+            for contact, point, normal in zip(contacts, self.points, self.normals, strict=True)
+        ]
+        return inverted(rows)
+
+    def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
+        """A number for each peg, from a row of the inverse."""
+        return row
+
+    def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
+        """The part of some forces that lies along those with which what moves presses: what locking it takes away."""
+        own = self.forces
+        share = sum((a * b for a, b in zip(forces, own, strict=True)), arb(0)) / sum(
+            (a * a for a in own), arb(0)
+        )
+        return [share * force for force in own]
+
+
+def inverted(rows: list[list[arb]]) -> list[list[arb]] | None:
+    """The inverse of a square matrix; None where there may be none."""
+    try:
+        inverse: list[list[arb]] = arb_mat(rows).inv().tolist()
+    except ZeroDivisionError:
+        return None
+    return inverse
+
+
+def closure_findings(
+    balance: Balance, wrench_length: float, names: Sequence[str], slack_words: str
+) -> Iterator[Finding]:
+    """Whether four contacts of some names close, and whether what moves clamps.
+
+    Parameters
+    ----------
+    wrench_length : L, half the diameter of the peg-centre locus, in mm.
+    slack_words : what is wrong where the clamping force is none.
+    """
+    vector, spanned = balance.vector, span(balance.vector, wrench_length)
+    words = f"the contacts do not hold the part: their wrenches span only {number(spanned)}"
+    yield from rule(spanned - LEAST_SPAN, words, words)
+    total = sum(vector, arb(0))
+    if not (total > 0 or total < 0):
+        opposed = any(entry > 0 for entry in vector) and any(entry < 0 for entry in vector)
+        yield Finding(opposed, "the contacts do not hold the part: their forces do not close")
+        return
+    for name, share in zip(names, balance.shares, strict=True):
+        yield from rule(
+            share - LEAST_SHARE,
+            f"the contacts do not hold the part: the share of {name} in the closure is {number(share)}",
+            f"the share of {name} in the closure is exactly at its limit",
+        )
+    yield from rule(
+        balance.clamp - LEAST_CLAMPING,
+        f"{slack_words}: the clamping force is {number(balance.clamp)}",
+        "the clamping force is exactly at its limit",
+    )
+
+
+Wrench = tuple[arb, arb, arb]
+
+
+def wrench_radius(
+    center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]
+) -> arb | None:
+    """The wrench radius of contacts, about a centre with L in mm; None where all wrenches may lie in one line.
+
+    The nearest plane through three wrenches counts that has all others on one side. Several may lie in one plane, or two be
+    equal, to ``FLAT``; where that is in doubt the ball holds both cases.
+    """
+    (x, y), nearest = center, None
+    arms = [(px - x, py - y) for px, py in points]
+    wrenches = [(*normal, cross(arm, normal) / length) for arm, normal in zip(arms, normals, strict=True)]
+    for corners in combinations(range(len(wrenches)), 3):
+        a, b, c = (wrenches[k] for k in corners)
+        across = vector_product(difference(b, a), difference(c, a))
+        size = root(scalar(across, across))
+        if size < FLAT or not size > 0:
+            continue
+        others = (wrench for k, wrench in enumerate(wrenches) if k not in corners)
+        sides = [scalar(across, difference(wrench, a)) / size for wrench in others]
+        if any(side > FLAT for side in sides) and any(side < -FLAT for side in sides):
+            continue
+        height = abs(scalar(across, a)) / size
+        sure = all(side > -FLAT for side in sides) or all(side < FLAT for side in sides)
+        found = height if nearest is None else nearest.min(height)
+        nearest = found if sure or nearest is None else found.union(nearest)
+    return nearest
+
+
+def vector_product(a: Wrench, b: Wrench) -> Wrench:
+    """Vector product in space."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def difference(a: Wrench, b: Wrench) -> Wrench:
+    """One vector less another."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def scalar(a: Wrench, b: Wrench) -> arb:
+    """Scalar product in space."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -21,18 +21,24 @@ from attrs import field, frozen
 from flint import arb, arb_mat
 
 from workhold.model.fixture import Fixture, Pair
-from workhold.model.load import Load
 from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
-from workhold.verification.balls import Point, cross, dot, exact_point, largest, least, norm, root
-from workhold.verification.closure import Balance
-from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.ends import Barrier, barriers, edge_distances, end_distance, length_of
-from workhold.verification.findings import Finding, number, rule
+from workhold.model.requirements import Load
+from workhold.verification.ball_geometry import (
+    ArcSide,
+    BallOutline,
+    Point,
+    cross,
+    dot,
+    exact_point,
+    largest,
+    least,
+    norm,
+    root,
+)
+from workhold.verification.contacts import Balance, BallContact, BallPose, wrench_radius
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
-from workhold.verification.outline import BallOutline
 from workhold.verification.seat import CLAMPS, LOCATORS, SeatBalance
-from workhold.verification.sides import ArcSide
 from workhold.verification.tolerances import (
     FIGURE_AGREEMENT,
     FILLED,
@@ -41,8 +47,11 @@ from workhold.verification.tolerances import (
     ROUNDING,
     SAME_END,
     TANGENT,
+    Finding,
+    number,
+    rule,
 )
-from workhold.verification.wrench_radius import wrench_radius
+from workhold.verification.touching import Barrier, barriers, edge_distances, end_distance, length_of
 
 __all__ = ["Measure", "box_center", "figure_missing", "pair_numbers", "written_numbers"]
 
@@ -109,7 +118,7 @@ class Measure:
     loads : as asked for.
     direction : main direction of the part in degrees (``verification.judging``).
     jaw_force : in N, None where none was said.
-    beside : the barriers on the contact feature of each face and radius, as far as they are known (``verification.ends``).
+    beside : the barriers on the contact feature of each face and radius, as far as known (``verification.touching``).
     """
 
     outline: BallOutline
@@ -149,7 +158,11 @@ class Measure:
         )
 
     def figures(
-        self, contacts: Sequence[BallContact], faces: Sequence[int], pose: BallPose, balance: Balance | SeatBalance
+        self,
+        contacts: Sequence[BallContact],
+        faces: Sequence[int],
+        pose: BallPose,
+        balance: Balance | SeatBalance,
     ) -> Mapping[str, arb]:
         """The figures of a fixture by their keys; no load reaction without loads."""
         out = {"closure_margin": balance.margin, "clamp_amplification": largest(balance.forces)}
@@ -208,7 +221,9 @@ class Measure:
             length, sure = length_of(side, radius), bool(turn > 2 * TANGENT or turn * radius < SAME_END)
             reach = side.reach(radius) if isinstance(side, ArcSide) else arb(1)
             open_way = smooth and bool(length > HAIR) and not reach < FILLED
-            sure &= not (smooth and bool(HAIR / 10 < length < 10 * HAIR or 0.99 * FILLED < reach < 1.01 * FILLED))
+            sure &= not (
+                smooth and bool(HAIR / 10 < length < 10 * HAIR or 0.99 * FILLED < reach < 1.01 * FILLED)
+            )
             readings.append((open_way, open_way) if sure else (False, True))
         found = []
         for one, two in zip(*readings, strict=True):
@@ -331,7 +346,10 @@ def box_center(outline: BallOutline) -> Point:
 def figure_missing(fixture: Fixture, loads: Sequence[Load]) -> str:
     """The figure of quality that a fixture lacks or has too many, in one sentence without a full stop; empty for neither."""
     for figure in FIGURES:
-        wanted, why = bool(loads) or figure not in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED]), "no loads"
+        wanted, why = (
+            bool(loads) or figure not in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED]),
+            "no loads",
+        )
         if figure is FIGURES[CLAMP_FREEDOM]:
             wanted, why = fixture.pair is not None, "no two clamps"
         if wanted != (figure.key in fixture.quality):
@@ -360,7 +378,9 @@ def written_numbers(
     for key, derived in figures.items():
         if key in fixture.quality:
             if key in COUNTS and not fixture.quality[key].is_integer():
-                yield Finding(True, f"its {key} is {fixture.quality[key]:.12g} in the file, which is no whole number")
+                yield Finding(
+                    True, f"its {key} is {fixture.quality[key]:.12g} in the file, which is no whole number"
+                )
             spare = part * abs(derived) + (2 * derived.rad() if key in RANGES else 0)
             yield from written(f"its {key.replace('_', ' ')}", fixture.quality[key], derived, spare)
 

@@ -1,37 +1,56 @@
-"""What is warned of in a fixture and what counts against it, in balls (docs/quality.md).
+"""What is warned of in a fixture and counts against it, and whether fixtures are listed in that order.
 
-A count is a ball, too: where a figure may be on either side of the number that decides, by what the file's numbers may be
-off, the ball holds both counts.
+Both are rules of docs/quality.md. Warnings and penalties are counted in balls: where a figure may be on
+either side of the number that decides, by what the file's numbers may be off, the ball holds both counts.
+
+In the order ("Which comes first") fixtures that are none for a workshop come last. Every figure but the last
+counts to two significant digits, the last to nine decimals; what is equal stands in the order of types,
+holes, orientations and faces. Fixtures whose seating is known come first, its warnings counting as those of
+quality do. Equal ones among them stand as they would without it. A figure is written rounded, and that
+rounding may carry it over the edge between two counts. So each is looked at a little to either side. The
+order of ``listing.ranking`` is not used.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
-from math import atan2, ceil, degrees
+from math import atan2, ceil, degrees, isinf, pi, radians, tau
 
 from flint import arb
 
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.quality import RANKED
+from workhold.model.query import Query
+from workhold.model.seating import Seating
+from workhold.verification.ball_geometry import LineSide, Side
 from workhold.verification.contacts import BallPose
-from workhold.verification.sides import LineSide, Side
+from workhold.verification.listing import Claim
+from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.rules.travel import WAYS, direction_of, directions_of, quarter_turns, seen_along_x
 from workhold.verification.tolerances import (
+    CLOSE_READING,
     GENTLE_PEG,
     HAIR,
     LARGE_LOCATION_ERROR,
     MAIN_DIRECTION,
     NEAR_EDGE,
     POINTS_PER_DECADE,
+    SAME,
+    SMALL_CAPTURE,
     SMALL_FACE,
     SMALL_FACE_POINTS,
     SQUARE_TILT,
     STRONG_PEG,
     STRONG_POINTS,
     TILTED_POINTS,
+    UNFIT_CLOSURE,
+    UNFIT_LOCATION_ERROR,
     WEAK_CLOSURE,
 )
 
-__all__ = ["main_direction", "penalty", "tilt", "warnings"]
+__all__ = ["main_direction", "order_faults", "penalty", "rank", "tilt", "warnings"]
 
 
 def main_direction(faces: Sequence[Side]) -> arb:
@@ -47,12 +66,16 @@ def main_direction(faces: Sequence[Side]) -> arb:
     lengths = [float(line.length.mid()) for line in lines]
     # Once more a quarter turn below and above, so that 0 and 90 degrees are neighbours.
     around = sorted(
-        (angle + turn, length) for angle, length in zip(rough, lengths, strict=True) for turn in (-90.0, 0.0, 90.0)
+        (angle + turn, length)
+        for angle, length in zip(rough, lengths, strict=True)
+        for turn in (-90.0, 0.0, 90.0)
     )
     places, sums = [angle for angle, _ in around], [0.0, *accumulate(length for _, length in around)]
 
     def total(angle: float) -> float:
-        return sums[bisect_right(places, angle + SQUARE_TILT)] - sums[bisect_left(places, angle - SQUARE_TILT)]
+        return (
+            sums[bisect_right(places, angle + SQUARE_TILT)] - sums[bisect_left(places, angle - SQUARE_TILT)]
+        )
 
     totals = [total(angle) for angle in rough]
     rivals = [k for k, sum_ in enumerate(totals) if sum_ >= MAIN_DIRECTION * max(totals)]
@@ -88,7 +111,9 @@ def within_sum(pairs: Sequence[tuple[int, int]]) -> arb:
     return counted(sum(low for low, _ in pairs), sum(high for _, high in pairs))
 
 
-def warnings(figures: Mapping[str, arb], edges: Sequence[arb], off: arb, jaw_force: float | None, part: arb) -> arb:
+def warnings(
+    figures: Mapping[str, arb], edges: Sequence[arb], off: arb, jaw_force: float | None, part: arb
+) -> arb:
     """How many warnings there are: contacts near an edge, a weak closure, a strong peg, a large location error, a peg that
     lets go; ``off`` is the sum of the tolerances in mm and ``part`` how far the file's figures may be off."""
     pairs = [over(-edge, -NEAR_EDGE, part) for edge in edges]
@@ -115,3 +140,159 @@ def penalty(figures: Mapping[str, arb], off: arb, diameter: float, part: arb) ->
         (over(-figures["smallest_face"], -SMALL_FACE * arb(diameter), part), SMALL_FACE_POINTS),
     )
     return within_sum([*points, *((weight * low, weight * high) for (low, high), weight in weights)])
+
+
+# Files have twelve significant digits.
+DIGITS = 1e-12
+# Beside them, for numbers near 0.
+LEAST = 1e-15
+# What a number is counted as at least and at most.
+Range = tuple[float, float]
+# Type, directions and holes, orientation in radians, and faces, by which fixtures that are equally good are put in order.
+Rank = tuple[list[int], float, list[int]]
+MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in RANKED}
+
+
+def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: ToolkitRules) -> Iterator[str]:
+    """A fault when a fixture belongs before the one before it; none where the figures ranked by are not written."""
+    off, usual = query.tolerance.peg + query.tolerance.face, query.without_seating.ranking
+    if any(key not in fixture.quality for fixture in fixtures for key in usual):
+        return
+    rows = [[unfit(fixture, off), *ranges(fixture.quality, usual)] for fixture in fixtures]
+    told = [figures_told(fixture) for fixture in fixtures]
+    seated = [
+        None if figures is None else [row[0], *ranges(figures, query.ranking), *row[1:]]
+        for row, figures in zip(rows, told, strict=True)
+    ]
+    count = sum(one is not None for one in seated)
+    if any(one is None for one in seated[:count]):
+        yield "the seating of a fixture is told, but not that of all before it"
+        return
+    # Of a search that was interrupted those come first whose seating was worked out by then.
+    whole = count == query.seating
+    if whole and any(is_better(row, first) for first in rows[:count] for row in rows[count : count + 1]):
+        yield f"fixture {count + 1} has no seating told, but without it is better than one before it that has"
+    ranking = query.ranking
+    for place in range(1, len(rows)):
+        one, before = seated[place], seated[place - 1]
+        if before is not None and one is None:
+            ranking = usual
+            continue
+        better = is_better(one or rows[place], before or rows[place - 1])
+        if better:
+            yield f"fixture {place + 1} is better than the one before it, by {', '.join(ranking)}"
+            return
+        if better is None and is_earlier(fixtures[place], fixtures[place - 1], hardware):
+            yield f"fixture {place + 1} is as good as the one before it, and comes before it by type, holes and pose"
+            return
+
+
+def figures_told(fixture: Fixture) -> dict[str, float] | None:
+    """The figures of a fixture with those of its seating, whose warnings count as well; None where that is not stated."""
+    claim: Claim | None = fixture.seating
+    if claim is None:
+        return None
+    figures = {**fixture.quality, **claim.told.figures}
+    return figures | {"warnings": figures.get("warnings", 0.0) + warning_count(claim.told)}
+
+
+def warning_count(told: Seating) -> int:
+    """As how many warnings of quality a seating counts: two for a small opening, one for a close reading."""
+    opening, reading = told.capture_opening, told.reading_of()
+    small = opening is not None and opening < SMALL_CAPTURE
+    return 2 * small + (reading is not None and round(reading, 9) < CLOSE_READING)
+
+
+def ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Range]:
+    """What the figures of a fixture count as, the first counting most and smaller being better."""
+    for place, key in enumerate(ranking, 1):
+        value = -figures[key] if MORE_IS_BETTER[key] else figures[key]
+        if isinf(value):
+            yield value, value
+            continue
+        spare = DIGITS * abs(value) + LEAST
+        if place == len(ranking):
+            yield round(value - spare, 9), round(value + spare, 9)
+        elif abs(value) <= HAIR:
+            # Nothing has no digits.
+            yield 0.0, 0.0
+        else:
+            yield two_digits(value - spare - HAIR), two_digits(value + spare + HAIR)
+
+
+def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
+    """Whether a fixture certainly comes before another one that is as good."""
+    (holes, angle, faces), (others, angle_of_other, faces_of_other) = (
+        rank(fixture, hardware) for fixture in (one, other)
+    )
+    if abs(angle - angle_of_other) > SAME:
+        return (holes, angle) < (others, angle_of_other)
+    return (holes, faces) < (others, faces_of_other)
+
+
+def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
+    """By what a fixture stands among those that are equally good.
+
+    Without a wall and with one thing that moves it is seen as it clamps along -x: columns count from the first peg of each
+    carrier, rows from the lowest of all; with as many pegs on both jaws it counts as it is at an orientation below half a
+    turn. All others count in the holes in which they stand.
+    """
+    ways = [list(WAYS).index(name) for name in directions_of(fixture)]
+    numbers = [hardware.toolkit.types.index(fixture.type), *ways]
+    theta = radians(fixture.pose.theta_deg)
+    if hardware.wall is not None or len(ways) > 1:
+        pegs = list[Peg]()
+        for carrier in hardware.carriers.values():
+            there = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
+            pegs += sorted(there, key=hole_and_face) if carrier in hardware.lattices else there
+        holes = [[getattr(peg, noun) for peg in pegs if not peg.is_on_wall] for noun in ("column", "row")]
+        return [*numbers, *holes[0], *holes[1]], (theta + SAME) % tau - SAME, [peg.face for peg in pegs]
+    groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]
+    clamps = [peg for peg in fixture.pegs if direction_of(peg)]
+    turns = quarter_turns(fixture.direction) if fixture.direction else 0
+    if len(groups) > 1 and len(groups[0]) == len(groups[1]) and (theta + SAME) % tau >= pi:
+        turns, groups = 2, groups[::-1]
+    seen = [
+        [(*seen_along_x(turns, peg.column, peg.row), peg.face) for peg in group]
+        for group in (*groups, clamps)
+        if group
+    ]
+    lowest, places = min(row for part in seen for _, row, _ in part), list[tuple[int, int, int]]()
+    for part in seen:
+        first = min(column for column, *_ in part)
+        places += sorted((column - first, row - lowest, face) for column, row, face in part)
+    columns, rows, faces = (list(each) for each in zip(*places, strict=True))
+    return [*numbers, *columns, *rows], (theta - turns * pi / 2 + SAME) % tau - SAME, faces
+
+
+def hole_and_face(peg: Peg) -> tuple[int, int, int]:
+    """By what pegs of one carrier stand in order."""
+    return peg.column, peg.row, peg.face
+
+
+def unfit(fixture: Fixture, off: float) -> Range:
+    """1 for a fixture that is none for a workshop, 0 for one that is; of figures that are not written nothing is known.
+
+    ``off`` is the sum of the tolerances of peg and face, in mm.
+    """
+    margin, error = (fixture.quality.get(key) for key in ("closure_margin", "location_error"))
+    if margin is None or error is None:
+        return 0.0, 1.0
+    beyond = max(UNFIT_CLOSURE - margin, error - UNFIT_LOCATION_ERROR * off)
+    spare = HAIR + DIGITS * error
+    return float(beyond > spare), float(beyond >= -spare)
+
+
+def two_digits(value: float) -> float:
+    """A number to two significant digits."""
+    return float(f"{value:.1e}")
+
+
+def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool | None:
+    """Whether one row of numbers is certainly less than another, at the first that may differ; None when they are equal."""
+    for (low, high), (least, most) in zip(one, other, strict=True):
+        if high < least:
+            return True
+        if not low == high == least == most:
+            return False
+    return None

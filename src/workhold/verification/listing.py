@@ -1,35 +1,201 @@
-"""What a result claims, number for number as its file writes it.
+"""What a result claims of its fixtures and their seating, number for number as its file writes it.
 
-Reading a result to use it drops what can be worked out again, such as the pegs' x and y, and takes what the file does not
-give for the usual. A verification has to see every number, and what is missing. Head and lines come by the one reader
-there is of result files (``files.result.parts``); what is made of them here is compared with nothing of the search.
+Reading a result to use it drops what can be worked out again, such as the pegs' x and y, and takes what the
+file does not give for the usual. A verification has to see every number, and what is missing. Head and lines
+come by the one reader there is of result files (``files.result.parts``). What is made of them here is
+compared with nothing of the search. Fixtures stand in a file as JSON objects (``verification.reading``) or in
+columns.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from math import degrees, nan
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
+import numpy as np
 from attrs import evolve, frozen
+from numpy.typing import NDArray
 
-from workhold.archive import is_archive
+from workhold.archive import is_archive, mapped_archive
 from workhold.errors import InputError
+from workhold.files.result.fixture_forms import checked_seating, seatings_told
 from workhold.files.result.forms import Head
-from workhold.files.result.head import checked_head
-from workhold.files.result.parts import read_parts
-from workhold.files.result.seating_forms import seatings_told
+from workhold.files.result.parts import checked_head, read_parts
 from workhold.files.text import json_value
-from workhold.model.fixture import Fixture
-from workhold.model.proof import Proof
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.clamps import ratios
+from workhold.model.columns import HEAD, columns_said
+from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.verification.claims import claim_of, with_claims
-from workhold.verification.columns import Columns, FixturesInColumns, columns_of
-from workhold.verification.reading import fixtures_of
+from workhold.model.search_report import Proof
+from workhold.model.seating import Seating
+from workhold.verification.reading import fixtures_of, with_working_forces
 from workhold.verification.rules.hardware import ToolkitRules
 
-__all__ = ["Listing", "listing_of", "read_listing"]
+__all__ = [
+    "Claim",
+    "Columns",
+    "FixturesInColumns",
+    "Listing",
+    "claim_of",
+    "columns_of",
+    "listing_of",
+    "read_listing",
+    "with_claims",
+]
+
+
+@frozen
+class Claim:
+    """The seating of a fixture.
+
+    Parameters
+    ----------
+    fields : as they are written.
+    told : their meaning in the model, which works out again what follows from other fields.
+    """
+
+    fields: Mapping[str, Any]
+    told: Seating
+
+    @property
+    def capture_opening(self) -> float | None:
+        """The capture opening that is claimed, in mm."""
+        return self.told.capture_opening
+
+
+def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: int) -> Claim:
+    """The claim that fields make of a fixture, counted from 1, in a pose.
+
+    Raises
+    ------
+    InputError
+        When they cannot be used.
+    """
+    told = checked_seating(fields, pose, Path(path), number)
+    return Claim(fields, told.in_toolkit(query.toolkit, query.opening))
+
+
+def with_claims(fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result") -> list[Fixture]:
+    """Fixtures, whose seating is given by fields or is one of the model, with what is claimed of it.
+
+    Raises
+    ------
+    InputError
+        When fields cannot be used.
+    """
+    out = list(fixtures)
+    for place, fixture in enumerate(out):
+        told = fixture.seating
+        if told is not None:
+            fields = told.as_fields() if isinstance(told, Seating) else told
+            out[place] = evolve(fixture, seating=claim_of(fields, fixture.pose, query, path, place + 1))
+    return out
+
+
+Columns = Mapping[str, NDArray[Any]]
+
+# Fixtures looked at together.
+BLOCK = 1 << 14
+LARGEST = 1e300
+# Decimals of an angle in degrees.
+DECIMALS = 10
+
+
+def columns_of(path: Path) -> tuple[str, Columns]:
+    """Head and columns of a file, all of which is read once to compare its checksums.
+
+    Raises
+    ------
+    InputError
+        When it is damaged.
+    OSError
+        When it cannot be read.
+    """
+    return mapped_archive(path, columns_said, HEAD, whole=True)
+
+
+@frozen(eq=False)
+class FixturesInColumns(Sequence[Fixture]):
+    """The fixtures of columns; their pegs stand in the order of their type, in the holes of a toolkit.
+
+    Raises
+    ------
+    InputError
+        When one of them is of no type, or has a number that is none.
+    """
+
+    columns: Columns
+    toolkit: Toolkit
+    claims: tuple[Claim, ...] = ()
+
+    def __attrs_post_init__(self) -> None:
+        for start in range(0, len(self), BLOCK):
+            block = {name: values[start : start + BLOCK] for name, values in self.columns.items()}
+            usable = np.isin(block["arrangement"], range(len(self.toolkit.arrangements)))
+            for name in ("theta", "position", "jaw_separation", "force"):
+                usable &= (np.abs(block[name]).reshape(len(usable), -1) <= LARGEST).all(axis=1)
+            usable &= ~np.isinf(block["quality"]).any(axis=1)
+            if not usable.all():
+                number = start + int(np.argmin(usable)) + 1
+                raise InputError(f"number {number} in fixtures: it has no type, or a number that is none.")
+
+    def __len__(self) -> int:
+        return len(self.columns["arrangement"])
+
+    def __iter__(self) -> Iterator[Fixture]:
+        return (self[place] for place in range(len(self)))
+
+    @overload
+    def __getitem__(self, place: int) -> Fixture: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[Fixture]: ...
+
+    def __getitem__(self, place: int | slice) -> Fixture | list[Fixture]:
+        if isinstance(place, slice):
+            return [self[k] for k in range(len(self))[place]]
+        made = self.made(place)
+        # A place from the end is one from the start.
+        place %= len(self)
+        return evolve(made, seating=self.claims[place]) if place < len(self.claims) else made
+
+    def made(self, place: int) -> Fixture:
+        """The fixture of a place, without its seating."""
+        numbers = {name: values[place].tolist() for name, values in self.columns.items()}
+        arrangement, travelled = self.toolkit.arrangements[numbers["arrangement"]], numbers["jaw_separation"]
+        pegs, pairs = [], isinstance(travelled, list)
+        carriers = arrangement.carriers
+        travels = [0.0] * (len(carriers) - 2) + travelled if pairs else [travelled] * len(carriers)
+        each = (numbers[name] for name in ("column", "row", "face", "force"))
+        for carrier, along, column, row, face, force in zip(carriers, travels, *each, strict=True):
+            one = self.toolkit.carriers[carrier]
+            x, y = one.place(column, row, along)
+            if one.is_wall:
+                # Where the part lies on it follows from the pose, and is not written.
+                x = nan
+            called = None if one.on is None or min(column, row) < 0 else one.place_name(column, row)
+            # Nor which way a flat looks.
+            looks = None if one.flat is None else nan
+            pegs.append(
+                Peg(one.name, column, row, x, y, face, 0.0 if pairs else force, called, flat_deg=looks)
+            )
+        pose = Pose(round(degrees(numbers["theta"]), DECIMALS), *numbers["position"])
+        figures = zip(FIGURES, numbers["quality"], strict=True)
+        known = {figure.key: value for figure, value in figures if value == value}
+        if not pairs:
+            return Fixture(arrangement.name, tuple(pegs), pose, travelled, known, arrangement.direction)
+        # The ends of its ratio follow from the reactions, and are not written.
+        low, high = (float(end[0]) for end in ratios(np.array([numbers["force"]])))
+        reactions = tuple((one, other) for one, other in numbers["force"])
+        pair = Pair((travelled[0], travelled[1]), (low, high), reactions, numbers["pairs"])
+        return with_working_forces(
+            Fixture(arrangement.name, tuple(pegs), pose, travelled[0], known, arrangement.direction, pair)
+        )
 
 
 @frozen(eq=False)
@@ -132,7 +298,11 @@ def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[A
 
 
 def taken_in(
-    fixtures: list[Fixture] | Columns, seatings: Sequence[Any], hardware: ToolkitRules, query: Query, path: Path
+    fixtures: list[Fixture] | Columns,
+    seatings: Sequence[Any],
+    hardware: ToolkitRules,
+    query: Query,
+    path: Path,
 ) -> Sequence[Fixture]:
     """Fixtures as they are read, of a kind of toolkit, and the seating of the first where it stands apart from them.
 
@@ -144,7 +314,9 @@ def taken_in(
     if not isinstance(fixtures, list):
         listed = FixturesInColumns(fixtures, hardware.toolkit)
         if len(seatings) > len(listed):
-            raise InputError(f"the seating of {len(seatings)} fixtures is told, but {len(listed)} are listed.")
+            raise InputError(
+                f"the seating of {len(seatings)} fixtures is told, but {len(listed)} are listed."
+            )
         poses = [fixture.pose for fixture in listed[: len(seatings)]]
         told = enumerate(zip(seatings, poses, strict=True), 1)
         return evolve(listed, claims=tuple(claim_of(one, pose, query, path, k) for k, (one, pose) in told))
@@ -182,7 +354,9 @@ def numbers_of(
     """
     counts = usual if counts is None else counts
     if counts is None or set(counts) != set(types):
-        raise InputError(f"{key} does not give a number for each of the types {', '.join(types)} and no other.")
+        raise InputError(
+            f"{key} does not give a number for each of the types {', '.join(types)} and no other."
+        )
     return counts
 
 

@@ -21,7 +21,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import WALL
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
 from workhold.model.quality import FIGURES
-from workhold.verification.rules.stroke import WAYS, clamp_place
+from workhold.verification.rules.travel import WAYS, clamp_place
 
 __all__ = ["fixtures_of", "with_working_forces"]
 
@@ -143,9 +143,12 @@ def two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[floa
     """Two numbers of a JSON object; of those after the first ``least`` a null is infinite."""
     values = item.get(key)
     if not isinstance(values, list) or len(values) != 2:
-        raise UnusableError(f"{key} is {values!r}, not two numbers" if key in item else f"the key {key} is missing")
+        raise UnusableError(
+            f"{key} is {values!r}, not two numbers" if key in item else f"the key {key} is missing"
+        )
     one, other = (
-        inf if place >= least and value is None else real({key: value}, key) for place, value in enumerate(values)
+        inf if place >= least and value is None else real({key: value}, key)
+        for place, value in enumerate(values)
     )
     return one, other
 
@@ -171,7 +174,8 @@ def wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
     *places, faces, shares = pairs
     ends = zip(places, ("first", "second"), strict=True)
     return tuple(
-        Peg(WALL, 0, 0, real(at, "first"), real(at, "second"), whole(faces, k), real(shares, k)) for at, k in ends
+        Peg(WALL, 0, 0, real(at, "first"), real(at, "second"), whole(faces, k), real(shares, k))
+        for at, k in ends
     )
 
 
@@ -182,7 +186,9 @@ def peg_from(item: Mapping[str, Any], directions: list[str]) -> Peg:
         x, y, force = (real(item, key) for key in ("x", "y", "force"))
         jaw = "jaw" if item.get("role") == "jaw" else word(item, "jaw")
         return Peg(jaw, column, row, x, y, segment, force)
-    direction = word(item, "direction") if len(directions) > 1 and item.get("role") == "clamp" else directions[0]
+    direction = (
+        word(item, "direction") if len(directions) > 1 and item.get("role") == "clamp" else directions[0]
+    )
     if direction not in WAYS:
         raise UnusableError(f"the direction of a clamp is not {' or '.join(WAYS)}")
     role, line = word(item, "role"), "row" if direction.endswith("x") else "column"
@@ -219,7 +225,9 @@ def real(item: Mapping[str, Any], key: str) -> float:
     """A finite number of a JSON object."""
     value: Any = item.get(key)
     if type(value) not in (int, float) or abs(value) > 1e300 or not isfinite(value):
-        raise UnusableError(f"{key} is {value!r}, not a number" if key in item else f"the key {key} is missing")
+        raise UnusableError(
+            f"{key} is {value!r}, not a number" if key in item else f"the key {key} is missing"
+        )
     return float(value)
 
 
@@ -227,5 +235,7 @@ def whole(item: Mapping[str, Any], key: str) -> int:
     """A whole number of a JSON object of a sensible size."""
     value = item.get(key)
     if type(value) is not int or abs(value) > 2**31:
-        raise UnusableError(f"{key} is {value!r}, not a whole number" if key in item else f"the key {key} is missing")
+        raise UnusableError(
+            f"{key} is {value!r}, not a whole number" if key in item else f"the key {key} is missing"
+        )
     return value

@@ -1,8 +1,8 @@
-"""Fixtures that a list holds twice (model: "When two fixtures are the same").
+"""Fixtures of a list whose pegs stand in the same pattern: held twice, or missing among each other's seats.
 
-Two fixtures with the same pattern of holes, up to lattice steps, names of pegs and the half turn that leaves
-the toolkit as it is, and with the same place of the workpiece among them are one, whatever faces are named:
-the pose says what is touched.
+Two fixtures are the same (model: "When two fixtures are the same") with the same place of the workpiece among
+the same pattern of holes. Lattice steps, names of pegs and the half turn that leaves the toolkit as it is
+make no difference. Nor do the names of faces: the pose says what is touched.
 
 Which rotations carry a workpiece onto itself is derived from the marks of its faces alone. The rotations of
 order n carry the faces that are not about the kept point in cycles of n, so n divides their number; and the
@@ -13,11 +13,13 @@ Glossary
 --------
 pattern : the holes of a fixture in a form in which equal fixtures have equal ones, with the place of the
     workpiece.
+stance : how the pegs of a fixture stand to each other; fixtures of one stance are on the same pegs, and each
+    of them is among the seats of the others.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import cos, pi, radians, sin, tau
 from typing import Any
 
@@ -25,14 +27,23 @@ import numpy as np
 from attrs import field, frozen
 from numpy.typing import NDArray
 
+from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.fixture import Fixture, Peg
+from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.rules.stroke import OPPOSITE, WAYS, direction_of, directions_of, is_along_x, line_of
+from workhold.verification.rules.travel import (
+    OPPOSITE,
+    WAYS,
+    direction_of,
+    directions_of,
+    is_along_x,
+    line_of,
+)
 from workhold.verification.tolerances import SAME
 
-__all__ = ["Key", "Place", "Seen", "Turning"]
+__all__ = ["Key", "Place", "Seen", "Turning", "pattern_faults", "stance"]
 
 Key = tuple[Any, ...]
 # Orientation, place in the workpiece's frame of the first peg, and how far from it each other group of pegs
@@ -78,7 +89,9 @@ class Turning:
 def marks_of(face: Segment) -> list[complex]:
     """Middle, start and end of a face, or thrice a whole circle's centre; and its radius, negative in a hollow."""
     radius = face.sign * face.radius if isinstance(face, Arc) else 0.0
-    points = [face.center] * 3 if isinstance(face, Arc) and face.is_full else [face.at(0.0), face.start, face.end]
+    points = (
+        [face.center] * 3 if isinstance(face, Arc) and face.is_full else [face.at(0.0), face.start, face.end]
+    )
     return [*(complex(*point) for point in points), complex(radius)]
 
 
@@ -175,7 +188,9 @@ def pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, P
     holes, anchors, firsts = [], list[Peg](), list[int]()
     for pegs in groups:
         firsts.append(min(sign * peg.column for peg in pegs))
-        places = sorted((sign * peg.column - firsts[-1], sign * peg.row - lowest, k) for k, peg in enumerate(pegs))
+        places = sorted(
+            (sign * peg.column - firsts[-1], sign * peg.row - lowest, k) for k, peg in enumerate(pegs)
+        )
         holes.append(tuple((column, row) for column, row, _ in places))
         anchors.append(pegs[places[0][2]])
     first, rest = anchors[0], anchors[1:]
@@ -192,8 +207,14 @@ def pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, P
     theta = radians(fixture.pose.theta_deg)
     x, y = first.x - fixture.pose.x, first.y - fixture.pose.y
     # By a motion of its own, not ``Pose``, which is checked.
-    place = theta + (pi if sign < 0 else 0.0), cos(theta) * x + sin(theta) * y, cos(theta) * y - sin(theta) * x
-    apart = [sign * (value - of_first) for one in rest for value, of_first in ((one.x, first.x), (one.y, first.y))]
+    place = (
+        theta + (pi if sign < 0 else 0.0),
+        cos(theta) * x + sin(theta) * y,
+        cos(theta) * y - sin(theta) * x,
+    )
+    apart = [
+        sign * (value - of_first) for one in rest for value, of_first in ((one.x, first.x), (one.y, first.y))
+    ]
     return (lines, tuple(holes), above), (*place, *apart, *(ahead for *_, ahead in clamps if alone))
 
 
@@ -201,3 +222,95 @@ def same(a: Place, b: Place, most: float = SAME) -> bool:
     """Whether two places of the workpiece agree."""
     turn = (a[0] - b[0] + pi) % tau - pi
     return abs(turn) <= most and all(abs(p - q) <= most for p, q in zip(a[1:], b[1:], strict=True))
+
+
+# Degrees and mm. A fixture is a stated seat whose pose and separation agree to this.
+SAME_SEAT = 1e-5
+
+
+def pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
+    """A fault for the first fixture that is not among the seats of one whose pegs stand as its own do."""
+    if query.toolkit.needs_pairs:
+        return
+    seated = [fixture for fixture in fixtures[: query.seating or 0] if fixture.seating is not None]
+    stances = [stance(fixture, query.toolkit) for fixture in (fixtures if seated else ())]
+    patterns: dict[tuple[Any, ...], list[int]] = {stances[number].key: [] for number in range(len(seated))}
+    for place, other in enumerate(stances):
+        if (found := patterns.get(other.key)) is not None:
+            found.append(place)
+    for number, fixture in enumerate(seated):
+        own = stances[number]
+        for place in patterns[own.key]:
+            other, pose = stances[place], fixtures[place].pose
+            moved = {
+                "theta_deg": pose.theta_deg,
+                "x": pose.x - other.anchor[0] + own.anchor[0],
+                "y": pose.y - other.anchor[1] + own.anchor[1],
+            }
+            apart = other.apart - own.apart
+            if any(min(own.apart, other.apart) < there < max(own.apart, other.apart) for there in own.met):
+                continue
+            if not any(is_seat(seat, moved, apart) for seat in fixture.seating.fields["seats"]):
+                yield f"fixture {place + 1} stands on the pegs of fixture {number + 1}, but is not among its seats"
+                return
+
+
+@frozen
+class Stance:
+    """How the pegs of a fixture stand to each other.
+
+    Parameters
+    ----------
+    key : what fixtures share that differ by a shift and by the travel of what moves.
+    anchor : in mm, the first peg that stands still; where only a wall does, its point below the first peg.
+    apart : how far in mm the first that moves is from it, along the way on which the travel grows.
+    met : at how many mm of that a clamp's tip would be in one that stands still.
+    """
+
+    key: tuple[Any, ...]
+    anchor: tuple[float, float]
+    apart: float
+    met: tuple[float, ...]
+
+
+def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
+    """How the pegs of a fixture stand in a toolkit."""
+    by_place = sorted((peg for peg in fixture.pegs if not peg.is_on_wall), key=lambda peg: (peg.x, peg.y))
+    still = [peg for peg in by_place if toolkit.carrier(peg.carrier).travel is None]
+    moved = [peg for peg in by_place if peg not in still]
+    tip = moved[0]
+    first_x, first_y = (still[0].x, still[0].y) if still else (tip.x, 0.0)
+    carrier = toolkit.carrier(tip.carrier)
+    assert carrier.travel is not None
+    ux, uy = carrier.travel.unit
+
+    def along(peg: Peg) -> float:
+        return (peg.x - first_x) * ux + (peg.y - first_y) * uy
+
+    def across(peg: Peg) -> float:
+        return (peg.y - first_y) * ux - (peg.x - first_x) * uy
+
+    places = [(peg.x - first_x, peg.y - first_y) for peg in still]
+    places += [(peg.x - tip.x, peg.y - tip.y) for peg in moved]
+    numbers, met = [across(tip), *(part for place in places for part in place)], list[float]()
+    if carrier.on is not None:
+        # A clamp's stroke is counted from its hole, and a wall stands where it is.
+        x, y = carrier.place(tip.column, tip.row)
+        numbers += [x - first_x, y - first_y] if carrier.has_a_hole else []
+        numbers += [first_y] if toolkit.wall is not None else []
+        reach = [carrier.peg_radius + toolkit.carrier(peg.carrier).peg_radius for peg in still]
+        met = [
+            along(peg)
+            for peg, near in zip(still, reach, strict=True)
+            if abs(across(peg) - across(tip)) < near
+        ]
+    key = (fixture.direction, len(still), *(round(part, 5) + 0.0 for part in numbers))
+    return Stance(key, (first_x, first_y), along(tip), tuple(met))
+
+
+def is_seat(seat: Mapping[str, Any], pose: Mapping[str, float], difference: float) -> bool:
+    """Whether a seat is on four faces, in a pose and at a difference."""
+    turn = (seat["pose"]["theta_deg"] - pose["theta_deg"] + 180.0) % 360.0 - 180.0
+    away = max(abs(seat["pose"][name] - pose[name]) for name in ("x", "y"))
+    kind = seat["kind"] == "fixture" and not seat["mirrored"]
+    return kind and max(abs(turn), away, abs(seat["difference"] - difference)) < SAME_SEAT

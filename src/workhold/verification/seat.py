@@ -24,13 +24,29 @@ from itertools import combinations
 from attrs import frozen
 from flint import arb
 
-from workhold.verification.balls import Point, cross, dot, largest, least, turned
-from workhold.verification.closure import inverted
-from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.findings import Finding, number, rule
-from workhold.verification.tolerances import LEAST_PUSH, LEAST_SEAT, LEAST_SHARE, MOST_FORCE, NO_REACTION
+from workhold.verification.ball_geometry import Point, cross, dot, largest, least, turned
+from workhold.verification.contacts import BallContact, BallPose, inverted
+from workhold.verification.tolerances import (
+    LEAST_PUSH,
+    LEAST_SEAT,
+    LEAST_SHARE,
+    MOST_FORCE,
+    NO_REACTION,
+    Finding,
+    number,
+    rule,
+)
 
-__all__ = ["CLAMPS", "LOCATORS", "Push", "Ratio", "LocatorWrenches", "SeatBalance", "closure_margin", "ratio_of"]
+__all__ = [
+    "CLAMPS",
+    "LOCATORS",
+    "Push",
+    "Ratio",
+    "LocatorWrenches",
+    "SeatBalance",
+    "closure_margin",
+    "ratio_of",
+]
 
 LOCATORS = 3
 CLAMPS = ("clamp 1", "clamp 2")
@@ -52,7 +68,9 @@ class LocatorWrenches:
     @classmethod
     def of(cls, contacts: Sequence[BallContact], pose: BallPose) -> LocatorWrenches:
         """The seat of three locators, or of the two ends of a wall's contact and one."""
-        return cls([contact.in_part(pose) for contact in contacts], [contact.outward(pose) for contact in contacts])
+        return cls(
+            [contact.in_part(pose) for contact in contacts], [contact.outward(pose) for contact in contacts]
+        )
 
     def push(self, contact: BallContact, pose: BallPose) -> Push:
         """What a clamp does here; it pushes along -n, and clamps against its way."""
@@ -215,7 +233,9 @@ class SeatBalance:
         """The balance of three contacts that stand still and then two clamps."""
         seat = LocatorWrenches.of(contacts[:LOCATORS], pose)
         first, second = (seat.push(contact, pose) for contact in contacts[LOCATORS:])
-        points, normals = zip(*((contact.in_part(pose), contact.outward(pose)) for contact in contacts), strict=True)
+        points, normals = zip(
+            *((contact.in_part(pose), contact.outward(pose)) for contact in contacts), strict=True
+        )
         return cls(points, normals, seat, (first, second), ratio_of(first, second))
 
     @property
@@ -227,7 +247,9 @@ class SeatBalance:
     def push_findings(self, wrench_length: float) -> Iterator[Finding]:
         """Whether the locators fix the pose, and both clamps push without holding the part alone; L is in mm."""
         spanned = abs(self.seat.determinant) / wrench_length
-        words = f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}"
+        words = (
+            f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}"
+        )
         yield from rule(spanned - LEAST_SEAT, words, words)
         for name, push in zip(CLAMPS, self.pushes, strict=True):
             yield from rule(

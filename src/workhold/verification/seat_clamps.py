@@ -17,17 +17,22 @@ from flint import arb
 from workhold.fixels.toolkit import Carrier
 from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.query import Query
-from workhold.verification.balls import Point, dot, exact_point, largest, turned
+from workhold.verification.ball_geometry import (
+    ArcSide,
+    BallOutline,
+    LineSide,
+    Point,
+    Side,
+    dot,
+    exact_point,
+    largest,
+    turned,
+)
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.ends import on_line
-from workhold.verification.findings import Finding, number, rule
-from workhold.verification.outline import BallOutline
-from workhold.verification.placing import proven_pose
-from workhold.verification.restrictions import zone_distance
+from workhold.verification.placing import proven_pose, zone_distance
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.rules.stroke import WAYS, direction_of, directions_of, line_of, pieces_apart
+from workhold.verification.rules.travel import WAYS, direction_of, directions_of, line_of, pieces_apart
 from workhold.verification.seat import LOCATORS, LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
-from workhold.verification.sides import ArcSide, LineSide, Side
 from workhold.verification.tolerances import (
     HAIR,
     LEAST_PUSH,
@@ -36,8 +41,11 @@ from workhold.verification.tolerances import (
     NO_REACTION,
     SAME,
     SAME_FREEDOM,
+    Finding,
+    number,
+    rule,
 )
-from workhold.verification.touching import touching_findings
+from workhold.verification.touching import on_line, touching_findings
 
 __all__ = ["SeatClamp", "Standing", "pairs_at"]
 
@@ -162,7 +170,11 @@ class Standing:
     def clamps(self, direction: str) -> Iterator[SeatClamp]:
         """All clamps that may push in a direction and do not hold the part alone."""
         found: list[SeatClamp] = []
-        avoided = {f.number for f in self.query.workpiece.faces if set(f.segments) & set(self.query.restrictions.avoid)}
+        avoided = {
+            f.number
+            for f in self.query.workpiece.faces
+            if set(f.segments) & set(self.query.restrictions.avoid)
+        }
         for face, side in sorted(self.outline.faces.items()):
             if face in avoided:
                 continue
@@ -181,7 +193,10 @@ class Standing:
         reach = self.radius(direction) + (float(side.radius.mid()) if isinstance(side, ArcSide) else 0.0)
         places = [float((dot(axis, end) + self.shift(upright)).mid()) for end in ends]
         pitch, noun = self.lattice.pitch[not upright], "column" if upright else "row"
-        low, high = ceil((min(places) - reach - BESIDE) / pitch), floor((max(places) + reach + BESIDE) / pitch)
+        low, high = (
+            ceil((min(places) - reach - BESIDE) / pitch),
+            floor((max(places) + reach + BESIDE) / pitch),
+        )
         numbers = [getattr(peg, noun) for peg in self.pegs]
         return [line for line in range(low, high + 1) if self.hardware.fits(noun, [*numbers, line])]
 
@@ -261,7 +276,9 @@ class Standing:
         """The holes in which two clamps may be bolted together, and whether they certainly may."""
         apart = arb(self.radius(one.direction)) + self.radius(other.direction) - HAIR
         for first, second in product(one.holes, other.holes):
-            columns = [peg.column for peg in self.pegs] + [h.column for h in (first, second) if h.column is not None]
+            columns = [peg.column for peg in self.pegs] + [
+                h.column for h in (first, second) if h.column is not None
+            ]
             rows = [peg.row for peg in self.pegs] + [h.row for h in (first, second) if h.row is not None]
             if not (self.hardware.fits("column", columns) and self.hardware.fits("row", rows)):
                 continue
@@ -270,7 +287,12 @@ class Standing:
                 yield first, second, first.sure and second.sure and bool(clear > 0)
 
     def pair_findings(
-        self, fixture: Fixture, pair: Pair, contacts: Sequence[BallContact], pose: BallPose, balance: SeatBalance
+        self,
+        fixture: Fixture,
+        pair: Pair,
+        contacts: Sequence[BallContact],
+        pose: BallPose,
+        balance: SeatBalance,
     ) -> Iterator[Finding]:
         """Whether the clamps are bolted in the holes of the least total travel, and stand for all pairs that they are to."""
         if self.hardware.stroke.span is not None:
@@ -280,7 +302,9 @@ class Standing:
         elif pair.count != 1:
             yield Finding(True, f"it stands for {pair.count} pairs of clamps, and all are listed")
 
-    def stroke_findings(self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose) -> Iterator[Finding]:
+    def stroke_findings(
+        self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose
+    ) -> Iterator[Finding]:
         """Whether the clamps are bolted in the holes of the least total travel that have a place together."""
         clamps = []
         for peg, contact in zip(fixture.pegs[LOCATORS:], contacts[LOCATORS:], strict=True):
@@ -301,7 +325,9 @@ def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -
     """Whether a fixture stands for as many pairs as there are at its seat, and none of them is better."""
     sure = [one for one in pairs if one.sure]
     if not len(sure) <= pair.count <= len(pairs):
-        yield Finding(True, f"it stands for {pair.count} pairs of clamps, and there are {len(sure)} at its seat")
+        yield Finding(
+            True, f"it stands for {pair.count} pairs of clamps, and there are {len(sure)} at its seat"
+        )
     elif len(sure) < len(pairs):
         yield Finding(False, f"there are {len(sure)} to {len(pairs)} pairs of clamps at its seat")
     freedom, margin = balance.ratio.freedom, balance.margin
@@ -315,7 +341,9 @@ def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -
     yield from rule(2 * HAIR - (widest - margin), words, words)
 
 
-def pairs_at(fixture: Fixture, query: Query, hardware: ToolkitRules, outline: BallOutline) -> tuple[int, int] | None:
+def pairs_at(
+    fixture: Fixture, query: Query, hardware: ToolkitRules, outline: BallOutline
+) -> tuple[int, int] | None:
     """How many pairs of clamps there are at a fixture's seat, at least and at most; None where its place is not proven."""
     contacts = hardware.contacts(fixture, outline)
     pose, _ = proven_pose(contacts, fixture.pose, hardware.travels(fixture))

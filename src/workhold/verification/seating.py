@@ -26,14 +26,18 @@ from numpy.typing import NDArray
 
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
-from workhold.verification.balls import Point, exact_point, norm, turned
-from workhold.verification.claims import Claim
+from workhold.verification.ball_geometry import BallOutline, Point, exact_point, norm, turned
 from workhold.verification.contacts import BallPose
-from workhold.verification.outline import BallOutline
-from workhold.verification.part_in_floats import FloatOutline
+from workhold.verification.listing import Claim
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.rules.stroke import travelled
-from workhold.verification.seating_contacts import StatedContact, stop_of, touching_faults, touching_wall
+from workhold.verification.rules.travel import travelled
+from workhold.verification.seating_contacts import (
+    FloatOutline,
+    StatedContact,
+    stop_of,
+    touching_faults,
+    touching_wall,
+)
 from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
 __all__ = ["Judged", "SeatingJudge"]
@@ -137,7 +141,9 @@ class Judged:
         if abs(mine["jaw_separation"] - self.travel) > AGREEMENT:
             yield "the separation of the fixture's own seat is not the fixture's"
         told = {contact["peg"]: contact for contact in mine["contacts"]}
-        is_own = len(told) == len(mine["contacts"]) == len(self.fixture.pegs) and all(map(self.is_own, told.values()))
+        is_own = len(told) == len(mine["contacts"]) == len(self.fixture.pegs) and all(
+            map(self.is_own, told.values())
+        )
         if mine["kind"] != "fixture" or not is_own:
             yield "the fixture's own seat does not have the fixture's contacts"
         order = [seat["jaw_separation"] for seat in seats]
@@ -163,13 +169,17 @@ class Judged:
         if seat["kind"] == "unsettled":
             return
         yield from self.freedom_faults(seat["pose"], seat["mirrored"], apart)
-        contacts = [self.touching(contact, seat["pose"], seat["mirrored"], apart) for contact in seat["contacts"]]
+        contacts = [
+            self.touching(contact, seat["pose"], seat["mirrored"], apart) for contact in seat["contacts"]
+        ]
         yield from touching_faults(contacts, self.on_wall, self.wall)
         if self.kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
             yield f"is called {seat['kind']}, which its contacts are not"
         if seat["kind"] in STRICT and len(seat["forces"]) != len(contacts):
             yield "does not have a force for each contact"
-        elif seat["kind"] in STRICT and not self.balance(contacts, seat["pose"], seat["mirrored"], seat["forces"]):
+        elif seat["kind"] in STRICT and not self.balance(
+            contacts, seat["pose"], seat["mirrored"], seat["forces"]
+        ):
             yield "is no equilibrium of its forces"
         elif seat["kind"] == "loose" and not self.can_balance(contacts, seat["pose"], seat["mirrored"]):
             yield "is no equilibrium of its contacts"
@@ -179,7 +189,10 @@ class Judged:
         peg = self.fixture.pegs[contact["peg"]]
         if not peg.is_on_wall:
             return contact.get("face") == peg.face
-        (x, y), (u, v) = self.touching(contact, vars_of(self.fixture), False, 0.0).at, self.ends[contact["peg"]]
+        (x, y), (u, v) = (
+            self.touching(contact, vars_of(self.fixture), False, 0.0).at,
+            self.ends[contact["peg"]],
+        )
         return bool(norm((x - u, y - v)) < AGREEMENT)
 
     @cached_property
@@ -221,7 +234,9 @@ class Judged:
         if out is not None and (opening is None or out < opening - ROUNDED):
             yield "the way out is nearer than the capture opening"
         yield from self.friction_faults(told.sticking_friction, own)
-        if not agree(stop_of(self.fixture.pegs, self.judge.query.toolkit, self.travel), fields["stop"], AGREEMENT):
+        if not agree(
+            stop_of(self.fixture.pegs, self.judge.query.toolkit, self.travel), fields["stop"], AGREEMENT
+        ):
             yield "stop is not where what moves is stopped without the part"
 
     def counts(self, place: int, seat: Mapping[str, Any]) -> bool:
@@ -298,7 +313,10 @@ class Judged:
     def freedom_faults(self, pose: Mapping[str, float], mirrored: bool, apart: float) -> Iterator[str]:
         """A peg in the part, or the part in a wall."""
         numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
-        pegs, carriers = np.array([self.peg(number, apart) for number in numbers]), self.judge.hardware.carriers
+        pegs, carriers = (
+            np.array([self.peg(number, apart) for number in numbers]),
+            self.judge.hardware.carriers,
+        )
         radii = np.array([carriers[self.fixture.pegs[number].carrier].peg_radius for number in numbers])
         if not self.judge.rough.is_free(pegs, radii - AGREEMENT, pose, mirrored):
             yield "has a peg in the part"
@@ -308,7 +326,11 @@ class Judged:
     def covers(self, seat: Mapping[str, Any]) -> bool | None:
         """Whether the part in a seat covers the place of its fixture; None where that is nearly so."""
         away = self.judge.rough.farthest(seat["pose"], seat["mirrored"], vars_of(self.fixture))
-        return None if SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE else away < SAME_PLACE
+        return (
+            None
+            if SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE
+            else away < SAME_PLACE
+        )
 
     def touching(
         self, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool, apart: float
@@ -340,7 +362,11 @@ class Judged:
         return StatedContact(number, at, normal, float(off.upper()), inside)
 
     def wrenches(
-        self, contacts: Sequence[StatedContact], pose: Mapping[str, float], mirrored: bool, friction: float = 0.0
+        self,
+        contacts: Sequence[StatedContact],
+        pose: Mapping[str, float],
+        mirrored: bool,
+        friction: float = 0.0,
     ) -> Array:
         """Wrenches (4, K) of contacts that press along their normals, and by friction along their tangents."""
         cx, cy = self.place(self.judge.query.workpiece.center, pose, mirrored)
@@ -355,13 +381,19 @@ class Judged:
         return np.array(columns).reshape(-1, 4).T
 
     def balance(
-        self, contacts: Sequence[StatedContact], pose: Mapping[str, float], mirrored: bool, forces: Sequence[float]
+        self,
+        contacts: Sequence[StatedContact],
+        pose: Mapping[str, float],
+        mirrored: bool,
+        forces: Sequence[float],
     ) -> bool:
         """Whether forces balance, those of the pegs that move adding up to one."""
         left = self.wrenches(contacts, pose, mirrored) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
         return bool(np.abs(left).max() < BALANCED * (1.0 + sum(forces)) and min(forces) > -PRESSES)
 
-    def can_balance(self, contacts: Sequence[StatedContact], pose: Mapping[str, float], mirrored: bool) -> bool:
+    def can_balance(
+        self, contacts: Sequence[StatedContact], pose: Mapping[str, float], mirrored: bool
+    ) -> bool:
         """Whether some forces do."""
         return balances(self.wrenches(contacts, pose, mirrored), BALANCED)
 
@@ -391,6 +423,8 @@ def balances(wrenches: Array, spare: float = 1e-9) -> bool:
         for chosen in combinations(range(wrenches.shape[1]), size):
             some = wrenches[:, chosen]
             forces = np.linalg.lstsq(some, target, rcond=None)[0]
-            if forces.min() > -PRESSES and np.abs(some @ forces - target).max() < spare * (1.0 + forces.sum()):
+            if forces.min() > -PRESSES and np.abs(some @ forces - target).max() < spare * (
+                1.0 + forces.sum()
+            ):
                 return True
     return False

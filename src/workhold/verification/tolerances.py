@@ -1,16 +1,38 @@
-"""The numbers that decide in a verification.
+"""The numbers that decide in a verification, and what a rule finds against a fixture by them.
 
-They are a copy of those of ``workhold.conventions``, on purpose: a verification shares no rule with what it judges, not even
-by a common constant, so that a number changed by mistake on one side is seen from the other. Both are held to the table of
-docs/belief.md, "Conventions that are part of the claim".
+The numbers are a copy of those of ``workhold.conventions``, on purpose: a verification shares no rule with
+what it judges, not even by a common constant. So a number changed by mistake on one side is seen from the
+other. Both are held to the table of docs/belief.md, "Conventions that are part of the claim".
+
+Drawings are made with round numbers. So two faces are often exactly as far apart as two holes, or a contact
+is exactly at the joint of two faces. The coordinates of a drawing are rounded, which spoils such a
+coincidence by some 1e-13 mm in one direction or the other. A rule with its edge at the coincidence would be
+decided by that rounding. Therefore
+
+- a gap or an opening is met when it is missed by no more than a hair;
+- a contact at a tangent joint may lie up to a hair past that end of its face, at any other end it lies more
+  than a hair inside;
+- a peg may enter a face that runs alongside its own by no more than a hair.
+
+The hair is part of the rule: an exact number, the same at every precision. With it in the slack, a rule holds
+when the whole ball of the slack is positive, and is broken when the whole ball is negative. What is neither
+at the highest precision is undecided.
 
 Glossary
 --------
-hair : a length of 1e-9 mm by which the edge of a rule stands off a natural coincidence; the double nearest to it, taken as
-    the rational number it is.
+hair : a length of 1e-9 mm by which the edge of a rule stands off a natural coincidence; the double nearest to
+    it, taken as the rational number it is.
+slack : a number that a rule wants to be positive.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+
+from attrs import frozen
+from flint import arb
+
+__all__ = ["Finding", "number", "rule"]
 
 # mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at most this; a
 # contact may lie so far past a tangent joint, and lies more than this inside any other end.
@@ -74,3 +96,23 @@ SMALL_CAPTURE, CLOSE_READING = 1.0, 0.1
 SAME_PLACE, SAME_PLACE_SPARE = 1e-3, 2.0
 SQUARE_TILT, MAIN_DIRECTION, SMALL_FACE, GENTLE_PEG = 0.01, 0.99, 0.1, 1.5
 POINTS_PER_DECADE, TILTED_POINTS, STRONG_POINTS, SMALL_FACE_POINTS = 20, 9, 4, 2
+
+
+@frozen
+class Finding:
+    """A rule that is broken (definite) or that cannot be shown to hold, with the reason in one sentence."""
+
+    definite: bool
+    reason: str
+
+
+def rule(slack: arb, broken: str, edge: str) -> Iterator[Finding]:
+    """Nothing when a slack is certainly positive, otherwise the finding in the words for its case."""
+    if not slack > 0:
+        definite = bool(slack < 0)
+        yield Finding(definite, broken if definite else edge)
+
+
+def number(value: arb) -> str:
+    """The middle of a ball, for messages."""
+    return f"{float(value.mid()):.3g}"

@@ -19,16 +19,25 @@ from attrs import evolve, frozen
 from flint import arb, ctx
 
 from workhold.fixels.toolkit import Arrangement, Carrier
-from workhold.model.proof import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
 from workhold.model.query import Query
-from workhold.verification.balls import PRECISIONS, Point, cross, dot, norm, turned
+from workhold.model.search_report import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
+from workhold.verification.ball_geometry import (
+    PRECISIONS,
+    ArcSide,
+    BallOutline,
+    LineSide,
+    Point,
+    Side,
+    cross,
+    dot,
+    norm,
+    turned,
+)
 from workhold.verification.contacts import standoff
-from workhold.verification.ends import on_circle, on_line
-from workhold.verification.outline import BallOutline
-from workhold.verification.rules.stroke import quarter_turns, seen_along_x
+from workhold.verification.rules.travel import quarter_turns, seen_along_x
 from workhold.verification.seat import LOCATORS
-from workhold.verification.sides import ArcSide, LineSide, Side
 from workhold.verification.tolerances import AGREEMENT
+from workhold.verification.touching import on_circle, on_line
 
 __all__ = ["undecided_faults"]
 
@@ -80,7 +89,9 @@ def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, 
     _, *directions = entry.type.split()
     alone = {one.direction: (one.name, way) for way in query.toolkit.ways for one in way.arrangements}
     asked = (
-        query.toolkit.arrangements if len(directions) > 1 else [a for w in query.toolkit.ways for a in w.arrangements]
+        query.toolkit.arrangements
+        if len(directions) > 1
+        else [a for w in query.toolkit.ways for a in w.arrangements]
     )
     if entry.type not in [one.title for one in asked] or len(entry.faces) - LOCATORS != len(directions):
         # Of a kind that is not asked for, which is the fault.
@@ -88,7 +99,9 @@ def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, 
         return
     for number, direction in enumerate(directions, LOCATORS):
         chosen = (*range(LOCATORS), number)
-        faces, columns, rows = ([values[k] for k in chosen] for values in (entry.faces, entry.columns, entry.rows))
+        faces, columns, rows = (
+            [values[k] for k in chosen] for values in (entry.faces, entry.columns, entry.rows)
+        )
         if len(directions) > 1:
             columns, rows = [k - columns[0] for k in columns], [k - rows[0] for k in rows]
             (columns if direction.endswith("x") else rows)[LOCATORS] = 0
@@ -158,7 +171,9 @@ def holes_fault(entry: Undecided, query: Query) -> str:
             if carrier.columns is not None and abs(column) >= carrier.columns:
                 return f"spans {abs(column) + 1} columns of a {carrier.noun} with {carrier.columns}"
             if carrier.rows is not None and abs(row - entry.rows[first]) >= carrier.rows:
-                return f"spans {abs(row - entry.rows[first]) + 1} rows of a {carrier.noun} with {carrier.rows}"
+                return (
+                    f"spans {abs(row - entry.rows[first]) + 1} rows of a {carrier.noun} with {carrier.rows}"
+                )
     return ""
 
 
@@ -175,7 +190,8 @@ def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     for group in groups:
         pitch_x, pitch_y = carriers[group[0]].pitch
         steps = [
-            (arb(pitch_x) * entry.columns[k], arb(pitch_y) * (entry.rows[k] - entry.rows[group[0]])) for k in group
+            (arb(pitch_x) * entry.columns[k], arb(pitch_y) * (entry.rows[k] - entry.rows[group[0]]))
+            for k in group
         ]
         sides = [outline.faces[entry.faces[k]] for k in group]
         turns = [turned(step, cosine, -sine) for step in steps]
@@ -245,7 +261,11 @@ def may_slide_with(one: TouchingPeg, other: TouchingPeg) -> bool:
     """Whether two pegs whose ways run parallel may touch both at once."""
     a, b = one.side, other.side
     if isinstance(a, ArcSide):
-        return not abs(a.reach(one.radius) - b.reach(other.radius)) > one.loose if isinstance(b, ArcSide) else True
+        return (
+            not abs(a.reach(one.radius) - b.reach(other.radius)) > one.loose
+            if isinstance(b, ArcSide)
+            else True
+        )
     off = one.radius
     point = a.start[0] + off * a.normal[0] + other.step[0], a.start[1] + off * a.normal[1] + other.step[1]
     return not abs(b.gap(point) - other.radius) > one.loose + PARALLEL * (a.length + norm(other.step))

@@ -10,27 +10,24 @@ from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields, written
-from workhold.fixels.carrier import Carrier
-from workhold.fixels.contact_kind import WALL_END
-from workhold.fixels.flat import standoff
+from workhold.fixels.carrier import Carrier, standoff
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
-from workhold.model.clamp import ShownClamp
-from workhold.model.explanation import Explanation
+from workhold.model.clamps import ShownClamp, order_words
 from workhold.model.fixture import Fixture
-from workhold.model.proof import Proof
 from workhold.model.quality import FIGURES
 from workhold.model.result import FixtureTable, fixture_at
-from workhold.model.setting import settings_of
+from workhold.model.search_report import Explanation, Proof
+from workhold.model.setup import settings_of
 from workhold.model.shown import Shown, shown
-from workhold.model.tightening import order_words
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite
 
 if TYPE_CHECKING:
     from workhold.files.outline.chain import Chain
     from workhold.files.part.survey import Survey
-    from workhold.files.toolkit.reader import LoadedToolkit
+    from workhold.files.toolkit_file import LoadedToolkit
 
 __all__ = [
     "arrangements_answer",
@@ -72,7 +69,9 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
     segments, number = [], 0
     for index, loop in enumerate(workpiece.loop_segments):
         for segment, (_, _, bulge) in zip(loop, workpiece.loops[index].tolist(), strict=True):
-            segments.append({"number": number, "face": face_of[number], "loop": index, **shape(segment, bulge)})
+            segments.append(
+                {"number": number, "face": face_of[number], "loop": index, **shape(segment, bulge)}
+            )
             number += 1
     return {
         "name": workpiece.name,
@@ -111,7 +110,9 @@ def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
         room -= len(chain.bulges)
         if room < 0:
             break
-        strokes.append([[*point, bulge] for point, bulge in zip(chain.points, (*chain.bulges, 0.0), strict=True)])
+        strokes.append(
+            [[*point, bulge] for point, bulge in zip(chain.points, (*chain.bulges, 0.0), strict=True)]
+        )
     return strokes
 
 
@@ -295,7 +296,9 @@ def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
 
 def settings_answer(fixture: Fixture, toolkit: Toolkit) -> list[dict[str, Any]]:
     """The lengths to set, each with its sign and its name."""
-    return [{"sign": one.sign, "name": one.name, "length": one.length} for one in settings_of(fixture, toolkit)]
+    return [
+        {"sign": one.sign, "name": one.name, "length": one.length} for one in settings_of(fixture, toolkit)
+    ]
 
 
 def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
@@ -347,7 +350,11 @@ def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
 def proof_answer(proof: Proof) -> dict[str, Any]:
     """The account of a search, with how many candidates are undecided and the first of them."""
     entry = proof_entry(proof)
-    return {**entry, "undecided": entry["undecided"][:MOST_UNDECIDED], "undecided_count": len(proof.undecided)}
+    return {
+        **entry,
+        "undecided": entry["undecided"][:MOST_UNDECIDED],
+        "undecided_count": len(proof.undecided),
+    }
 
 
 def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
@@ -356,13 +363,21 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: 
     return {
         "contacts": explanation.contacts,
         "removals": [
-            {"rule": removal.rule, "before": removal.before, "after": removal.after, "removed": removal.removed}
+            {
+                "rule": removal.rule,
+                "before": removal.before,
+                "after": removal.after,
+                "removed": removal.removed,
+            }
             for removal in explanation.removals
         ],
         "last_rule": explanation.last_rule,
         "nearest": None
         if nearest is None
-        else {"row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, toolkit)}, "words": nearest.words},
+        else {
+            "row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, toolkit)},
+            "words": nearest.words,
+        },
         "helps": [
             {
                 "change": help.change,

@@ -15,12 +15,11 @@ from starlette.responses import JSONResponse, Response
 
 from workhold import __version__
 from workhold.errors import InputError
-from workhold.web import family_routes, fixture_routes, job_routes, part_routes, seating_routes
+from workhold.web import fixture_routes, job_routes, part_routes
 from workhold.web.answers import place_in
 from workhold.web.forms import sentence_of
-from workhold.web.guard import Guard, Hosts
+from workhold.web.guard import Guard, Hosts, Limits
 from workhold.web.jobs import TooManyError
-from workhold.web.limits import Limits
 from workhold.web.pool import BusyError, FailedError, StoppedError
 from workhold.web.state import ServerState, state_of
 
@@ -85,9 +84,8 @@ def create_app(limits: Limits | None = None, hosts: Hosts | None = None, token: 
     app.include_router(part_routes.router)
     app.include_router(job_routes.router)
     # Before those of a fixture, which take any last word for a paper.
-    app.include_router(seating_routes.router)
+    app.include_router(fixture_routes.seating_router)
     app.include_router(fixture_routes.router)
-    app.include_router(family_routes.router)
     app.add_api_route("/", page, methods=["GET", "HEAD"], include_in_schema=False)
     app.add_api_route("/static/{path:path}", static_file, methods=["GET", "HEAD"], include_in_schema=False)
     add_error_handlers(app)

@@ -51,7 +51,7 @@ class FamilyForm(Form):
             For the first value that cannot be, and where the solver is not installed.
         """
         from workhold.family.covering import load_solver
-        from workhold.family.losses import RANKINGS
+        from workhold.family.members import RANKINGS
 
         load_solver()
         toolkit = self.toolkit.toolkit()
@@ -120,8 +120,7 @@ class FamilyFound:
 
 def find_family(payload: tuple[tuple[str, Query], ...], order: Order) -> FamilyFound:
     """Find a family; reports are ("progress", fraction, found)."""
-    from workhold.family.family import Asked, family_of
-    from workhold.family.file import family_text
+    from workhold.family.family import Asked, family_of, family_text
 
     def progress(fraction: float, found: int) -> None:
         order.report(("progress", fraction, found))
@@ -145,7 +144,9 @@ def find_family(payload: tuple[tuple[str, Query], ...], order: Order) -> FamilyF
         evolve(
             plan,
             setups=tuple(
-                evolve(setup, holdings=tuple(evolve(one, member=small[id(one.member)]) for one in setup.holdings))
+                evolve(
+                    setup, holdings=tuple(evolve(one, member=small[id(one.member)]) for one in setup.holdings)
+                )
                 for setup in plan.setups
             ),
         )
@@ -180,8 +181,7 @@ class FamilyPaper:
 def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
     """The bytes of what was ordered."""
     from workhold.drawing.scene import stacked
-    from workhold.family.curve_picture import draw_curve
-    from workhold.family.setup_pages import draw_setups
+    from workhold.family.pages import draw_curve, draw_setups
     from workhold.units import unit_named
 
     found = payload.found
@@ -190,7 +190,9 @@ def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
     if payload.kind == "curve.svg":
         chosen = None if payload.setups is None else found.plan(payload.setups).point
         return draw_curve(found.family, chosen).encode("utf-8")
-    pages = draw_setups(found.plan(payload.setups), found.family.figure, payload.day, unit_named(payload.unit))
+    pages = draw_setups(
+        found.plan(payload.setups), found.family.figure, payload.day, unit_named(payload.unit)
+    )
     if payload.kind == "sheets.svg":
         return stacked(pages).encode("utf-8")
     from workhold.drawing.pdf import svg_to_pdf

@@ -1,4 +1,8 @@
-"""Routes of one fixture of a job."""
+"""Routes of one fixture of a job: its row, loads, cautions and papers, its seating, and closings of the jaws.
+
+The routes of seating have a router of their own. It comes before the other one, which takes any last word
+for a paper.
+"""
 
 from __future__ import annotations
 
@@ -10,26 +14,35 @@ from fastapi import APIRouter, Path, Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from workhold.errors import InputError
 from workhold.model.result import Result
+from workhold.model.seating import Seating
+from workhold.seating.clamping import ByHand
 from workhold.units import unit_named
 from workhold.web.answers import contact_answer, rows_answer
+from workhold.web.fixture_tasks import KINDS, ClosingForm, ClosingOrder, Held, PaperOrder, seating_answer
 from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
-from workhold.web.paper import KINDS, PaperOrder
-from workhold.web.state import at_desk
+from workhold.web.state import at_desk, at_desk_while_heard, state_of
 
-__all__ = ["router"]
+__all__ = ["router", "seating_router"]
 
 router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
 
 Rank = Annotated[int, Path(ge=1, le=10**9)]
 UnitName = Literal["mm", "inch"]
 JawForce = Annotated[float | None, Query(gt=0, le=1e9, description="in N")]
-Jaw = Annotated[str, Query(max_length=20, description="screw, constant, or how many times as stiff as a contact it is")]
-Loads = Annotated[str | None, Query(max_length=20_000, description="instead of the search's, JSON as in a search")]
+Jaw = Annotated[
+    str, Query(max_length=20, description="screw, constant, or how many times as stiff as a contact it is")
+]
+Loads = Annotated[
+    str | None, Query(max_length=20_000, description="instead of the search's, JSON as in a search")
+]
 Words = Annotated[str | None, Query(max_length=100)]
 Size = Annotated[float | None, Query(gt=0, le=1e6)]
-Revision = Annotated[int | None, Query(ge=0, description="what the caller has seen; 409 when it is another by now")]
+Revision = Annotated[
+    int | None, Query(ge=0, description="what the caller has seen; 409 when it is another by now")
+]
 
 
 def ranked(result: Result, rank: int) -> int:
@@ -55,7 +68,9 @@ async def fixture(request: Request, name: str, rank: Rank, revision: Revision = 
 
 
 @router.post("/loads", summary="What loads do to a fixture")
-async def loads(request: Request, name: str, rank: Rank, form: LoadsForm, revision: Revision = None) -> dict[str, Any]:
+async def loads(
+    request: Request, name: str, rank: Rank, form: LoadsForm, revision: Revision = None
+) -> dict[str, Any]:
     """Peg forces in N for the worst point and direction of each load, and the jaw force that is needed."""
     result = result_of_job(found_job(request, name), revision)
     chosen = result[ranked(result, rank)]
@@ -110,7 +125,9 @@ async def paper(
     peg_length: Size = None,
     peg_height: Size = None,
     clearance: Annotated[float | None, Query(ge=0, le=1e6)] = None,
-    seating: Annotated[bool | None, Query(description="whether the sheet tells where else the part can rest")] = None,
+    seating: Annotated[
+        bool | None, Query(description="whether the sheet tells where else the part can rest")
+    ] = None,
     day: Annotated[date | None, Query(alias="date")] = None,
     revision: Revision = None,
 ) -> Response:
@@ -120,8 +137,15 @@ async def paper(
     result = result_of_job(job, revision, when_over=kind != "picture.svg")
     ranked(result, rank)
     given = unit_named(unit)
-    sizes = {"thickness": thickness, "peg_length": peg_length, "peg_height": peg_height, "clearance": clearance}
-    machine = None if machine_x is None or machine_y is None else (given.length(machine_x), given.length(machine_y))
+    sizes = {
+        "thickness": thickness,
+        "peg_length": peg_length,
+        "peg_height": peg_height,
+        "clearance": clearance,
+    }
+    machine = (
+        None if machine_x is None or machine_y is None else (given.length(machine_x), given.length(machine_y))
+    )
     wishes = {
         "jaw_force": jaw_force,
         "jaw": jaw,
@@ -143,3 +167,50 @@ async def paper(
         what, ending = kind.split(".")
         headers["Content-Disposition"] = attachment(f"{result.workpiece.name}-{what}-{rank}", ending)
     return Response(content, media_type=KINDS[kind], headers=headers)
+
+
+seating_router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
+
+
+async def seated(
+    request: Request, name: str, rank: int, revision: int | None
+) -> tuple[Held, Seating | ByHand]:
+    """A fixture with its seating, or how it is put into two clamps: worked out once and kept with the job while it is
+    used."""
+    job = found_job(request, name)
+    result = result_of_job(job, revision)
+    held = result[ranked(result, rank)], result.workpiece, result.toolkit
+    key = (job.revision, rank)
+    if key not in job.seatings:
+        # On a first run kernels are compiled for it, which takes as long as a search may.
+        told = await at_desk(request, "seating", held, state_of(request).limits.seconds)
+        job.keep_seating(key, told)
+        return held, told
+    return held, job.seatings[key]
+
+
+@seating_router.get("/seating", summary="Whether the part ends up there")
+async def seating(
+    request: Request, name: str, rank: Rank, unit: UnitName = "mm", revision: Revision = None
+) -> dict[str, Any]:
+    """From how wide open the part is caught, every other seat of the same pegs, and the same in sentences."""
+    held, told = await seated(request, name, rank, revision)
+    return {"rank": rank, **seating_answer(held, told, unit)}
+
+
+@seating_router.post("/closing", summary="Close the jaws from where the part was put")
+async def closing(
+    request: Request, name: str, rank: Rank, form: ClosingForm, revision: Revision = None
+) -> dict[str, Any] | None:
+    """The way that part and jaws go without friction, as turn in degrees, x and y of its pose and how far the
+    jaws are open beyond where they hold it, in mm, and what it ends in: ``right``,
+    ``same place``, ``wrong``, ``elsewhere``, ``stop``, ``outside`` or ``lost``. Who hangs up has it stopped."""
+    held, told = await seated(request, name, rank, revision)
+    if isinstance(told, ByHand):
+        raise InputError(
+            "no closing can be played with two clamps: the part is put against its locators by hand."
+        )
+    answer: dict[str, Any] | None = await at_desk_while_heard(
+        request, "closing", ClosingOrder(held, told, form)
+    )
+    return answer

@@ -9,15 +9,14 @@ from attrs import evolve
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from workhold.errors import InputError
+from workhold.files.input_forms import TAGS, forms_by_noun, one_of, optional
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
-from workhold.files.toolkit.shapes import TAGS, forms_by_noun, one_of, optional
-from workhold.fixels.directions import DIRECTIONS
+from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.kinds import USUAL, toolkit_of
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.load import Load
 from workhold.model.query import Query, asked_ranking
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Load, Tolerance
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["ExploreForm", "JobForm", "LoadsForm", "WorkpieceForm", "asked_loads", "sentence_of"]
@@ -81,7 +80,9 @@ def checked_part(
     except (ArithmeticError, ValueError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError("The part's numbers are too large or too small to compute with: check its units.") from error
+        raise InputError(
+            "The part's numbers are too large or too small to compute with: check its units."
+        ) from error
 
 
 class ToolkitRequest(Form):
@@ -190,7 +191,9 @@ def asked_loads(text: str | None) -> tuple[Load, ...] | None:
         return tuple(form.load() for form in SeveralLoads.validate_json(text))
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
-        raise InputError(sentence_of({**first, "loc": ("query", "loads", *map(str, first["loc"]))})) from error
+        raise InputError(
+            sentence_of({**first, "loc": ("query", "loads", *map(str, first["loc"]))})
+        ) from error
 
 
 class SearchForm(Form):
@@ -263,7 +266,7 @@ class ExploreForm(SearchForm):
         InputError
             For the first value that cannot be.
         """
-        from workhold.files.toolkit.presets import preset, preset_names
+        from workhold.files.toolkit_file import preset, preset_names
 
         if self.toolkits is not None:
             named: list[tuple[str, Toolkit, Tolerance | None]] = [

@@ -1,9 +1,14 @@
-"""What stands before every request: whose name it calls, where it comes from, how much it sends; and headers of answers."""
+"""Limits of the server, and the guard that stands before every request.
+
+Limits are sizes, counts, times and memory. The guard checks whose name a request calls, where it comes from
+and how much it sends, and sets the headers of answers.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import json
+import os
 from collections import Counter
 from collections.abc import Awaitable, Callable, Collection, MutableMapping
 from hmac import compare_digest
@@ -11,12 +16,71 @@ from ipaddress import ip_address
 from typing import Any
 from urllib.parse import parse_qs
 
-from attrs import define, field
+from attrs import define, field, frozen
 from starlette.exceptions import HTTPException
 
-from workhold.web.limits import Limits
+__all__ = ["Guard", "Hosts", "Limits", "usual_memory"]
 
-__all__ = ["Guard", "Hosts"]
+# Memory of a search in bytes; the least with which one can work; and the share of the machine's that all searches may take.
+MEMORY, LEAST_MEMORY, SHARE = 4 << 30, 1 << 30, 0.7
+
+
+@frozen
+class Limits:
+    """Limits of a server.
+
+    Parameters
+    ----------
+    upload_bytes : of a file with a part.
+    request_bytes : of any other request.
+    body_seconds : for a request to arrive.
+    uploads, client_uploads : files that may arrive at the same time, in all and from one address.
+    segments : of a part.
+    searches : searches at the same time, each in a process of its own.
+    desks : processes for everything that is quick: reading files, pictures, loads.
+    waiting : searches, or quick things, that may wait for a process.
+    jobs : searches of one address that are not over.
+    seconds : for one search; what was found by then is its result.
+    desk_seconds : for reading a file, a picture and the like.
+    memory_bytes, desk_memory_bytes : address space of a process that searches, and of one that does the rest.
+    fixtures : kept of one search, the best ones.
+    kept_jobs, kept_bytes : searches and bytes of their fixtures kept; the longest unused go first.
+    life_seconds : after the last use of a search until it is forgotten.
+    streams : streams of events at the same time.
+    connections, client_connections : at the same time, in all and from one address.
+    """
+
+    upload_bytes: int = 20_000_000
+    request_bytes: int = 4_000_000
+    body_seconds: float = 60.0
+    uploads: int = 16
+    client_uploads: int = 4
+    segments: int = 2_000
+    searches: int = 2
+    desks: int = 2
+    waiting: int = 64
+    jobs: int = 64
+    seconds: float = 120.0
+    desk_seconds: float = 20.0
+    memory_bytes: int = MEMORY
+    desk_memory_bytes: int = 2 << 30
+    fixtures: int = 300_000
+    kept_jobs: int = 1_000
+    kept_bytes: int = 1 << 30
+    life_seconds: float = 3600.0
+    streams: int = 256
+    connections: int = 1_024
+    client_connections: int = 128
+
+
+def usual_memory(searches: int) -> int:
+    """Bytes of address space for each of so many searches at the same time: 4 GiB, or less where the machine has less."""
+    try:
+        memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return MEMORY
+    return min(MEMORY, max(int(SHARE * memory / searches), LEAST_MEMORY))
+
 
 Scope = MutableMapping[str, Any]
 Message = MutableMapping[str, Any]
@@ -121,10 +185,14 @@ class Guard:
         uploads = scope["method"] == "POST" and scope["path"] in UPLOADS
         client = scope["client"][0] if scope.get("client") else ""
         if uploads and self.arriving[client] >= self.limits.client_uploads:
-            await answer(send_guarded, 429, "Too many of your files are arriving at the same time: send one by one.")
+            await answer(
+                send_guarded, 429, "Too many of your files are arriving at the same time: send one by one."
+            )
             return
         if uploads and self.arriving.total() >= self.limits.uploads:
-            await answer(send_guarded, 503, "Too many files are arriving at the same time: try again in a moment.")
+            await answer(
+                send_guarded, 503, "Too many files are arriving at the same time: try again in a moment."
+            )
             return
         self.arriving[client] += uploads
         try:
@@ -173,7 +241,9 @@ async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
     query = parse_qs((scope.get("query_string") or b"").decode("latin-1"))
     offered = query.get("token", [""])[0]
     if scope["method"] not in ("GET", "HEAD") or not compare_digest(offered.encode(), token.encode()):
-        await answer(send, 401, "This server asks for a token: open the page with the address that it printed.")
+        await answer(
+            send, 401, "This server asks for a token: open the page with the address that it printed."
+        )
         return
     # Without a path the cookie is for the page's own folder, also behind a proxy that serves the page under a path.
     cookie = f"{COOKIE}={token}; HttpOnly; SameSite=Strict"

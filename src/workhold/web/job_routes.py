@@ -1,11 +1,12 @@
-"""Routes that begin, watch and end jobs, and those of all their fixtures together."""
+"""Routes that begin, watch and end jobs, those of all fixtures of a job, and those of families of parts."""
 
 from __future__ import annotations
 
 import asyncio
 import json
 from collections.abc import AsyncIterator, Callable, Iterator
-from typing import Annotated, Any
+from datetime import date
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request
 from starlette.exceptions import HTTPException
@@ -15,7 +16,7 @@ from workhold.model.result import FixtureTable, Result
 from workhold.model.seating import length
 from workhold.statics.judging import unfit as unfit_of
 from workhold.web.answers import explanation_answer, rows_answer
-from workhold.web.families import FamilyForm
+from workhold.web.families import PAPERS, FamilyForm, FamilyFound, FamilyPaper
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.jobs import Job
 from workhold.web.selection import Selection, angle_range
@@ -125,7 +126,9 @@ async def events(request: Request, name: str) -> Response:
     """Server-sent events named ``state``; the data is the state without the request. The stream ends with the job."""
     server, job = state_of(request), found_job(request, name)
     if server.streams >= server.limits.streams:
-        raise HTTPException(503, "Too many streams of events are open: ask for the state now and then instead.")
+        raise HTTPException(
+            503, "Too many streams of events are open: ask for the state now and then instead."
+        )
     return StreamingResponse(stream(server, job), media_type="text/event-stream")
 
 
@@ -172,7 +175,9 @@ async def fixtures(
 ) -> dict[str, Any]:
     """A page of them, also of those known so far while the search runs; ranks count all, best first, from 1."""
     job = found_job(request, name)
-    selection = Selection(sort, descending, type, face, None if angle is None else angle_range(angle), together, unfit)
+    selection = Selection(
+        sort, descending, type, face, None if angle is None else angle_range(angle), together, unfit
+    )
     revision, result = job.revision, job.result
     if result is None:
         # So that what cannot be sorted by is told even then.
@@ -203,7 +208,9 @@ async def explanation(request: Request, name: str) -> dict[str, Any]:
     job = found_job(request, name)
     result = result_of_job(job, when_over=True)
     if len(result) or not result.complete:
-        raise HTTPException(409, "There is nothing to explain: fixtures were found, or the search was not complete.")
+        raise HTTPException(
+            409, "There is nothing to explain: fixtures were found, or the search was not complete."
+        )
     return explanation_answer(await state_of(request).jobs.explain(job), result.workpiece, result.toolkit)
 
 
@@ -228,7 +235,7 @@ async def result_json(request: Request, name: str) -> Response:
 @router.get("/jobs/{name}/result.csv", summary="The fixtures as a table", response_class=Response)
 async def result_csv(request: Request, name: str) -> Response:
     """Comma-separated values, one line for each fixture."""
-    from workhold.files.result.csv import result_csv_text
+    from workhold.files.result.fixture_text import result_csv_text
 
     return download(found_job(request, name), result_csv_text, "csv", "text/csv; charset=utf-8")
 
@@ -242,5 +249,63 @@ def download(job: Job, text: Callable[[Result], Iterator[str]], ending: str, con
 
 def attachment(name: str, ending: str) -> str:
     """The header that names a file to save."""
-    plain = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in name)[:80].strip(".") or "part"
+    plain = (
+        "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in name)[:80].strip(".")
+        or "part"
+    )
     return f'attachment; filename="{plain}.{ending}"'
+
+
+Setups = Annotated[
+    int | None, Query(ge=1, le=1000, description="at most so many; the fewest there can be if not given")
+]
+
+
+def family_of_job(request: Request, name: str) -> FamilyFound:
+    """What a job has found of a family.
+
+    Raises
+    ------
+    HTTPException
+        409 when it is of something else, or there is nothing (yet).
+    """
+    job = found_job(request, name)
+    if job.kind != "family":
+        raise HTTPException(409, "This search is not of several parts: ask for a family.")
+    if job.family is None:
+        words = "ended without a result" if job.is_over else "is not over yet"
+        raise HTTPException(409, f"The search {words}.")
+    return job.family
+
+
+@router.post("/families", status_code=202, summary="Search for the set-ups that hold many parts")
+async def submit_family(request: Request, form: FamilyForm) -> Response:
+    """Begins the search; its state is at the address in the answer, and the curve below it at ``family``."""
+    return await begin(request, form)
+
+
+@router.get("/jobs/{name}/family", summary="The curve of a family")
+async def family(request: Request, name: str) -> dict[str, Any]:
+    """The least worst loss for each number of set-ups, and the parts that nothing holds."""
+    return family_of_job(request, name).answer()
+
+
+@router.get("/jobs/{name}/family/{kind}", summary="The plan of a family on paper", response_class=Response)
+async def paper(
+    request: Request,
+    name: str,
+    kind: Literal["curve.svg", "sheets.svg", "sheets.pdf", "plans.json"],
+    setups: Setups = None,
+    unit: Literal["mm", "inch"] = "mm",
+    day: Annotated[date | None, Query(alias="date")] = None,
+) -> Response:
+    """The curve with a point marked, the sheets of its plan, or the family's file."""
+    found = family_of_job(request, name)
+    if not found.plans and kind != "plans.json":
+        raise HTTPException(409, "No pattern of pegs holds any of the parts.")
+    content = await at_desk(
+        request, "family_paper", FamilyPaper(kind, found, setups, unit, day or date.today())
+    )
+    what, ending = kind.split(".")
+    headers = {} if ending == "svg" else {"Content-Disposition": attachment(f"family-{what}", ending)}
+    return Response(content, media_type=PAPERS[kind], headers=headers)

@@ -17,15 +17,14 @@ from typing import Any
 from attrs import define, evolve, field
 
 from workhold.errors import InputError
-from workhold.listing.near_duplicates import Entries
-from workhold.model.explanation import Explanation
-from workhold.model.notes import cut_note, kept_note, stopped_note
+from workhold.listing.identity import Entries
 from workhold.model.result import Result
+from workhold.model.search_report import Explanation, cut_note, kept_note, stopped_note
 from workhold.model.seating import Seating
-from workhold.seating.by_hand import ByHand
+from workhold.seating.clamping import ByHand
 from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.families import FamilyFound
-from workhold.web.limits import Limits
+from workhold.web.guard import Limits
 from workhold.web.pool import BusyError, FailedError, Pool, StoppedError, Task
 from workhold.web.selection import Selection
 from workhold.web.tasks import Found, NamedQuery
@@ -111,7 +110,9 @@ class Job:
         """What is known of it, but for the request."""
         result, over = self.result, self.is_over
         end = self.ended if self.ended is not None else monotonic()
-        complete = self.state == "done" and (self.kind != "design" or (result is not None and result.complete))
+        complete = self.state == "done" and (
+            self.kind != "design" or (result is not None and result.complete)
+        )
         listed = result if over and result is not None and self.state != "failed" else None
         return {
             "job": self.name,
@@ -183,10 +184,14 @@ class Jobs:
         """
         running = sum(not job.is_over and job.address == address for job in self.by_name.values())
         if running >= self.limits.jobs:
-            raise TooManyError(f"{running} of your searches are not over yet: wait for one of them, or cancel one.")
+            raise TooManyError(
+                f"{running} of your searches are not over yet: wait for one of them, or cancel one."
+            )
         self.pool.refuse_more(address)
 
-    def submit(self, request: Mapping[str, Any], queries: tuple[NamedQuery, ...], address: str, kind: str) -> Job:
+    def submit(
+        self, request: Mapping[str, Any], queries: tuple[NamedQuery, ...], address: str, kind: str
+    ) -> Job:
         """Begin a job.
 
         Raises
@@ -227,7 +232,9 @@ class Jobs:
             elif isinstance(outcome, FamilyFound):
                 job.family, job.fraction = outcome, 1.0
             elif len(job.table) < len(job.queries) and not job.task.stop.is_set():
-                job.notes = (f"Stopped after {self.limits.seconds:g} s; the rest of the toolkits was not tried.",)
+                job.notes = (
+                    f"Stopped after {self.limits.seconds:g} s; the rest of the toolkits was not tried.",
+                )
             job.state = "cancelled" if job.task.stop.is_set() else "done"
         except StoppedError:
             job.state = "cancelled"

@@ -10,8 +10,8 @@ from starlette.exceptions import HTTPException
 
 from workhold import __version__
 from workhold.web.answers import figures_answer, toolkit_answer
+from workhold.web.fixture_tasks import has_step
 from workhold.web.forms import WorkpieceForm
-from workhold.web.paper import has_step
 from workhold.web.state import at_desk, state_of
 from workhold.web.tasks import Upload
 
@@ -44,7 +44,7 @@ async def about(request: Request) -> dict[str, Any]:
 @router.get("/parts", summary="The parts that come with the program")
 async def parts() -> list[dict[str, str]]:
     """Their names and what they are."""
-    from workhold.files.part.builtin import builtin_parts
+    from workhold.files.part.finding import builtin_parts
 
     return [{"name": part.name, "title": part.description} for part in builtin_parts()]
 
@@ -52,7 +52,7 @@ async def parts() -> list[dict[str, str]]:
 @router.get("/parts/{name}", summary="A part that comes with the program")
 async def part(request: Request, name: str) -> dict[str, Any]:
     """Its loops, segments and faces."""
-    from workhold.files.part.builtin import builtin_parts
+    from workhold.files.part.finding import builtin_parts
 
     state = state_of(request)
     known = {part.name.lower(): part.name for part in builtin_parts()}.get(name.lower())
@@ -144,7 +144,7 @@ async def toolkits() -> list[dict[str, Any]]:
 @router.get("/presets", summary="The toolkits that come with the program")
 async def presets() -> list[dict[str, Any]]:
     """What people own, by name; lengths in mm."""
-    from workhold.files.toolkit.presets import preset, preset_names
+    from workhold.files.toolkit_file import preset, preset_names
 
     return [toolkit_answer(one) for one in map(preset, preset_names())]
 

@@ -243,7 +243,9 @@ class Pool:
         ago. One worker of several is kept from any single client, so that the next one need not wait for its searches."""
         most = max(self.size - 1, 1)
         may = [task for task in self.waiting if self.running[task.client] < most]
-        return min(may, key=lambda task: (self.running[task.client], self.turns.get(task.client, 0)), default=None)
+        return min(
+            may, key=lambda task: (self.running[task.client], self.turns.get(task.client, 0)), default=None
+        )
 
     async def next_task(self) -> Task:
         """The task whose turn it is, when there is one; its client has a worker from then on."""
@@ -309,7 +311,10 @@ class Pool:
         if task.begun is not None:
             task.begun()
         await worker.send((number, task.name, task.seconds, task.payload))
-        end, error = clock() + task.seconds, FailedError(f"This took longer than {task.seconds:g} s and was stopped.")
+        end, error = (
+            clock() + task.seconds,
+            FailedError(f"This took longer than {task.seconds:g} s and was stopped."),
+        )
         while True:
             waits = [worker.inbox.get(), worker.gone.wait()] + ([] if told else [task.stop.wait()])
             message = await first(*waits, timeout=max(end - clock(), 0.0))
@@ -324,7 +329,9 @@ class Pool:
                     task.report(value)
             elif worker.gone.is_set():
                 task.settle(
-                    error=FailedError("The process that worked on this ended unexpectedly; others are not affected.")
+                    error=FailedError(
+                        "The process that worked on this ended unexpectedly; others are not affected."
+                    )
                 )
                 return
             elif told or not task.stops_well:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.near_duplicates import Entries, first_of_each, near_duplicates
+from workhold.listing.identity import Entries, first_of_each, near_duplicates
 from workhold.model.quality import FIGURES, figure_number
 from workhold.model.result import FixtureTable, Result
 from workhold.statics.judging import unfit
@@ -27,7 +27,7 @@ class Selection:
     type : name of arrangements or the title of one, or None for all.
     face : only fixtures that touch this face.
     angle : only those whose part lies at an angle in this range, in degrees, counter-clockwise from the first.
-    together : of fixtures that are alike (``listing.near_duplicates``) only the first.
+    together : of fixtures that are alike (``listing.identity``) only the first.
     unfit : also those that are none for a workshop; where there are no others they are chosen all the same.
     """
 
@@ -53,7 +53,9 @@ class Selection:
             chosen = found[~bad[found]]
         like = np.zeros(len(chosen), np.int64)
         if self.together:
-            first, like = first_of_each(near_duplicates(result.table, result.workpiece, result.toolkit)[chosen])
+            first, like = first_of_each(
+                near_duplicates(result.table, result.workpiece, result.toolkit)[chosen]
+            )
             chosen = chosen[first]
         return Entries(chosen, like, int(bad[found].sum()) if not (self.unfit or bad.all()) else 0)
 

@@ -16,8 +16,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from workhold.errors import InputError
 from workhold.web.app import create_app
-from workhold.web.guard import Hosts
-from workhold.web.limits import Limits
+from workhold.web.guard import Hosts, Limits
 
 __all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
 
@@ -139,7 +138,9 @@ def run_server(
     if token is not None:
         shown += f"?token={token}"
     hosts = hosts_of(host, more_hosts)
-    server = make_server(limits, hosts, lambda: None if listening is None else listening(shown), proxies, token)
+    server = make_server(
+        limits, hosts, lambda: None if listening is None else listening(shown), proxies, token
+    )
     try:
         if prepare is not None:
             prepare()
@@ -198,7 +199,9 @@ def bound_socket(host: str, port: int) -> socket.socket:
     except OSError as error:
         listener.close()
         reason = (error.strerror or str(error)).lower()
-        raise InputError(f"nothing can listen at {host} port {port} ({reason}): choose another --port.") from error
+        raise InputError(
+            f"nothing can listen at {host} port {port} ({reason}): choose another --port."
+        ) from error
     listener.set_inheritable(False)
     return listener
 

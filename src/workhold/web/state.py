@@ -1,21 +1,86 @@
-"""What the routes of one server share."""
+"""State that the routes of one server share: its workers, its jobs and the page's files.
+
+The files are read once into a table; no name in a request is ever looked up anywhere else.
+"""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
+from hashlib import sha256
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 from typing import Any
 
-from attrs import define, field
+from attrs import define, field, frozen
 from starlette.requests import Request
 
+from workhold.web.guard import Limits
 from workhold.web.jobs import Job, Jobs
-from workhold.web.limits import Limits
 from workhold.web.pool import Pool, StoppedError, Task
-from workhold.web.static_files import StaticFile, static_files
 
-__all__ = ["ServerState", "address_of", "at_desk", "at_desk_while_heard", "state_of"]
+__all__ = [
+    "ServerState",
+    "StaticFile",
+    "address_of",
+    "at_desk",
+    "at_desk_while_heard",
+    "state_of",
+    "static_files",
+]
+
+TYPES = {
+    "html": "text/html; charset=utf-8",
+    "css": "text/css; charset=utf-8",
+    "js": "text/javascript; charset=utf-8",
+    "mjs": "text/javascript; charset=utf-8",
+    "svg": "image/svg+xml",
+    "png": "image/png",
+    "ico": "image/x-icon",
+    "json": "application/json",
+    "webmanifest": "application/manifest+json",
+    "txt": "text/plain; charset=utf-8",
+}
+
+
+@frozen
+class StaticFile:
+    """A file of the page.
+
+    Parameters
+    ----------
+    content : its bytes.
+    type : of content.
+    tag : names this content, for caches.
+    """
+
+    content: bytes
+    type: str
+    tag: str
+
+
+def static_files() -> dict[str, StaticFile]:
+    """The files of the page by their paths below ``static``, such as ``js/list.js``."""
+    return dict(found(files("workhold.web") / "static", ""))
+
+
+def found(folder: Traversable, prefix: str) -> list[tuple[str, StaticFile]]:
+    """The files of a known kind in a folder and those below it."""
+    out: list[tuple[str, StaticFile]] = []
+    if not folder.is_dir():
+        return out
+    for entry in sorted(folder.iterdir(), key=lambda entry: entry.name):
+        if entry.is_dir():
+            out += found(entry, f"{prefix}{entry.name}/")
+            continue
+        kind = TYPES.get(entry.name.rpartition(".")[2].lower())
+        if kind is not None:
+            content = entry.read_bytes()
+            out.append(
+                (prefix + entry.name, StaticFile(content, kind, f'"{sha256(content).hexdigest()[:20]}"'))
+            )
+    return out
 
 
 @define(eq=False)
@@ -82,7 +147,9 @@ async def at_desk(request: Request, name: str, payload: Any, seconds: float | No
     seconds : how long it may take, if not as long as what is quick.
     """
     state = state_of(request)
-    return await state.desks.run(Task(name, payload, seconds or state.limits.desk_seconds, address_of(request)))
+    return await state.desks.run(
+        Task(name, payload, seconds or state.limits.desk_seconds, address_of(request))
+    )
 
 
 async def at_desk_while_heard(request: Request, name: str, payload: Any) -> Any:

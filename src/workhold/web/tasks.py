@@ -18,13 +18,12 @@ from typing import TYPE_CHECKING, Any
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.model.explanation import Explanation
 from workhold.model.query import Query
 from workhold.model.result import Result
+from workhold.model.search_report import Explanation
 from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
-from workhold.web.paper import make_paper
-from workhold.web.seating import close, find_seating
+from workhold.web.fixture_tasks import close, find_seating, make_paper
 from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
@@ -153,7 +152,9 @@ def explanation(query: Query, order: Order) -> Explanation:
     return explain(query)
 
 
-def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> tuple[NamedQuery, ...]:
+def check_job(
+    payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order
+) -> tuple[NamedQuery, ...]:
     """The queries of a request, after everything that can be known to be wrong with them is asked for."""
     from workhold.contact.problem import Problem
     from workhold.search.seated import refuse_unasked
@@ -177,7 +178,7 @@ def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, An
 
 def builtin_part(name: str, order: Order) -> dict[str, Any]:
     """A part that comes with the program; the name is known to exist."""
-    from workhold.files.part.builtin import builtin_path
+    from workhold.files.part.finding import builtin_path
     from workhold.files.part.load import read_workpiece
     from workhold.web.answers import part_answer
 
@@ -224,7 +225,9 @@ def sent_file(upload: Upload) -> Iterator[Path]:
         except InputError as error:
             raise InputError(without_path(str(error), path)) from error
         except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
-            raise InputError("The file is damaged, or holds what this program cannot read: save it anew.") from error
+            raise InputError(
+                "The file is damaged, or holds what this program cannot read: save it anew."
+            ) from error
 
 
 def without_path(sentence: str, path: Path) -> str:
@@ -265,7 +268,10 @@ def warnings(payload: tuple[Result, dict[str, Any]], order: Order) -> list[dict[
     from workhold.drawing.result_sheet import result_cautions
 
     result, asked = payload
-    return [{"kind": caution.kind, "sentence": caution.sentence} for caution in result_cautions(result, 1, **asked)]
+    return [
+        {"kind": caution.kind, "sentence": caution.sentence}
+        for caution in result_cautions(result, 1, **asked)
+    ]
 
 
 def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:

@@ -16,7 +16,7 @@ from typing import Any
 from attrs import asdict, frozen
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.toolkit.reader import LoadedToolkit
+from workhold.files.toolkit_file import LoadedToolkit
 from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
 from workhold.fixels.table import Choice, ToolkitField
 
@@ -107,6 +107,8 @@ def kinds_answer() -> list[dict[str, Any]]:
 def page_kind(loaded: LoadedToolkit) -> str:
     """The name under which the page shows a toolkit: of those that say some of its fields, the one that says most."""
     fits = [
-        one for one in DESCRIBED if kind_of(one.name)[0] == loaded.kind and one.said.items() <= loaded.fields.items()
+        one
+        for one in DESCRIBED
+        if kind_of(one.name)[0] == loaded.kind and one.said.items() <= loaded.fields.items()
     ]
     return max(fits, key=lambda one: len(one.said)).name

@@ -49,7 +49,9 @@ class Order:
 Tasks = Mapping[str, Callable[[Any, Order], Any]]
 
 
-def worker_main(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: Callable[[], object]) -> None:
+def worker_main(
+    connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: Callable[[], object]
+) -> None:
     """Work until the pipe ends; the process's main function.
 
     Parameters

@@ -56,7 +56,14 @@ def transformed(angle: float, scale: float, mirror: bool, shift: tuple[float, fl
     base=st.tuples(st.floats(-9, 9), st.floats(-9, 9)),
 )
 def test_an_insert_is_a_similarity(
-    tmp_path: Path, angle: float, scale: float, mirror: bool, x: float, y: float, loose: bool, base: tuple[float, float]
+    tmp_path: Path,
+    angle: float,
+    scale: float,
+    mirror: bool,
+    x: float,
+    y: float,
+    loose: bool,
+    base: tuple[float, float],
 ) -> None:
     """Placing a block gives the outline mapped by q -> R S (q - base) + t, be it a polyline or loose lines and arcs."""
     document, space = new_dxf()
@@ -83,8 +90,12 @@ def test_nested_turned_and_mirrored_inserts(tmp_path: Path, loose: bool, below: 
     (draw_loose if loose else draw_polyline)(inner)
     outer = document.blocks.new("OUTER", base_point=(-3, 4))
     extrusion = (0, 0, -1) if below else (0, 0, 1)
-    outer.add_blockref("INNER", (5, 6), dxfattribs={"xscale": -2, "yscale": 2, "rotation": 30, "extrusion": extrusion})
-    space.add_blockref("OUTER", (70, -20), dxfattribs={"xscale": 1.5, "yscale": -1.5, "zscale": 1.5, "rotation": 110})
+    outer.add_blockref(
+        "INNER", (5, 6), dxfattribs={"xscale": -2, "yscale": 2, "rotation": 30, "extrusion": extrusion}
+    )
+    space.add_blockref(
+        "OUTER", (70, -20), dxfattribs={"xscale": 1.5, "yscale": -1.5, "zscale": 1.5, "rotation": 110}
+    )
     document.saveas(tmp_path / "part.dxf")
     part = load(tmp_path / "part.dxf")
     plain = Workpiece.from_loops("plain", [ROWS])
@@ -98,7 +109,9 @@ def test_nested_turned_and_mirrored_inserts(tmp_path: Path, loose: bool, below: 
         for e in space
         for piece in (e.virtual_entities() if e.dxftype() == "LWPOLYLINE" else [e])
         for p in (
-            (piece.dxf.start, piece.dxf.end) if piece.dxftype() == "LINE" else (piece.start_point, piece.end_point)
+            (piece.dxf.start, piece.dxf.end)
+            if piece.dxftype() == "LINE"
+            else (piece.start_point, piece.end_point)
         )
     }
     assert ends == {(round(x, 6) + 0.0, round(y, 6) + 0.0) for loop in part.loops for x, y, _ in loop}
@@ -110,7 +123,9 @@ def test_inches_scale_blocks_too(tmp_path: Path) -> None:
     draw_polyline(document.blocks.new("PART"))
     space.add_blockref("PART", (1, 1))
     document.saveas(tmp_path / "part.dxf")
-    assert area(load(tmp_path / "part.dxf")) == pytest.approx(25.4**2 * area(Workpiece.from_loops("p", [ROWS])))
+    assert area(load(tmp_path / "part.dxf")) == pytest.approx(
+        25.4**2 * area(Workpiece.from_loops("p", [ROWS]))
+    )
 
 
 def test_an_array_of_holes(tmp_path: Path) -> None:
@@ -197,7 +212,10 @@ def test_blocks_that_cannot_be_placed_are_refused(tmp_path: Path) -> None:
 
     for attributes, words in [
         ({"extrusion": (1, 0, 0)}, r"INSERT \w+ is tilted"),
-        ({"row_count": 30000, "column_count": 30000, "row_spacing": 1, "column_spacing": 1}, "repeats its block"),
+        (
+            {"row_count": 30000, "column_count": 30000, "row_spacing": 1, "column_spacing": 1},
+            "repeats its block",
+        ),
     ]:
         document, space = new_dxf()
         rectangle(document.blocks.new("A"))
@@ -207,7 +225,9 @@ def test_blocks_that_cannot_be_placed_are_refused(tmp_path: Path) -> None:
             load(tmp_path / "part.dxf")
 
 
-def test_blocks_that_multiply_without_end_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blocks_that_multiply_without_end_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Ten levels of ten INSERTs would be ten thousand million lines; the walk stops at its limit."""
     monkeypatch.setattr("workhold.files.dxf.walk.MOST_ENTITIES", 1000)
     document, space = new_dxf()
@@ -235,14 +255,18 @@ def test_a_missing_block_is_remarked(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("bulge", [float("inf"), float("nan"), 1e300, -1e20])
-def test_a_bulge_that_is_none_is_refused_where_its_arc_becomes_an_ellipse_too(tmp_path: Path, bulge: float) -> None:
+def test_a_bulge_that_is_none_is_refused_where_its_arc_becomes_an_ellipse_too(
+    tmp_path: Path, bulge: float
+) -> None:
     """In the sentence of any other arc, and before a curve without end is fitted."""
     document, space = new_dxf()
     block = document.blocks.new("B")
     block.add_lwpolyline([(0, 0, 0.2), (50, 0, bulge), (50, 40, 0)], format="xyb", close=True)
     space.add_blockref("B", (7, 7), dxfattribs={"xscale": 2.0, "yscale": 3.0, "rotation": 30.0})
     document.saveas(tmp_path / "part.dxf")
-    with pytest.raises(InputError, match=r"segment 1 of INSERT .* (is not a finite number|is an arc that bulges by)"):
+    with pytest.raises(
+        InputError, match=r"segment 1 of INSERT .* (is not a finite number|is an arc that bulges by)"
+    ):
         load(tmp_path / "part.dxf")
 
 

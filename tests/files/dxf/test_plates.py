@@ -8,9 +8,9 @@ from pathlib import Path
 import ezdxf
 import pytest
 
-from workhold.files.dxf.plates import beside, plates_dxf, write_plates_dxf
+from workhold.files.dxf.writer import beside, plates_dxf, write_plates_dxf
 from workhold.fixels.vise import Vise
-from workhold.model.jaw_plate import Bolts, jaw_plates
+from workhold.model.dowels import Bolts, jaw_plates
 
 PLATES = jaw_plates(
     Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4),

@@ -49,7 +49,9 @@ def test_polylines_with_bulges(tmp_path: Path, kind: str, flagged: bool) -> None
 
 def test_a_flat_3d_polyline_is_lines(tmp_path: Path) -> None:
     """A 3D polyline that lies level is as good as lines."""
-    loaded = read_dxf(tmp_path, lambda space: space.add_polyline3d([(x, y, 5) for x, y in RECTANGLE], close=True))
+    loaded = read_dxf(
+        tmp_path, lambda space: space.add_polyline3d([(x, y, 5) for x, y in RECTANGLE], close=True)
+    )
     assert area(loaded.workpiece) == pytest.approx(2400)
 
 
@@ -85,7 +87,8 @@ def test_a_nearly_full_arc_keeps_its_centre(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("insunits", "mm"), [(1, 25.4), (2, 304.8), (4, 1), (5, 10), (6, 1000), (9, 0.0254), (13, 0.001), (14, 100)]
+    ("insunits", "mm"),
+    [(1, 25.4), (2, 304.8), (4, 1), (5, 10), (6, 1000), (9, 0.0254), (13, 0.001), (14, 100)],
 )
 def test_units_of_the_header(tmp_path: Path, insunits: int, mm: float) -> None:
     """A 60 x 40 unit plate is as large as its unit says."""
@@ -203,7 +206,9 @@ def test_geometry_errors_name_the_entity(tmp_path: Path) -> None:
     def draw(space: Any) -> None:
         space.add_lwpolyline([(0, 0), (20, 20), (20, 0), (0, 30)], close=True)
 
-    with pytest.raises(InputError, match=r"drawn\.dxf: .*\(LWPOLYLINE \w+ segment 0\) and .*segment 2\) cross"):
+    with pytest.raises(
+        InputError, match=r"drawn\.dxf: .*\(LWPOLYLINE \w+ segment 0\) and .*segment 2\) cross"
+    ):
         read_dxf(tmp_path, draw)
 
 
@@ -221,7 +226,9 @@ def test_curves_that_are_no_arcs_are_refused(tmp_path: Path, kind: str) -> None:
         rectangle(space)
         REFUSALS[kind](space)
 
-    with pytest.raises(InputError, match=rf"drawn\.dxf: {kind} \w+ at \(.*which is not made of lines and arcs"):
+    with pytest.raises(
+        InputError, match=rf"drawn\.dxf: {kind} \w+ at \(.*which is not made of lines and arcs"
+    ):
         read_dxf(tmp_path, draw)
 
 
@@ -253,14 +260,18 @@ def test_meshes_are_refused(tmp_path: Path) -> None:
 
 def test_entities_out_of_the_plane_are_refused(tmp_path: Path) -> None:
     """A rising line, an arc at another height and a tilted circle are named."""
-    with pytest.raises(InputError, match=r"LINE \w+ reaches the height z = 5 mm, but itself lies at z = 0 mm"):
+    with pytest.raises(
+        InputError, match=r"LINE \w+ reaches the height z = 5 mm, but itself lies at z = 0 mm"
+    ):
         read_dxf(tmp_path, lambda s: s.add_line((0, 0, 0), (1, 0, 5)))
 
     def two_levels(space: Any) -> None:
         rectangle(space)
         space.add_circle((30, 20, 3), 5)
 
-    with pytest.raises(InputError, match=r"CIRCLE \w+ reaches the height z = 3 mm, but LINE \w+ lies at z = 0 mm"):
+    with pytest.raises(
+        InputError, match=r"CIRCLE \w+ reaches the height z = 3 mm, but LINE \w+ lies at z = 0 mm"
+    ):
         read_dxf(tmp_path, two_levels)
     with pytest.raises(InputError, match=r"CIRCLE \w+ is tilted out of the drawing plane"):
         read_dxf(tmp_path, lambda s: s.add_circle((0, 0), 5, dxfattribs={"extrusion": (0, 0.6, 0.8)}))

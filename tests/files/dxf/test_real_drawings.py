@@ -42,7 +42,9 @@ def test_mc_12x31() -> None:
 def test_motor_mount_plate() -> None:
     """A plate without a unit: refused until one is given; then 48 holes, and seven stray lines are reported."""
     path = DRAWINGS / "motor_mount_plate.dxf"
-    with pytest.raises(InputError, match=r"unit is not said: it is 89\.998 mm wide, or 89\.998 in = 2,286 mm"):
+    with pytest.raises(
+        InputError, match=r"unit is not said: it is 89\.998 mm wide, or 89\.998 in = 2,286 mm"
+    ):
         load(path)
     loaded = read_workpiece(path, unit="mm")
     x0, y0, x1, y1 = loaded.workpiece.bounds

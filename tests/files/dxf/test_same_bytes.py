@@ -13,8 +13,8 @@ SRC = Path(__file__).parents[3] / "src"
 PLATES = """
 import sys
 from workhold import Vise
-from workhold.files.dxf.plates import plates_dxf
-from workhold.model.jaw_plate import jaw_plates
+from workhold.files.dxf.writer import plates_dxf
+from workhold.model.dowels import jaw_plates
 sys.stdout.buffer.write(plates_dxf(jaw_plates(Vise(pitch=20, columns=2, peg_radius=3, rows=3))))
 """
 
@@ -22,7 +22,9 @@ sys.stdout.buffer.write(plates_dxf(jaw_plates(Vise(pitch=20, columns=2, peg_radi
 def drawn(seed: int) -> bytes:
     """The drill template of a vise's plates, made in a process of its own."""
     environment = {**os.environ, "PYTHONHASHSEED": str(seed), "PYTHONPATH": str(SRC)}
-    return subprocess.run([sys.executable, "-c", PLATES], env=environment, capture_output=True, check=True).stdout
+    return subprocess.run(
+        [sys.executable, "-c", PLATES], env=environment, capture_output=True, check=True
+    ).stdout
 
 
 @pytest.mark.parametrize("seed", [4])

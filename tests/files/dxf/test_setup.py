@@ -18,7 +18,7 @@ from ezdxf import options
 from ezdxf.document import Drawing
 from plate_examples import WAYS, on_plate
 
-from workhold.files.dxf.setup import layers_of, setup_dxf, write_setup_dxf
+from workhold.files.dxf.writer import layers_of, setup_dxf, write_setup_dxf
 from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture
 from workhold.model.workpiece import Workpiece
@@ -54,13 +54,17 @@ def distance_to_part(document: Drawing, x: float, y: float) -> float:
     return min(distances)
 
 
-@pytest.mark.parametrize(("body", "clearance", "radius"), [(None, 1.0, 4.0), (5.0, 2.5, 7.5), (None, 0.0, 3.0)])
+@pytest.mark.parametrize(
+    ("body", "clearance", "radius"), [(None, 1.0, 4.0), (5.0, 2.5, 7.5), (None, 0.0, 3.0)]
+)
 def test_the_cutter_keeps_off_the_pegs(body: float | None, clearance: float, radius: float) -> None:
     """About each peg there is a circle on KEEP_OUT, the clearance larger than the peg's thickest part."""
     fixture, part, vise = diamond()
     text = setup_dxf(fixture, part, evolve(vise, body_radius=body or vise.peg_radius), clearance=clearance)
     circles = (
-        ezdxf.read(io.TextIOWrapper(io.BytesIO(text), encoding="utf-8")).modelspace().query('*[layer=="KEEP_OUT"]')
+        ezdxf.read(io.TextIOWrapper(io.BytesIO(text), encoding="utf-8"))
+        .modelspace()
+        .query('*[layer=="KEEP_OUT"]')
     )
     found = sorted((c.dxf.center.x, c.dxf.center.y, c.dxf.radius) for c in circles)
     expected = sorted((peg.x, peg.y, radius) for peg in fixture.pegs)
@@ -131,7 +135,9 @@ def test_holes_and_names_are_those_of_the_vise() -> None:
     """The used holes are where the pegs are, and the text at each names it."""
     fixture, workpiece, vise = example()
     space = reread((fixture, workpiece, vise)).modelspace()
-    used = {tuple(round(v, 9) for v in hole.dxf.center)[:2] for hole in space.query('CIRCLE[layer=="HOLES_USED"]')}
+    used = {
+        tuple(round(v, 9) for v in hole.dxf.center)[:2] for hole in space.query('CIRCLE[layer=="HOLES_USED"]')
+    }
     assert used == {(round(peg.x, 9), round(peg.y, 9)) for peg in fixture.pegs}
     named = {text.dxf.text: tuple(text.get_placement()[1])[:2] for text in space.query('TEXT[layer=="TEXT"]')}
     for peg in fixture.pegs:
@@ -140,7 +146,9 @@ def test_holes_and_names_are_those_of_the_vise() -> None:
     for hole in space.query('CIRCLE[layer=="HOLES"]'):
         x, y, _ = hole.dxf.center
         assert (round(x, 9), round(y, 9)) not in used
-        assert min(abs(x - wanted) for wanted in (0, 10, 46, 56)) < 1e-9 and y % 10 == pytest.approx(0, abs=1e-9)
+        assert min(abs(x - wanted) for wanted in (0, 10, 46, 56)) < 1e-9 and y % 10 == pytest.approx(
+            0, abs=1e-9
+        )
 
 
 def test_part_zero_is_at_the_pose() -> None:
@@ -149,7 +157,9 @@ def test_part_zero_is_at_the_pose() -> None:
     space = reread((fixture, workpiece, vise)).modelspace()
     (point,) = space.query('POINT[layer=="PART_ZERO"]')
     assert tuple(point.dxf.location)[:2] == pytest.approx((fixture.pose.x, fixture.pose.y))
-    line = max(space.query('LINE[layer=="PART_ZERO"]'), key=lambda line: (line.dxf.end - line.dxf.start).magnitude)
+    line = max(
+        space.query('LINE[layer=="PART_ZERO"]'), key=lambda line: (line.dxf.end - line.dxf.start).magnitude
+    )
     assert (line.dxf.end - line.dxf.start).angle_deg == pytest.approx(45.0)
 
 
@@ -191,14 +201,16 @@ def test_locators_and_clamp_of_a_plate_touch_the_part(way: str, bolted: bool) ->
         corners = [(x, y) for x, y, _ in body.get_points("xyb")]
         assert min(distance_to_part(document, x, y) for x, y in corners) > 0
         assert [bulge for _, _, bulge in body.get_points("xyb")] == pytest.approx([0, 1, 0, 1])
-    used = {tuple(round(v, 9) for v in hole.dxf.center)[:2] for hole in space.query('CIRCLE[layer=="HOLES_USED"]')}
+    used = {
+        tuple(round(v, 9) for v in hole.dxf.center)[:2] for hole in space.query('CIRCLE[layer=="HOLES_USED"]')
+    }
     assert len(used) == 3 + bolted
 
 
 def test_bytes_do_not_depend_on_the_process() -> None:
     """Two processes that order sets in different ways write the same file."""
     code = (
-        "import hashlib, drawing_examples; from workhold.files.dxf.setup import setup_dxf; "
+        "import hashlib, drawing_examples; from workhold.files.dxf.writer import setup_dxf; "
         "print(hashlib.sha256(setup_dxf(*drawing_examples.example())).hexdigest())"
     )
     said = set()

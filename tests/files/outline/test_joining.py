@@ -15,8 +15,7 @@ from reading_helpers import area, read_dxf, rectangle
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, rebulged
-from workhold.files.outline.joining import join
-from workhold.files.outline.near import close_pairs, groups
+from workhold.files.outline.joining import close_pairs, groups, join
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, segment_from_bulge
 
@@ -38,7 +37,9 @@ def star(radii: list[float], bulges: list[float]) -> np.ndarray[Any, Any]:
 
 bulges = st.just(0.0) | st.floats(0.01, 0.3) | st.floats(-0.3, -0.01)
 loops = st.integers(3, 12).flatmap(
-    lambda n: st.tuples(st.lists(st.floats(10, 50), min_size=n, max_size=n), st.lists(bulges, min_size=n, max_size=n))
+    lambda n: st.tuples(
+        st.lists(st.floats(10, 50), min_size=n, max_size=n), st.lists(bulges, min_size=n, max_size=n)
+    )
 )
 
 
@@ -57,7 +58,8 @@ def test_exploding_shuffling_and_joining_gives_the_loop_back(
     chains = []
     for chain in exploded(rows):
         moved = tuple(
-            (x + randomly.uniform(-gap, gap) / 3, y + randomly.uniform(-gap, gap) / 3) for x, y in chain.points
+            (x + randomly.uniform(-gap, gap) / 3, y + randomly.uniform(-gap, gap) / 3)
+            for x, y in chain.points
         )
         moved_chain = Chain(moved, chain.bulges, chain.labels)
         chains.append(moved_chain.reversed() if randomly.random() < 0.5 else moved_chain)
@@ -67,7 +69,9 @@ def test_exploding_shuffling_and_joining_gives_the_loop_back(
     assert not joined.strays
     assert len(joined.loops[0].labels) == len(rows)
     expected = abs(signed_area(loop_segments(rows)))
-    assert abs(signed_area(loop_segments(joined.loops[0].vertices))) == pytest.approx(expected, abs=1e-6 + 1500 * gap)
+    assert abs(signed_area(loop_segments(joined.loops[0].vertices))) == pytest.approx(
+        expected, abs=1e-6 + 1500 * gap
+    )
     assert bool(joined.remarks) == (gap > 1e-9)
 
 
@@ -262,7 +266,9 @@ def test_a_hole_is_never_taken_for_a_part_whose_outline_has_several_gaps(
         space.add_circle((65, 20), 12)
         space.add_line((-30, 20), (120, 20))
 
-    with pytest.raises(InputError, match=r"the outline around part 1 .*is not closed: .*part_number 1\.") as refused:
+    with pytest.raises(
+        InputError, match=r"the outline around part 1 .*is not closed: .*part_number 1\."
+    ) as refused:
         read_dxf(tmp_path, draw)
     enough = float(re.findall(r"above ([\d.]+) mm", str(refused.value))[0])
     assert gap <= enough < 1.1 * gap
@@ -353,6 +359,8 @@ def test_a_chain_closes_on_itself_only_over_a_gap_much_shorter_than_it_is(times:
     less than three times as long as its opening is a hook that somebody drew, and stays open."""
     gap = 0.5
     height = gap / 2 * (times * times - 1) ** 0.5
-    hook = Chain(((0.0, 0.0), (gap / 2, height), (gap, 0.0)), (0.0, 0.2), ("HOOK segment 0", "HOOK segment 1"))
+    hook = Chain(
+        ((0.0, 0.0), (gap / 2, height), (gap, 0.0)), (0.0, 0.2), ("HOOK segment 0", "HOOK segment 1")
+    )
     joined = join([hook], 2 * gap)
     assert (len(joined.loops), len(joined.strays)) == ((1, 0) if closes else (0, 1))

@@ -8,7 +8,7 @@ from random import Random
 from hypothesis import given
 
 from strategies import seeds
-from workhold.files.outline.placement import Placement
+from workhold.files.outline.chain import Placement
 
 
 def singular_ratio(map_: Placement) -> float:

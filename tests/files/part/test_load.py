@@ -95,12 +95,24 @@ def test_a_result_file_gives_its_workpiece(tmp_path: Path) -> None:
         ({**PLATE, "loops": [[[0, 0, 0, 0]]]}, r"Loop 0, vertex 0 must be three numbers"),
         ({**PLATE, "loops": [[[0, 0, 0], [1, "2", 0], [0, 1, 0]]]}, r"Loop 0, vertex 1 has a y that is not"),
         ({**PLATE, "loops": [[[0, 0, 0], [1, True, 0], [0, 1, 0]]]}, r"Loop 0, vertex 1 has a y that is not"),
-        ({**PLATE, "loops": [[[0, 0, None], [1, 1, 0], [0, 1, 0]]]}, r"Loop 0, vertex 0 has a bulge that is not"),
+        (
+            {**PLATE, "loops": [[[0, 0, None], [1, 1, 0], [0, 1, 0]]]},
+            r"Loop 0, vertex 0 has a bulge that is not",
+        ),
         ('{"units": "mm", "loops": [[[0, 0, NaN]]]}', "NaN is not a number"),
         ('{"units": "mm", "loops": [[[0, -Infinity, 0]]]}', "-Infinity is not a number"),
-        ('{"units": "mm", "loops": [[[0, 1e999, 0], [1, 0, 0], [0, 1, 0]]]}', "vertex 0 has a y that is not a finite"),
-        ('{"units": "mm", "loops": [[[0, 1e200, 0], [1, 0, 0], [0, 1, 0]]]}', "has a coordinate beyond 1e.06 mm"),
-        ({**PLATE, "loops": [[[0, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0]]]}, "loop 0, segment 1 has zero length"),
+        (
+            '{"units": "mm", "loops": [[[0, 1e999, 0], [1, 0, 0], [0, 1, 0]]]}',
+            "vertex 0 has a y that is not a finite",
+        ),
+        (
+            '{"units": "mm", "loops": [[[0, 1e200, 0], [1, 0, 0], [0, 1, 0]]]}',
+            "has a coordinate beyond 1e.06 mm",
+        ),
+        (
+            {**PLATE, "loops": [[[0, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0]]]},
+            "loop 0, segment 1 has zero length",
+        ),
         ({**PLATE, "loops": [[[0, 0, 0], [2, 2, 0], [2, 0, 0], [0, 2, 0]]]}, "cross or touch at"),
     ],
 )
@@ -178,5 +190,7 @@ def test_a_drawing_of_fifty_megabytes_is_refused_unread(tmp_path: Path) -> None:
     with path.open("wb") as stream:
         stream.write(b"  0\nSECTION\n")
         stream.truncate(50_000_000)
-    with pytest.raises(InputError, match=r"huge\.dxf: the file is larger than 40 MB: save a drawing of the part"):
+    with pytest.raises(
+        InputError, match=r"huge\.dxf: the file is larger than 40 MB: save a drawing of the part"
+    ):
         read_workpiece(path, unit="mm")

@@ -72,7 +72,9 @@ def test_chords_of_shapely_become_arcs() -> None:
 def drawing(units: int = ezdxf.units.MM) -> Any:
     document = ezdxf.new()  # type: ignore[attr-defined]
     document.units = units
-    document.modelspace().add_lwpolyline([(0, 0, 0), (50, 0, 0), (50, 30, 0.3), (0, 30, 0)], format="xyb", close=True)
+    document.modelspace().add_lwpolyline(
+        [(0, 0, 0), (50, 0, 0), (50, 30, 0.3), (0, 30, 0)], format="xyb", close=True
+    )
     document.modelspace().add_circle((20, 10), 4, dxfattribs={"layer": "HOLES"})
     return document
 
@@ -98,7 +100,11 @@ def test_a_document_without_a_unit_asks() -> None:
     [
         (None, {}, "this NoneType: a part cannot be read from it: give the path of a file"),
         ([(0, 0), (1, 0), (0, 1)], {}, "this list: a part cannot be read from it"),
-        (SimpleNamespace(geom_type="Point", __geo_interface__={}), {}, "a Point has no outline: give a polygon"),
+        (
+            SimpleNamespace(geom_type="Point", __geo_interface__={}),
+            {},
+            "a Point has no outline: give a polygon",
+        ),
         (Polygon(rectangle(2, 1)), {"layers": ["0"]}, "leave layers out"),
         (Polygon(rectangle(2, 1)), {"axis": "x"}, "leave axis out"),
         (Polygon([(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)]), {}, "this Polygon: "),
@@ -180,7 +186,9 @@ class TestShapes:
             ({"section": 1}, "leave the section"),
         ],
     )
-    def test_choices_that_do_not_apply_are_refused(self, shapes: Any, choice: dict[str, Any], words: str) -> None:
+    def test_choices_that_do_not_apply_are_refused(
+        self, shapes: Any, choice: dict[str, Any], words: str
+    ) -> None:
         with pytest.raises(InputError, match=words):
             workhold.load(self.face(shapes, [(0, 0, 0), (3, 0, 0), (0, 2, 0)]), **choice)
 

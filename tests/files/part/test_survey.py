@@ -103,7 +103,9 @@ def test_layers_are_told_with_what_is_on_them(tmp_path: Path) -> None:
     """Those with lines or arcs, hidden or not, whichever are read; a file without layers has none."""
     document = ezdxf.new(units=4)
     document.layers.add("LOOSE").off()
-    document.modelspace().add_lwpolyline([(0, 0), (9, 0), (0, 9)], close=True, dxfattribs={"layer": "OUTLINE"})
+    document.modelspace().add_lwpolyline(
+        [(0, 0), (9, 0), (0, 9)], close=True, dxfattribs={"layer": "OUTLINE"}
+    )
     document.modelspace().add_line((0, 0), (20, 20), dxfattribs={"layer": "LOOSE"})
     document.modelspace().add_text("note", dxfattribs={"layer": "WORDS"})
     document.saveas(tmp_path / "layers.dxf")

@@ -18,7 +18,7 @@ from workhold.files.result import columns as in_columns
 from workhold.files.result.columns import significant, write_columns
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
-from workhold.listing.near_duplicates import entries
+from workhold.listing.identity import entries
 from workhold.model.columns import COLUMNS, HEAD
 from workhold.model.result import FixtureTable, Result
 from workhold.verification.listing import read_listing
@@ -54,7 +54,9 @@ def test_both_forms_give_the_same_result(tmp_path: Path) -> None:
     assert list(one) == list(other) and one[-3] == other[-3] and one[4:9] == other[4:9]
     listings = [read_listing(tmp_path / name) for name in ("a", "b.json")]
     assert list(listings[0].fixtures) == [
-        attrs.evolve(fixture, pegs=tuple(attrs.evolve(p, x=round(p.x, 9), y=round(p.y, 9)) for p in fixture.pegs))
+        attrs.evolve(
+            fixture, pegs=tuple(attrs.evolve(p, x=round(p.x, 9), y=round(p.y, 9)) for p in fixture.pegs)
+        )
         for fixture in listings[1].fixtures
     ]
     assert attrs.evolve(listings[0], fixtures=()).counts == attrs.evolve(listings[1], fixtures=()).counts
@@ -69,7 +71,12 @@ def test_numbers_are_rounded_as_twelve_digits_are_read() -> None:
         [values, powers, np.nextafter(powers, 0), np.nextafter(powers, np.inf), halves, [0.0, 5e-324, 1e300]]
     )
     np.testing.assert_array_equal(significant(values), [float(f"{value:.12g}") for value in values])
-    assert np.isnan(significant(np.array([np.nan, 1.0, np.inf, -np.inf]))).tolist() == [True, False, True, True]
+    assert np.isnan(significant(np.array([np.nan, 1.0, np.inf, -np.inf]))).tolist() == [
+        True,
+        False,
+        True,
+        True,
+    ]
 
 
 def test_one_fixture_is_read_and_not_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

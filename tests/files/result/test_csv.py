@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fakes import fake_result
-from workhold.files.result.csv import write_result_csv
+from workhold.files.result.fixture_text import write_result_csv
 
 
 def test_every_row_is_a_fixture(tmp_path: Path) -> None:

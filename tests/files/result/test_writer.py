@@ -18,13 +18,13 @@ import check_result
 from fakes import fake_proof, fake_result
 from workhold import Vise, design, load
 from workhold.errors import InputError
-from workhold.files.result import fixture_lines
+from workhold.files.result import fixture_text
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result, write_result_to
-from workhold.files.toolkit.presets import preset
-from workhold.model.proof import Undecided
+from workhold.files.toolkit_file import preset
+from workhold.model.requirements import Tolerance
 from workhold.model.result import FixtureTable
-from workhold.model.tolerance import Tolerance
+from workhold.model.search_report import Undecided
 
 
 @pytest.fixture
@@ -92,7 +92,9 @@ def test_the_file_says_what_the_fixture_objects_say(tmp_path: Path) -> None:
             peg["face"] = peg.pop("segment")
             peg["carrier"] = peg.pop("jaw")
             entries = attrs.asdict(expected).items()
-            expected_entry = {name: value for name, value in entries if name not in ("place", "beside", "flat_deg")}
+            expected_entry = {
+                name: value for name, value in entries if name not in ("place", "beside", "flat_deg")
+            }
             assert peg == pytest.approx(expected_entry, abs=1e-8)
 
 
@@ -126,7 +128,7 @@ def test_fixtures_become_objects_a_block_at_a_time(monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(FixtureTable, "take", recorded)
     write_result_to(fake_result(9000), io.StringIO())
-    assert sizes == [fixture_lines.BLOCK] * 3
+    assert sizes == [fixture_text.BLOCK] * 3
 
 
 def test_any_layout_of_the_same_json_is_read(tmp_path: Path, document: dict[str, Any]) -> None:
@@ -152,7 +154,9 @@ def test_the_keys_of_the_model_are_enough(tmp_path: Path, document: dict[str, An
     assert result.complete
     assert result.query.arrangements == ("I", "II")
     assert result.found == result.counts
-    assert all(fixture.pegs[0].carrier == "left" and fixture.pegs[-1].carrier == "right" for fixture in result)
+    assert all(
+        fixture.pegs[0].carrier == "left" and fixture.pegs[-1].carrier == "right" for fixture in result
+    )
     np.testing.assert_allclose(result.table.null_vector.sum(axis=1), 1)
 
 
@@ -163,7 +167,7 @@ def test_an_error_on_the_way_leaves_the_earlier_file(tmp_path: Path, monkeypatch
     def broken(*_: object) -> object:
         raise MemoryError
 
-    monkeypatch.setattr(fixture_lines, "rounded", broken)
+    monkeypatch.setattr(fixture_text, "rounded", broken)
     with pytest.raises(MemoryError):
         write_result(fake_result(3), path)
     assert path.read_text() == "old"
@@ -180,7 +184,10 @@ DAMAGED: list[tuple[Damage, str]] = [
     (lambda d: d.update(fixtures={}), "no list of fixtures"),
     (lambda d: d["workpiece"].update(units="inch"), "workpiece.units cannot be used"),
     (lambda d: d["workpiece"]["loops"][0][1].pop(), "loop 0 is not a list"),
-    (lambda d: d["workpiece"]["loops"][0][1].__setitem__(0, "x"), r"workpiece\.loops\.0\.1\.0 cannot be used"),
+    (
+        lambda d: d["workpiece"]["loops"][0][1].__setitem__(0, "x"),
+        r"workpiece\.loops\.0\.1\.0 cannot be used",
+    ),
     (lambda d: d["vise"].update(pitch=[10]), r"vise\.pitch cannot be used"),
     (lambda d: d["vise"].update(pitch=[-10, 10]), "pitch -10"),
     (lambda d: d["vise"].update(columns=2.5), r"vise\.columns cannot be used"),
@@ -196,18 +203,39 @@ DAMAGED: list[tuple[Damage, str]] = [
         "fixture 2 cannot be used: a peg's jaw is not left or right",
     ),
     (lambda d: d["fixtures"][1]["pegs"][0].update(jaw=[]), "fixture 2 cannot be used"),
-    (lambda d: d["fixtures"][1]["pegs"][3].update(jaw="left"), "fixture 2 does not have the pegs of its type"),
-    (lambda d: d["fixtures"][1]["pegs"][0].update(row=1.5), "fixture 2 cannot be used: .* is not a whole number"),
-    (lambda d: d["fixtures"][1]["pegs"][0].update(row=True), "fixture 2 cannot be used: .* is not a whole number"),
+    (
+        lambda d: d["fixtures"][1]["pegs"][3].update(jaw="left"),
+        "fixture 2 does not have the pegs of its type",
+    ),
+    (
+        lambda d: d["fixtures"][1]["pegs"][0].update(row=1.5),
+        "fixture 2 cannot be used: .* is not a whole number",
+    ),
+    (
+        lambda d: d["fixtures"][1]["pegs"][0].update(row=True),
+        "fixture 2 cannot be used: .* is not a whole number",
+    ),
     (lambda d: d["fixtures"][1]["pegs"][0].update(row=-1), "fixture 2 cannot be used: .* is negative"),
     (lambda d: d["fixtures"][1]["pegs"][0].update(row=10**400), "a number with 401 digits"),
-    (lambda d: d["fixtures"][1]["pegs"][0].update(x="1"), "fixture 2 cannot be used: .* is not a finite number"),
+    (
+        lambda d: d["fixtures"][1]["pegs"][0].update(x="1"),
+        "fixture 2 cannot be used: .* is not a finite number",
+    ),
     (lambda d: d["fixtures"][1]["pegs"][0].update(x=10**400), "a number with 401 digits"),
     (lambda d: d["fixtures"][1]["pegs"][0].update(y=1e400), "not a result file: Infinity is not a number"),
     (lambda d: d["fixtures"][1]["pegs"][0].update(y=float("nan")), "not a result file: NaN is not a number"),
-    (lambda d: d["fixtures"][1]["pegs"][0].update(y=0.123), "fixture 2 has a peg whose x, y are not those of its hole"),
-    (lambda d: d["fixtures"][1]["pegs"][0].update(segment=77), "fixture 2 has a peg on a segment that does not name"),
-    (lambda d: d["fixtures"][1]["pegs"][0].update(force=0), "fixture 2 has a peg whose force is not positive"),
+    (
+        lambda d: d["fixtures"][1]["pegs"][0].update(y=0.123),
+        "fixture 2 has a peg whose x, y are not those of its hole",
+    ),
+    (
+        lambda d: d["fixtures"][1]["pegs"][0].update(segment=77),
+        "fixture 2 has a peg on a segment that does not name",
+    ),
+    (
+        lambda d: d["fixtures"][1]["pegs"][0].update(force=0),
+        "fixture 2 has a peg whose force is not positive",
+    ),
     (lambda d: d["fixtures"][4].update(quality=[]), "fixture 5 cannot be used"),
     (lambda d: d["fixtures"].__setitem__(0, None), "fixture 1 cannot be used"),
     (lambda d: d["fixtures"].__setitem__(0, []), "fixture 1 cannot be used"),
@@ -308,12 +336,21 @@ DAMAGED_PROOFS: list[tuple[Damage, str]] = [
     (lambda p: p.update(verified=1.5), r"proof\.verified cannot be used"),
     (lambda p: p.update(escalated=True), r"proof\.escalated cannot be used"),
     (lambda p: p.update(candidates="82766"), r"proof\.candidates cannot be used"),
-    (lambda p: p.update(candidates=82_767), "says 82767 candidates, but 82766 are discarded, verified or undecided"),
-    (lambda p: p.update(undecided=[]), "says 82766 candidates, but 82764 are discarded, verified or undecided"),
+    (
+        lambda p: p.update(candidates=82_767),
+        "says 82767 candidates, but 82766 are discarded, verified or undecided",
+    ),
+    (
+        lambda p: p.update(undecided=[]),
+        "says 82766 candidates, but 82764 are discarded, verified or undecided",
+    ),
     (lambda p: p.update(undecided={}), r"proof\.undecided cannot be used"),
     (lambda p: p["undecided"][1].pop("reason"), r"the key proof\.undecided\.1\.reason is missing"),
     (lambda p: p["undecided"][1].update(reason=""), r"proof\.undecided\.1\.reason cannot be used"),
-    (lambda p: p["undecided"][1].update(type="III"), "undecided candidate 2 of the proof is not of type I or II"),
+    (
+        lambda p: p["undecided"][1].update(type="III"),
+        "undecided candidate 2 of the proof is not of type I or II",
+    ),
     (lambda p: p["undecided"][1]["rows"].pop(), r"proof\.undecided\.1\.rows cannot be used"),
     (lambda p: p["undecided"][1]["columns"].append(0), r"proof\.undecided\.1\.columns cannot be used"),
     (lambda p: p["undecided"][0].update(theta_deg=360), r"proof\.undecided\.0\.theta_deg cannot be used"),
@@ -384,6 +421,8 @@ def test_the_fit_of_the_dowels_survives_the_round_trip(tmp_path: Path) -> None:
     """What a named vise says of its pins and their holes is what the sheet of the result tells; None stays None."""
     for fit in (preset("plate-20mm").fit, None):
         result = fake_result(2)
-        result = attrs.evolve(result, query=attrs.evolve(result.query, tolerance=Tolerance(0.0145, 0.02, fit)))
+        result = attrs.evolve(
+            result, query=attrs.evolve(result.query, tolerance=Tolerance(0.0145, 0.02, fit))
+        )
         write_result(result, tmp_path / "r.json")
         assert read_result(tmp_path / "r.json").query.tolerance == result.query.tolerance

@@ -21,7 +21,9 @@ from workhold.files.part.load import read_workpiece
 @pytest.fixture(scope="module")
 def plate(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """The file of a plate with round corners and two holes."""
-    shape = cut(filleted(box(60, 40, 20), 5, upright), cylinder(6, 40, (20, 20, -5)), box(10, 10, 30, (35, 15, -1)))
+    shape = cut(
+        filleted(box(60, 40, 20), 5, upright), cylinder(6, 40, (20, 20, -5)), box(10, 10, 30, (35, 15, -1))
+    )
     return write_step(tmp_path_factory.mktemp("step") / "plate.step", shape).read_bytes()
 
 

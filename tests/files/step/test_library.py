@@ -14,7 +14,7 @@ from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.files.step.library import REQUIREMENT
 from workhold.files.step.reader import read_step
-from workhold.files.step.setup import write_setup_step
+from workhold.files.step.writer import write_setup_step
 
 STEP = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n"
 NO_EXTRA = f"a library that is not installed: pip install '{REQUIREMENT}'."

@@ -10,10 +10,10 @@ import pytest
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from workhold.errors import InputError
-from workhold.files.step.plates import plates_step, write_plates_step
 from workhold.files.step.solids import read_solids
+from workhold.files.step.writer import plates_step, write_plates_step
 from workhold.fixels.vise import Vise
-from workhold.model.jaw_plate import Bolts, jaw_plates
+from workhold.model.dowels import Bolts, jaw_plates
 
 PLATES = jaw_plates(
     Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4),

@@ -91,7 +91,10 @@ def test_a_plate_with_rounded_corners_and_holes_is_exact(tmp_path: Path) -> None
     ("tool", "kind"),
     [
         (cylinder(4, 30, (45, 20, 12)), "round wall of radius 4 mm at heights 12 to 20 mm, up to 19 mm"),
-        (cylinder(3, 60, (30, -5, 8), (0, 1, 0)), "cylinder of radius 3 mm across at heights 5 to 11 mm, up to 20 mm"),
+        (
+            cylinder(3, 60, (30, -5, 8), (0, 1, 0)),
+            "cylinder of radius 3 mm across at heights 5 to 11 mm, up to 20 mm",
+        ),
         (box(20, 10, 10, (20, 15, 15)), "wall at heights 15 to 20 mm (4 of them), up to 20 mm"),
     ],
 )
@@ -105,7 +108,10 @@ def test_what_is_cut_within_the_silhouette_leaves_it_alone(tmp_path: Path, tool:
 def test_the_smallest_section_is_told(tmp_path: Path) -> None:
     """A blind hole of radius 4 takes 16 pi = 50.3 mm² from the sections above its floor."""
     loaded = read(tmp_path, cut(plate(), cylinder(4, 30, (45, 20, 12))))
-    assert "section at heights 0 to 12 mm (the section at height 16 mm has 50.3 mm² (2.1 %) less)" in loaded.remarks[1]
+    assert (
+        "section at heights 0 to 12 mm (the section at height 16 mm has 50.3 mm² (2.1 %) less)"
+        in loaded.remarks[1]
+    )
 
 
 @pytest.mark.parametrize("maker", [chamfered, filleted])
@@ -156,7 +162,9 @@ def test_a_countersunk_hole_is_as_wide_as_its_narrowest(tmp_path: Path) -> None:
     ],
     ids=["sphere", "torus", "draft to the base", "draft both ways"],
 )
-def test_the_silhouette_may_lie_where_no_layer_is(tmp_path: Path, solid: Any, circles: set[tuple[float, ...]]) -> None:
+def test_the_silhouette_may_lie_where_no_layer_is(
+    tmp_path: Path, solid: Any, circles: set[tuple[float, ...]]
+) -> None:
     """Equators, bases and parting lines are found exactly."""
     assert lines_and_circles(read(tmp_path, solid()).workpiece) == (set(), circles)
 
@@ -200,7 +208,9 @@ def test_a_lying_cylinder_is_a_rectangle_seen_from_above_and_a_circle_along_its_
 
 
 @pytest.mark.parametrize(("axis", "corner"), [("x", (2, 3)), ("y", (3, 1)), ("z", (1, 2))])
-def test_an_axis_is_looked_at_from_its_far_end(tmp_path: Path, axis: str, corner: tuple[float, float]) -> None:
+def test_an_axis_is_looked_at_from_its_far_end(
+    tmp_path: Path, axis: str, corner: tuple[float, float]
+) -> None:
     """The box from (1, 2, 3) to (11, 22, 33): x and y of the outline are y, z of the file, or z, x, or x, y."""
     sizes = {"x": (20, 30), "y": (30, 10), "z": (10, 20)}[axis]
     loaded = read(tmp_path, box(10, 20, 30, (1, 2, 3)), axis=axis)
@@ -223,7 +233,11 @@ def test_a_section_at_a_height_is_the_outline_there(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("height", "said"),
-    [(0.0, "is not within the part, which is 20 mm high"), (20.5, "is not within"), (12.0, "lies a level face")],
+    [
+        (0.0, "is not within the part, which is 20 mm high"),
+        (20.5, "is not within"),
+        (12.0, "lies a level face"),
+    ],
 )
 def test_heights_without_a_section_are_refused(tmp_path: Path, height: float, said: str) -> None:
     """Outside the part, and at a level face."""
@@ -261,9 +275,15 @@ def test_placements_of_assemblies_count(tmp_path: Path) -> None:
     turn.SetTranslationPart(gp_Vec(100, 50, 7))
     moved = BRepBuilderAPI_Transform(plate(), turn, False).Shape()
     loaded = read(tmp_path, moved)
-    centers = {(round(a.center[0], 9), round(a.center[1], 9)) for a in loaded.workpiece.segments if isinstance(a, Arc)}
+    centers = {
+        (round(a.center[0], 9), round(a.center[1], 9))
+        for a in loaded.workpiece.segments
+        if isinstance(a, Arc)
+    }
     c, s = sqrt(3) / 2, 0.5
-    expected = {(round(100 + c * x - s * y, 9), round(50 + s * x + c * y, 9)) for x in (5, 55) for y in (5, 35)}
+    expected = {
+        (round(100 + c * x - s * y, 9), round(50 + s * x + c * y, 9)) for x in (5, 55) for y in (5, 35)
+    }
     assert centers == expected
     assert loaded.remarks == ()
 
@@ -301,7 +321,8 @@ def test_free_form_walls_are_refused_without_a_fit(tmp_path: Path) -> None:
     """The message names the curve and a fit that would do."""
     said = refusal(tmp_path, bezier_wall())
     assert re.search(
-        r"curved edge 0 of border 0 at \(60, 40\) is a true curve.*give fit 0\.01 to put \d+ lines and arcs", said
+        r"curved edge 0 of border 0 at \(60, 40\) is a true curve.*give fit 0\.01 to put \d+ lines and arcs",
+        said,
     )
     assert "layer" not in said
 

@@ -26,11 +26,11 @@ from plate_examples import WAYS, on_plate
 
 from workhold import design
 from workhold.errors import InputError
-from workhold.files.step.setup import setup_step, write_setup_step
 from workhold.files.step.solids import Solid, read_solids
+from workhold.files.step.writer import setup_step, write_setup_step
 from workhold.fixels.vise import Vise
 from workhold.model.fixture import Fixture, Peg, Pose
-from workhold.model.part_zero import part_zero
+from workhold.model.setup import part_zero
 from workhold.model.workpiece import Workpiece
 
 VISE = Vise(pitch=(10, 12), columns=2, peg_radius=3, row_offset=2.5)
@@ -47,7 +47,9 @@ LYING_AREA = 64 * 40 - 8 * 11 - 56 * 3 / 2 + 16 * pi - 25 * pi - 6.25**2 / 2 * (
 def part(pose: Pose, name: str = "part") -> Workpiece:
     """The part in its own coordinates."""
     turn = exp(-1j * radians(pose.theta_deg))
-    loops = [[(turn * (complex(x, y) - complex(pose.x, pose.y)), bulge) for x, y, bulge in loop] for loop in LYING]
+    loops = [
+        [(turn * (complex(x, y) - complex(pose.x, pose.y)), bulge) for x, y, bulge in loop] for loop in LYING
+    ]
     return Workpiece.from_loops(name, [[(z.real, z.imag, bulge) for z, bulge in loop] for loop in loops])
 
 
@@ -117,7 +119,14 @@ def test_bodies_are_named_by_what_they_are() -> None:
     text = setup_step(fixture(POSES[1]), part(POSES[1], "Joe's bracket"), VISE).decode()
     names = re.findall(r"PRODUCT\('((?:[^']|'')*)'", text)
     pegs = ["peg L-A1", "peg L-A3", "peg R-B1", "peg R-B3"]
-    assert names == ["Joe''s bracket set-up", "Joe''s bracket", *pegs, "left jaw", "right jaw", "part zero X0 Y0"]
+    assert names == [
+        "Joe''s bracket set-up",
+        "Joe''s bracket",
+        *pegs,
+        "left jaw",
+        "right jaw",
+        "part zero X0 Y0",
+    ]
     assert "SI_UNIT(.MILLI.,.METRE.)" in text
 
 

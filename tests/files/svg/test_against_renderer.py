@@ -50,9 +50,12 @@ def path_data(chain: Chain) -> str:
 def redrawn(drawing: Drawing, attributes: str) -> str:
     """What was read as an SVG drawing: a path for each element."""
     paths = [
-        f'<path d="{" ".join(map(path_data, chains))}"/>' for _, chains in groupby(drawing.chains, lambda c: c.entity)
+        f'<path d="{" ".join(map(path_data, chains))}"/>'
+        for _, chains in groupby(drawing.chains, lambda c: c.entity)
     ]
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 {SIZE} {SIZE}">'
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 {SIZE} {SIZE}">'
+    )
     return f"{head}<g {attributes}>{''.join(paths)}</g></svg>"
 
 
@@ -77,7 +80,10 @@ def disagreement(case: RandomDrawing, drawing: Drawing) -> str:
         return f"{core.sum()} pixels" if (~grown(~(solid ^ read))).any() else ""
     thin = picture(redrawn(drawing, 'fill="none" stroke="#000" stroke-width="0.5" stroke-linejoin="round"'))
     thick = picture(
-        redrawn(drawing, 'fill="none" stroke="#000" stroke-width="5" stroke-linejoin="round" stroke-linecap="square"')
+        redrawn(
+            drawing,
+            'fill="none" stroke="#000" stroke-width="5" stroke-linejoin="round" stroke-linecap="square"',
+        )
     )
     # Strokes beyond the page leave no ink for those at its border to lie on.
     inner = slice(3, -3)
@@ -121,7 +127,9 @@ def nested_rings(chance: random.Random, x: float, y: float, radius: float) -> st
     if radius > 6:
         for turn in chance.sample(range(3), chance.randint(0, 3)):
             angle, inner = 2.1 * turn, radius * chance.uniform(0.2, 0.42)
-            data.append(nested_rings(chance, x + 0.5 * radius * cos(angle), y + 0.5 * radius * sin(angle), inner))
+            data.append(
+                nested_rings(chance, x + 0.5 * radius * cos(angle), y + 0.5 * radius * sin(angle), inner)
+            )
     chance.shuffle(data)
     return " ".join(data)
 

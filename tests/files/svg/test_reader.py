@@ -51,13 +51,20 @@ def test_y_points_up_and_the_page_corner_is_the_origin(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("unit", "mm"), [("mm", 1), ("inch", 25.4), ("cm", 10)])
 def test_files_without_physical_size_need_a_unit(tmp_path: Path, unit: str, mm: float) -> None:
     """Pixels are no length: without width and height in mm the user says what a user unit is."""
-    for root in ("", 'width="100" height="50"', 'width="100px" height="50px" viewBox="0 0 100 50"', 'width="100%"'):
+    for root in (
+        "",
+        'width="100" height="50"',
+        'width="100px" height="50px" viewBox="0 0 100 50"',
+        'width="100%"',
+    ):
         with pytest.raises(
             InputError,
             match=r"drawn\.svg: the drawing has no physical size.*: it is 50 mm wide, or 50 in = 1,270 mm; say which",
         ):
             read_svg(tmp_path, D, root)
-        assert area(read_svg(tmp_path, D, root, unit=unit).workpiece) == pytest.approx((800 + 50 * pi) * mm**2)
+        assert area(read_svg(tmp_path, D, root, unit=unit).workpiece) == pytest.approx(
+            (800 + 50 * pi) * mm**2
+        )
 
 
 def test_a_given_unit_overrides_the_size(tmp_path: Path) -> None:
@@ -70,9 +77,7 @@ def test_a_given_unit_overrides_the_size(tmp_path: Path) -> None:
 
 def test_circles_and_round_corners_are_arcs(tmp_path: Path) -> None:
     """A rect with corner radius r loses (4 - pi) r²; circles are two halves; an ellipse of equal radii is a circle."""
-    body = (
-        '<rect width="60" height="40" rx="8"/><circle cx="20" cy="20" r="5"/><ellipse cx="40" cy="20" rx="4" ry="4"/>'
-    )
+    body = '<rect width="60" height="40" rx="8"/><circle cx="20" cy="20" r="5"/><ellipse cx="40" cy="20" rx="4" ry="4"/>'
     part = read_svg(tmp_path, body, MM).workpiece
     assert area(part) == pytest.approx(2400 - (4 - pi) * 64 - 41 * pi, rel=1e-12)
     assert [len(loop) for loop in part.loops] == [8, 2, 2]
@@ -137,7 +142,9 @@ def test_a_loop_that_is_painted_over_is_reported(tmp_path: Path) -> None:
 
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(angle=st.floats(-360, 360), scale=st.floats(0.2, 5), mirror=st.booleans(), x=st.floats(-50, 50))
-def test_transforms_that_keep_circles(tmp_path: Path, angle: float, scale: float, mirror: bool, x: float) -> None:
+def test_transforms_that_keep_circles(
+    tmp_path: Path, angle: float, scale: float, mirror: bool, x: float
+) -> None:
     """Groups, use and nested transforms compose: area times scale², and a known point lands where it must."""
     sy = -scale if mirror else scale
     body = (
@@ -203,9 +210,7 @@ def test_what_is_not_shown_does_not_count(tmp_path: Path, hidden: str) -> None:
 
 def test_text_and_images_are_ignored_and_counted(tmp_path: Path) -> None:
     """Foreign elements pass in silence, text and images are counted."""
-    body = (
-        f'{D}<text>hello</text><image/><text/><x:y xmlns:x="u"><rect width="900" height="900"/></x:y><title>t</title>'
-    )
+    body = f'{D}<text>hello</text><image/><text/><x:y xmlns:x="u"><rect width="900" height="900"/></x:y><title>t</title>'
     loaded = read_svg(tmp_path, body, MM)
     assert area(loaded.workpiece) == pytest.approx(800 + 50 * pi)
     assert loaded.remarks == ("Ignored elements that are no outline: 1 image, 2 text.",)
@@ -230,7 +235,10 @@ def test_text_and_images_are_ignored_and_counted(tmp_path: Path) -> None:
         ('<g id="g" transform="spin(3)"><rect width="5" height="5"/></g>', "g 'g' has the transform 'spin"),
         ('<g id="g" transform="rotate(3"><rect width="5" height="5"/></g>', "g 'g' has the transform"),
         ('<g id="g" transform="rotate(1e999)"><rect width="5" height="5"/></g>', "number that is too large"),
-        ('<g transform="scale(0)"><rect id="r" width="5" height="5"/></g>', "rect 'r' has a transform that crushes it"),
+        (
+            '<g transform="scale(0)"><rect id="r" width="5" height="5"/></g>',
+            "rect 'r' has a transform that crushes it",
+        ),
         ('<use id="u" href="#gone"/>', "use 'u' shows '#gone', which is not in the file"),
         ('<use id="u" href="other.svg#x"/>', "not in the file"),
         ('<g id="a"><use id="u" href="#a"/></g>', "use 'u' of use 'u' shows itself"),

@@ -39,7 +39,10 @@ def outlines(body: str, root: str = MM) -> list[object]:
             f'{R} style="translate:5px 2px;rotate:90deg;scale:50% 2"/>',
             f'{R} transform="translate(5 2) rotate(90) scale(.5 2)"/>',
         ),
-        (f"<style>rect{{transform:skew(10deg) scaleX(-1)}}</style>{R}/>", f'{R} transform="skewX(10) scale(-1 1)"/>'),
+        (
+            f"<style>rect{{transform:skew(10deg) scaleX(-1)}}</style>{R}/>",
+            f'{R} transform="skewX(10) scale(-1 1)"/>',
+        ),
         (f'{R} transform="skewX(45)"/>', f'{R} transform="matrix(1 0 1 1 0 0)"/>'),
         (f'{R} transform="skewY(45)"/>', f'{R} transform="matrix(1 1 0 1 0 0)"/>'),
         (f'{R} style="transform:skew(45deg,-45deg)"/>', f'{R} transform="matrix(1 -1 1 1 0 0)"/>'),
@@ -47,14 +50,20 @@ def outlines(body: str, root: str = MM) -> list[object]:
             f'{R} transform="scale(2)" style="transform-origin:10px 20px"/>',
             f'{R} transform="matrix(2 0 0 2 -10 -20)"/>',
         ),
-        (f'{R} transform="scale(2)" transform-origin="right 20%"/>', f'{R} transform="matrix(2 0 0 2 -100 -20)"/>'),
+        (
+            f'{R} transform="scale(2)" transform-origin="right 20%"/>',
+            f'{R} transform="matrix(2 0 0 2 -100 -20)"/>',
+        ),
         (
             f'{R} style="x:3px;y:4px;width:5mm;height:25%;rx:1px"/>',
             '<rect x="3" y="4" width="18.897637795275593" height="25" rx="1"/>',
         ),
         ('<circle cx="9" r="5" style="cx:10px;cy:12px;r:4px"/>', '<circle cx="10" cy="12" r="4"/>'),
         ('<path d="M0 0h9v9z" style="d:path(\'M1 2h9v9z\')"/>', '<path d="M1 2h9v9z"/>'),
-        ('<rect width="50%" height="10%"/><circle r="10%"/>', '<rect width="50" height="10"/><circle r="10"/>'),
+        (
+            '<rect width="50%" height="10%"/><circle r="10%"/>',
+            '<rect width="50" height="10"/><circle r="10"/>',
+        ),
         ('<rect width="40Q" height="1IN"/>', '<rect width="1cm" height="96"/>'),
         ('<ellipse cx="5" cy="6" ry="4"/>', '<circle cx="5" cy="6" r="4"/>'),
         ('<path d="M10 10H50A0 5 0 0 1 50 50H10Z"/>', '<path d="M10 10H50V50H10Z"/>'),
@@ -85,13 +94,19 @@ def outlines(body: str, root: str = MM) -> list[object]:
             f'{R}/>{R} transform="translate(1)"/><rect width="9" height="9"/>',
         ),
         (f'{CLIP}<g clip-path="url(#c)">{R}/>{SEEN}</g>', f"{R}/>"),
-        (f'<clipPath id="c"><path d="M9 9L90 9L90 90L9 90Z"/></clipPath>{R} style="clip-path:url(#c)"/>', f"{R}/>"),
+        (
+            f'<clipPath id="c"><path d="M9 9L90 9L90 90L9 90Z"/></clipPath>{R} style="clip-path:url(#c)"/>',
+            f"{R}/>",
+        ),
         (f'<switch><rect requiredExtensions="x" width="5" height="5"/>{R}/>{SEEN}</switch>', f"{R}/>"),
         (f'{SEEN}<g requiredExtensions="">{R}/></g>', SEEN),
         (f'<g visibility="hidden">{R}/><g style="visibility:visible">{SEEN}</g></g>', SEEN),
         (f'<g display="none" style="display:inline">{SEEN}</g>', SEEN),
         (f'{SEEN}{R} style="fill:none;fill:nonsense"/>', SEEN),
-        (f'<style>rect{{display:none}} #a{{display:inline}}</style>{R}/><g>{SEEN[:5]} id="a"{SEEN[5:]}</g>', SEEN),
+        (
+            f'<style>rect{{display:none}} #a{{display:inline}}</style>{R}/><g>{SEEN[:5]} id="a"{SEEN[5:]}</g>',
+            SEEN,
+        ),
         (f'<style>rect{{fill:red !important}}</style>{SEEN[:5]} style="fill:none"{SEEN[5:]}', SEEN),
         (f"<style>@media screen{{#r{{opacity:0}}}} @font-face{{src:url(x)}}</style>{R}/>{SEEN}", SEEN),
         (f'{SEEN}<line x1="1" y1="1" x2="9" y2="9"/>', SEEN),
@@ -130,7 +145,9 @@ def test_one_drawing_in_two_writings(body: str, plain: str) -> None:
 )
 def test_invisible_shapes_do_not_count(hidden: str) -> None:
     """However it is said: by attributes, style, the group, the root, a class, an id, or among descendants."""
-    attributes = " ".join(f'{name}="{value}"' for name, _, value in (d.partition(":") for d in hidden.split(";")))
+    attributes = " ".join(
+        f'{name}="{value}"' for name, _, value in (d.partition(":") for d in hidden.split(";"))
+    )
     for body in (
         f"{R} {attributes}/>",
         f'{R} style="{hidden}"/>',
@@ -177,16 +194,31 @@ def test_strokes_count_however_thin() -> None:
             f'{CLIP}<svg id="s" clip-path="url(#c)">{R}/></svg>',
             "svg 's' has a clip-path, which programs place differently",
         ),
-        (f'<svg id="s" transform="scale(2)">{R}/></svg>', "svg 's' has a transform, which programs draw differently"),
+        (
+            f'<svg id="s" transform="scale(2)">{R}/></svg>',
+            "svg 's' has a transform, which programs draw differently",
+        ),
         (
             '<symbol id="s" viewBox="0 0 9 9" width="9"/><use id="u" href="#s"/>',
             "symbol 's' of use 'u' has a place or size",
         ),
-        (f'{R} style="transform:translate(5, 5)"/>', r"rect 'r' has the transform 'translate\(5, 5\)', .* px"),
+        (
+            f'{R} style="transform:translate(5, 5)"/>',
+            r"rect 'r' has the transform 'translate\(5, 5\)', .* px",
+        ),
         (f'{R} style="transform:rotateX(5deg)"/>', "rect 'r' has the transform 'rotateX"),
-        (f'{R} transform="scale(2)" style="transform-box:fill-box"/>', "rect 'r' has the transform-box 'fill-box'"),
-        (f'{R} transform="scale(2)" style="transform-origin:1em 2em"/>', "rect 'r' has the transform-origin '1em 2em'"),
-        (f'{R} style="width:5"/>', "rect 'r' has width=\"5\", which is not a plain length: write a number with px"),
+        (
+            f'{R} transform="scale(2)" style="transform-box:fill-box"/>',
+            "rect 'r' has the transform-box 'fill-box'",
+        ),
+        (
+            f'{R} transform="scale(2)" style="transform-origin:1em 2em"/>',
+            "rect 'r' has the transform-origin '1em 2em'",
+        ),
+        (
+            f'{R} style="width:5"/>',
+            "rect 'r' has width=\"5\", which is not a plain length: write a number with px",
+        ),
         (f'{R} style="width:calc(5px + 1%)"/>', r"rect 'r' has width=\"calc\(5px \+ 1%\)\""),
         (f'{R} style="fill:var(--a)"/>', r"rect 'r' has fill: var\(--a\), which is not read"),
         (f'{R} style="display:contents"/>', "rect 'r' has display: contents"),
@@ -240,7 +272,10 @@ def test_markers_and_texts_are_reported() -> None:
     ("content", "words"),
     [
         (b"\x1f\x8b\x08", "compressed"),
-        (b'<?xml-stylesheet href="a.css"?><svg xmlns="http://www.w3.org/2000/svg"/>', "styles from another file"),
+        (
+            b'<?xml-stylesheet href="a.css"?><svg xmlns="http://www.w3.org/2000/svg"/>',
+            "styles from another file",
+        ),
         (b'<svg xmlns="http://www.w3.org/2001/svg"/>', "not an SVG drawing"),
         (
             b'<!DOCTYPE svg SYSTEM "svg.dtd"><svg xmlns="http://www.w3.org/2000/svg"><rect width="&w;"/></svg>',

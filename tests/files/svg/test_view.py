@@ -5,12 +5,14 @@ from __future__ import annotations
 import pytest
 
 from workhold.files.outline.chain import Chain
-from workhold.files.svg.view import Window
+from workhold.files.svg.viewport import Window
 
 SQUARE = Window(((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)), "the clip-path")
 
 
-@pytest.mark.parametrize("window", [SQUARE, Window(SQUARE.corners[::-1], SQUARE.label)], ids=["turning left", "right"])
+@pytest.mark.parametrize(
+    "window", [SQUARE, Window(SQUARE.corners[::-1], SQUARE.label)], ids=["turning left", "right"]
+)
 @pytest.mark.parametrize(
     ("low", "high", "shown"),
     [

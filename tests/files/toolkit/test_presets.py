@@ -11,12 +11,11 @@ from typing import Any
 import pytest
 
 from workhold.errors import InputError
-from workhold.files.toolkit.dowels import dowel_series, dowel_size
-from workhold.files.toolkit.form import checked
-from workhold.files.toolkit.presets import load_toolkit, preset_names
+from workhold.files.input_forms import checked_toolkit
+from workhold.files.toolkit_file import dowel_series, dowel_size, load_toolkit, preset_names
 from workhold.fixels.plate import Plate
 from workhold.fixels.vise import Vise
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import Tolerance
 
 OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
 
@@ -39,7 +38,7 @@ def test_presets_are_toolkits_with_a_source(name: str) -> None:
     assert isinstance(loaded.toolkit, Vise) == loaded.title.startswith(("vise, ", "the paper's"))
     assert loaded.toolkit.rows is None
     content = tomllib.loads((files("workhold") / "data" / "toolkits" / f"{name}.toml").read_text())
-    assert checked(content) == content
+    assert checked_toolkit(content) == content
     assert 0 < loaded.tolerance.peg < 0.2
     assert loaded.tolerance.face == Tolerance().face
 
@@ -180,7 +179,10 @@ BAD = [
     ({"dowel": '"ISO 2338 m6"'}, "the pin is given without its hole"),
     ({"hole_diameter": "[6, 6.012]"}, "hole_diameter is given without the pin"),
     ({"hole_position": "0.02"}, "hole_position is given without the pin"),
-    ({"pin_diameter": "[3, 3.01]", "hole_diameter": "[6, 6.01]"}, "pin_diameter 3 to 3.01 mm is not that of a peg"),
+    (
+        {"pin_diameter": "[3, 3.01]", "hole_diameter": "[6, 6.01]"},
+        "pin_diameter 3 to 3.01 mm is not that of a peg",
+    ),
     ({"dowel": '"ASME B18.8.5M"', "hole_position": "-1"}, "hole_position -1 is negative"),
     ({"peg_tolerance": "-1"}, "peg tolerance -1.0 is not a length"),
     ({"pitch": ""}, "the file is not valid TOML: invalid value"),

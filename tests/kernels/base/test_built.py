@@ -20,7 +20,7 @@ import pytest
 
 import workhold
 from workhold.errors import InputError
-from workhold.kernels.base import built, compiling, distance, sources
+from workhold.kernels.base import built, compiling, distance
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.preparing import PARTS, prepared
 
@@ -34,9 +34,11 @@ POINTS = np.random.default_rng(1).uniform(-20.0, 20.0, (200, 2))
 def library(tmp_path_factory) -> built.Library:
     """A library of the small kernels, built as that of all is."""
     folder = tmp_path_factory.mktemp("library")
-    done = subprocess.run([sys.executable, BUILDER, folder, "distances"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, BUILDER, folder, "distances"], capture_output=True, text=True, check=True
+    )
     path = Path(done.stdout.strip())
-    assert path == folder / sources.library_name()
+    assert path == folder / built.library_name()
     return built.Library(path)
 
 
@@ -46,14 +48,16 @@ def door(library: built.Library, kernel: Any) -> built.Door:
 
 
 def test_the_library_tells_of_which_sources_it_is(library):
-    assert library.source_hash == sources.source_hash()
+    assert library.source_hash == built.source_hash()
     assert set(library.kernels) == {kernel.__name__ for kernel, _ in PARTS["distances"]()}
 
 
 def test_every_kernel_that_python_calls_is_compiled_ahead():
     """One that is not would be missing in the library."""
-    texts = [path.read_text() for path in sources.KERNELS.rglob("*.py")]
-    decorated = {name for text in texts for name in re.findall(r"^@compiled(?:_making_arrays)?\ndef (\w+)", text, re.M)}
+    texts = [path.read_text() for path in built.KERNELS.rglob("*.py")]
+    decorated = {
+        name for text in texts for name in re.findall(r"^@compiled(?:_making_arrays)?\ndef (\w+)", text, re.M)
+    }
     assert decorated == {kernel.__name__ for calls in PARTS.values() for kernel, _ in calls()}
 
 
@@ -117,7 +121,10 @@ def test_arrays_that_nobody_looks_at_are_given_back(library):
         ((0.0, 0.0), "takes 3 arguments, not 2"),
         ((0.0, 0.0, SQUARE, SQUARE), "takes 3 arguments, not 4"),
         ((0.0, "0", SQUARE), "y must be float64, not str"),
-        ((0.0, 0.0, SQUARE.tolist()), "rows must be a C-contiguous array of float64 with 2 dimensions, not list"),
+        (
+            (0.0, 0.0, SQUARE.tolist()),
+            "rows must be a C-contiguous array of float64 with 2 dimensions, not list",
+        ),
         ((0.0, 0.0, SQUARE[0]), "not an array of float64 of shape (10,)"),
         ((0.0, 0.0, SQUARE[:, ::2]), "not an array of float64 of shape (4, 5), not contiguous"),
         ((0.0, 0.0, np.asfortranarray(SQUARE)), "not contiguous"),
@@ -186,7 +193,10 @@ def test_arrays_are_taken_however_they_were_made(library, make):
         (make(np.tile(POINTS, 5))[:, :2].copy(), SQUARE),
         (POINTS, make(SQUARE)),
     ):
-        assert ours(points, square).tobytes() == distance.outline_distances(points, square.view(np.ndarray)).tobytes()
+        assert (
+            ours(points, square).tobytes()
+            == distance.outline_distances(points, square.view(np.ndarray)).tobytes()
+        )
 
 
 def test_an_array_that_is_not_aligned_is_refused(library):
@@ -218,8 +228,12 @@ def test_a_kernel_is_handed_all_that_numba_knows_of_an_array(builder):
     kinds = ["ptr", "ptr", *kinds, *kinds[:7], "i1", *kinds, "double"]
     free = len(kinds)
     text = builder.taking_words("called", [*told, "float64"], kinds, free)
-    text = text.replace(f"declare i32 @{builder.OWN}", "declare i32 @unused").replace("external global", "global")
-    text = text.replace(f"@{built.KNOWN} = global [4 x ptr]", f"@{built.KNOWN} = global [4 x ptr] zeroinitializer")
+    text = text.replace(f"declare i32 @{builder.OWN}", "declare i32 @unused").replace(
+        "external global", "global"
+    )
+    text = text.replace(
+        f"@{built.KNOWN} = global [4 x ptr]", f"@{built.KNOWN} = global [4 x ptr] zeroinitializer"
+    )
     lines = [f"define i32 @{builder.OWN}({', '.join(f'{kind} %v{k}' for k, kind in enumerate(kinds))}) {{"]
     for k, kind in enumerate(kinds):
         lines.append(f"  %at{k} = getelementptr i64, ptr %v0, i64 {k}")
@@ -244,7 +258,10 @@ def test_a_kernel_is_handed_all_that_numba_knows_of_an_array(builder):
         Struct("=qqqqd").pack_into(words, 8 * (free + 1), *given)
         assert call(ctypes.addressof(words)) == (0 if is_taken else built.REFUSED)
         if is_taken:
-            arrays = [[0, 0, a.size, a.itemsize, a.ctypes.data, *a.shape, *a.strides] for a in (SQUARE, element, grid)]
+            arrays = [
+                [0, 0, a.size, a.itemsize, a.ctypes.data, *a.shape, *a.strides]
+                for a in (SQUARE, element, grid)
+            ]
             assert list(words[2 : free - 1]) == [*arrays[0], *arrays[1], 1, *arrays[2]]
             assert ctypes.c_double.from_buffer(words, 8 * (free - 1)).value == number
 
@@ -252,7 +269,11 @@ def test_a_kernel_is_handed_all_that_numba_knows_of_an_array(builder):
 @pytest.mark.parametrize("moved", sorted(built.HEADER))
 def test_another_python_or_numpy_is_told_apart(library, monkeypatch, moved):
     """One that keeps anything of an array elsewhere uses no library, as one that is no CPython."""
-    elsewhere = {"shape": built.HEADER["strides"], "strides": built.HEADER["shape"], "type": built.HEADER["data"]}
+    elsewhere = {
+        "shape": built.HEADER["strides"],
+        "strides": built.HEADER["shape"],
+        "type": built.HEADER["data"],
+    }
     monkeypatch.setitem(built.HEADER, moved, elsewhere.get(moved, built.HEADER["type"]))
     with pytest.raises(OSError, match="in another way"):
         built.Library(Path(library.code._name))
@@ -305,7 +326,7 @@ def test_a_library_that_does_not_fit_is_not_used(library, damage, tmp_path, monk
     """Without numba that is one sentence with a remedy; with it kernels are compiled on first use."""
     monkeypatch.setattr(compiling, "MODE", "")
     monkeypatch.setattr(compiling, "KERNELS", tmp_path)
-    path = tmp_path / sources.library_name()
+    path = tmp_path / built.library_name()
     if damage == "no library":
         path.write_text("no library")
     elif damage == "other sources":

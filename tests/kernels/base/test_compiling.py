@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import workhold
-from workhold.kernels.base import compiling, sources
+from workhold.kernels.base import built, compiling
 
 # What compiling takes of the kernels' base.
 BASE = ("__init__", "built", "compiling", "feature", "lean", "shallow", "sources", "storing")
@@ -113,17 +113,17 @@ def test_the_hash_covers_every_kernel_file(tmp_path, monkeypatch):
     for name in ("base/compiling.py", "a.py", "other/b.py", "../conventions.py"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text(f"# {name}")
-    monkeypatch.setattr(sources, "KERNELS", package)
-    hashes = [sources.source_hash(), sources.source_hash()]
+    monkeypatch.setattr(built, "KERNELS", package)
+    hashes = [built.source_hash(), built.source_hash()]
     assert hashes[0] == hashes[1]
     (package / "other" / "b.py").write_text("# b.py changed")
-    hashes.append(sources.source_hash())
+    hashes.append(built.source_hash())
     (package / "c.py").write_text("")
-    hashes.append(sources.source_hash())
+    hashes.append(built.source_hash())
     (package / "c.py").rename(package / "other" / "c.py")
-    hashes.append(sources.source_hash())
+    hashes.append(built.source_hash())
     (tmp_path / "conventions.py").write_text("# another number that decides")
-    hashes.append(sources.source_hash())
+    hashes.append(built.source_hash())
     assert len(set(hashes)) == 5
 
 

@@ -46,7 +46,9 @@ def test_distance_and_inside_agree_with_a_fine_polygon(part, seed):
     rows = segment_rows(part.segments)
     chains = polygon(part.segments)
     random = np.random.default_rng(seed)
-    sagitta = max((s.length**2 / STEPS**2 / 8 / max(getattr(s, "radius", 1e9), 1e-9) for s in part.segments), default=0)
+    sagitta = max(
+        (s.length**2 / STEPS**2 / 8 / max(getattr(s, "radius", 1e9), 1e-9) for s in part.segments), default=0
+    )
     slack = 2 * sagitta + 1e-9
     points = random.uniform(-70, 70, (12, 2))
     distances = outline_distances(points, rows)

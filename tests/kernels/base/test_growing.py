@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from workhold.kernels.base.growing import with_room
+from workhold.kernels.base.arrays import with_room
 
 
 def test_room_is_made_when_there_is_none_left():

@@ -78,7 +78,9 @@ def test_root_contains_the_exact_range(a):
     assert low >= 0 and Fraction(low) ** 2 <= p and q <= Fraction(high) ** 2
 
 
-@given(st.floats(-50, 50), st.one_of(st.floats(0, 1e-6), st.floats(0, 8)), st.lists(st.floats(0, 1), max_size=20))
+@given(
+    st.floats(-50, 50), st.one_of(st.floats(0, 1e-6), st.floats(0, 8)), st.lists(st.floats(0, 1), max_size=20)
+)
 def test_sine_and_cosine_contain_their_values(start, width, places):
     """cos x and sin x lie in cos [X] and sin [X] for x anywhere in X, over many turns."""
     box = (start, start + width)

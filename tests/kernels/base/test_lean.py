@@ -13,7 +13,13 @@ from numba.core.runtime import _nrt_python
 from numba.core.runtime.nrt import rtsys
 
 from workhold.kernels.base import compiling
-from workhold.kernels.base.compiling import MAKING_ARRAYS, NO_CALLBACK, ONLY_INNER, WITHOUT_COUNTS, lean_compiler
+from workhold.kernels.base.compiling import (
+    MAKING_ARRAYS,
+    NO_CALLBACK,
+    ONLY_INNER,
+    WITHOUT_COUNTS,
+    lean_compiler,
+)
 from workhold.kernels.base.lean import InnerCode, InnerCompiler, OuterCode, OuterCompiler
 
 Compiler = Callable[[Callable[..., Any]], Any]
@@ -78,7 +84,9 @@ def test_only_what_python_calls_becomes_machine_code(lean):
         kernel(*arguments)
         library = kernel.overloads[kernel.signatures[0]].library
         assert isinstance(library, OuterCode)
-        assert library.codegen._engine.is_symbol_defined(kernel.overloads[kernel.signatures[0]].fndesc.llvm_func_name)
+        assert library.codegen._engine.is_symbol_defined(
+            kernel.overloads[kernel.signatures[0]].fndesc.llvm_func_name
+        )
     for kernel in lean[:2]:
         (compiled,) = kernel.overloads.values()
         assert isinstance(compiled.library, InnerCode)

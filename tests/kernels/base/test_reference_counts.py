@@ -12,8 +12,8 @@ from numba.core.dispatcher import Dispatcher
 
 import workhold.kernels
 from workhold.kernels import preparing
-from workhold.kernels.crossing.three_and_one import three_and_one_cells
-from workhold.kernels.crossing.two_and_two import two_and_two_cells
+from workhold.kernels.curves.three_and_one import three_and_one_cells
+from workhold.kernels.curves.two_and_two import two_and_two_cells
 from workhold.kernels.proof.newton_kantorovich import certified
 
 # Kernels that may make arrays, where room is made for those that do the work.
@@ -84,7 +84,9 @@ def test_only_kernels_that_make_room_count_references():
             assert re.search("Array|Verdicts|Space", told) is None, name
 
 
-@pytest.mark.parametrize("kernel", [two_and_two_cells, three_and_one_cells], ids=["two and two", "three and one"])
+@pytest.mark.parametrize(
+    "kernel", [two_and_two_cells, three_and_one_cells], ids=["two and two", "three and one"]
+)
 def test_the_loops_of_a_search_count_no_references(kernel):
     """In the compiled code only kernels that make arrays count, and the outermost only outside of the pairing."""
     found = counting_functions(kernel)

@@ -12,15 +12,24 @@ from flint import arb
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from chord_examples import KINDS, SPECIAL, arc_row, curve_row, is_rounded_coincidence, line_row, random_ranges, turn_at
+from chord_examples import (
+    KINDS,
+    SPECIAL,
+    arc_row,
+    curve_row,
+    is_rounded_coincidence,
+    line_row,
+    random_ranges,
+    turn_at,
+)
 from exact_chords import ExactChord, dot, exact_chord, exact_distance, exactly, minus, within
 from strategies import seeds
 from workhold.conventions import EXACT
 from workhold.kernels.chord.coincidences import CONCENTRIC, NONE, is_regular
-from workhold.kernels.chord.discs import chord_tail, tail_disc, tail_radius, value_disc
+from workhold.kernels.chord.columns import BACKWARD_ERROR, COINCIDENCE
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state, curve_value
 from workhold.kernels.chord.intervals import chord_intervals
-from workhold.kernels.curves.columns import BACKWARD_ERROR, COINCIDENCE
+from workhold.kernels.curves.piece_bounds import chord_tail, tail_disc, tail_radius, value_disc
 
 kinds = st.tuples(st.sampled_from(KINDS), st.sampled_from(KINDS))
 positions = kinds | st.sampled_from(SPECIAL)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from chord_examples import PAIRS, arc_row, curve_row, line_row, off_carrier, random_ranges, turn_at
-from workhold.kernels.chord.center_speeds import center_motion
 from workhold.kernels.chord.coincidences import NONE, are_one_chord_apart
+from workhold.kernels.chord.columns import COINCIDENCE
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord, chord_state, curve_value
-from workhold.kernels.curves.columns import COINCIDENCE
+from workhold.kernels.chord.stretches import center_motion
 
 
 def difference(values: np.ndarray, step: float) -> float:
@@ -125,7 +125,9 @@ def sub_range(random: Random, low: float, high: float) -> tuple[float, float]:
     """A part of a range: its width spread over six powers of ten, now and then touching an end."""
     width = (high - low) * 10 ** random.uniform(-6, 0)
     place = random.random()
-    start = low if place < 0.2 else high - width if place > 0.8 else low + random.random() * (high - low - width)
+    start = (
+        low if place < 0.2 else high - width if place > 0.8 else low + random.random() * (high - low - width)
+    )
     return max(start, low), min(start + width, high)
 
 
@@ -192,6 +194,8 @@ def test_center_motion_closes_in_on_the_speed(kinds):
             quotients = [n / x**3 for n in (low, high) for x in size]
             slack = 1e-4 * (1 + abs(speed)) + 1e-10 / step
             assert min(quotients) - slack <= speed <= max(quotients) + slack
-            assert max(quotients) - min(quotients) < 0.05 * (1 + hypot(*(difference(c, step) for c in centers.T)))
+            assert max(quotients) - min(quotients) < 0.05 * (
+                1 + hypot(*(difference(c, step) for c in centers.T))
+            )
         checked += 1
     assert checked > 20

@@ -27,9 +27,10 @@ from rounding import ROUNDED, Rounded, error_of
 from sharpness import Constant, changed, check_sharpness
 from strategies import random_row
 from workhold.conventions import EXACT
-from workhold.kernels.chord import coincidences, discs, evaluation, intervals
+from workhold.kernels.chord import coincidences, evaluation, intervals
 from workhold.kernels.chord.coincidences import NONE, are_concentric, coincidence
-from workhold.kernels.curves.columns import BACKWARD_ERROR, COINCIDENCE, KAPPA, MIDDLE
+from workhold.kernels.chord.columns import BACKWARD_ERROR, COINCIDENCE, KAPPA, MIDDLE
+from workhold.kernels.curves import piece_bounds
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Pair = tuple[Array, Array, float]
@@ -89,7 +90,9 @@ def made_chord(
             return a, b, d, branch, toward_an_end(random, low, high, -9), low, high
 
 
-def farthest(a: Array, b: Array, d: float, branch: float, directions: list[float], x: float, y: float) -> float:
+def farthest(
+    a: Array, b: Array, d: float, branch: float, directions: list[float], x: float, y: float
+) -> float:
     """How far in mm the exact tails of a chord at some directions, if it exists there, are from a point."""
     with exactly():
         chords = [exact_chord(a, b, d, arb(alpha), branch) for alpha in directions]
@@ -267,18 +270,31 @@ def tangency_rounded(kinds: tuple[str, str]) -> Callable[[Random, Kernel], float
 
 
 def of_lines(form: Kernel) -> Kernel:
-    names = {"add_event": changed(intervals.add_event), "beyond_line": changed(intervals.beyond_line, **ROUNDED)}
+    names = {
+        "add_event": changed(intervals.add_event),
+        "beyond_line": changed(intervals.beyond_line, **ROUNDED),
+    }
     return changed(form, add_pair=changed(intervals.add_pair, **names, **ROUNDED), **names, **ROUNDED)
 
 
 def of_pair(form: Kernel) -> Kernel:
-    names = {"add_event": changed(intervals.add_event), "beyond_line": changed(intervals.beyond_line, **ROUNDED)}
-    return changed(intervals.add_line_tangencies, add_pair=changed(form, **names, **ROUNDED), **names, **ROUNDED)
+    names = {
+        "add_event": changed(intervals.add_event),
+        "beyond_line": changed(intervals.beyond_line, **ROUNDED),
+    }
+    return changed(
+        intervals.add_line_tangencies, add_pair=changed(form, **names, **ROUNDED), **names, **ROUNDED
+    )
 
 
 def of_arcs(form: Kernel) -> Kernel:
-    names = {"add_event": changed(intervals.add_event), "are_one_chord_apart": intervals.are_one_chord_apart.py_func}
-    return changed(intervals.add_arc_tangencies, add_gap=changed(form, **names, **ROUNDED), **names, **ROUNDED)
+    names = {
+        "add_event": changed(intervals.add_event),
+        "are_one_chord_apart": intervals.are_one_chord_apart.py_func,
+    }
+    return changed(
+        intervals.add_arc_tangencies, add_gap=changed(form, **names, **ROUNDED), **names, **ROUNDED
+    )
 
 
 def turn_rounded(random: Random, kernel: Kernel) -> float:
@@ -375,21 +391,45 @@ CONSTANTS = [
     Constant("instant centre, 8 η", evaluation.chord_state, off_features(CENTER, CENTER_ERROR), 8.0),
     Constant("chord, 16 κη", evaluation.chord_state, off_features(CENTER, CENTER_ERROR), 16.0),
     Constant("chord, 32 half units", evaluation.backward_error, contacts_rounded, symbol="ROUNDINGS"),
-    Constant("tail radius, 5 η", discs.tail_radius, off_features_or_turned(False), 5.0),
-    Constant("tail radius, 16 κη", discs.tail_radius, off_features_or_turned(False), 16.0, 0),
-    Constant("tail radius, 16 dκ", discs.tail_radius, off_features_or_turned(True), 16.0, 1),
-    Constant("tail radius, 1.3 d", discs.tail_radius, off_features_or_turned(True), 1.3),
-    Constant("disc of lines, 1.1 e", discs.disc_radius, in_disc(two_lines), 1.1),
-    Constant("disc at a coincidence, 2.6", discs.disc_radius, in_disc(at_a_coincidence), 2.6),
-    Constant("disc from line to arc, 2 R", discs.disc_radius, in_disc(lambda r: line_and_arc(r, LINE_FIRST)), 2.0, 1),
-    Constant("disc from line to arc, 1.01", discs.disc_radius, in_disc(lambda r: line_and_arc(r, LINE_FIRST)), 1.01, 0),
-    Constant("disc from arc to line, 2 R", discs.disc_radius, in_disc(lambda r: line_and_arc(r, ARC_FIRST)), 2.0, 3),
-    Constant("disc from arc to line, 1.01", discs.disc_radius, in_disc(lambda r: line_and_arc(r, ARC_FIRST)), 1.01, 1),
-    Constant("disc of arcs, gap of 2 e", discs.arcs_radius, in_disc_with_a_small_gap, 2.0, 0),
-    Constant("disc of arcs, 2.2 R", discs.arcs_radius, in_disc(like_arcs, True), 2.2),
-    Constant("disc of arcs, e / 2", discs.arcs_radius, in_disc(two_arcs, True), 2.0, 1, times=10.0),
-    Constant("disc of arcs, 1.01", discs.arcs_radius, in_disc(two_arcs, True), 1.01),
-    Constant("disc of arcs, 1.6 e", discs.arcs_radius, in_disc(like_arcs, True), 1.6),
+    Constant("tail radius, 5 η", piece_bounds.tail_radius, off_features_or_turned(False), 5.0),
+    Constant("tail radius, 16 κη", piece_bounds.tail_radius, off_features_or_turned(False), 16.0, 0),
+    Constant("tail radius, 16 dκ", piece_bounds.tail_radius, off_features_or_turned(True), 16.0, 1),
+    Constant("tail radius, 1.3 d", piece_bounds.tail_radius, off_features_or_turned(True), 1.3),
+    Constant("disc of lines, 1.1 e", piece_bounds.disc_radius, in_disc(two_lines), 1.1),
+    Constant("disc at a coincidence, 2.6", piece_bounds.disc_radius, in_disc(at_a_coincidence), 2.6),
+    Constant(
+        "disc from line to arc, 2 R",
+        piece_bounds.disc_radius,
+        in_disc(lambda r: line_and_arc(r, LINE_FIRST)),
+        2.0,
+        1,
+    ),
+    Constant(
+        "disc from line to arc, 1.01",
+        piece_bounds.disc_radius,
+        in_disc(lambda r: line_and_arc(r, LINE_FIRST)),
+        1.01,
+        0,
+    ),
+    Constant(
+        "disc from arc to line, 2 R",
+        piece_bounds.disc_radius,
+        in_disc(lambda r: line_and_arc(r, ARC_FIRST)),
+        2.0,
+        3,
+    ),
+    Constant(
+        "disc from arc to line, 1.01",
+        piece_bounds.disc_radius,
+        in_disc(lambda r: line_and_arc(r, ARC_FIRST)),
+        1.01,
+        1,
+    ),
+    Constant("disc of arcs, gap of 2 e", piece_bounds.arcs_radius, in_disc_with_a_small_gap, 2.0, 0),
+    Constant("disc of arcs, 2.2 R", piece_bounds.arcs_radius, in_disc(like_arcs, True), 2.2),
+    Constant("disc of arcs, e / 2", piece_bounds.arcs_radius, in_disc(two_arcs, True), 2.0, 1, times=10.0),
+    Constant("disc of arcs, 1.01", piece_bounds.arcs_radius, in_disc(two_arcs, True), 1.01),
+    Constant("disc of arcs, 1.6 e", piece_bounds.arcs_radius, in_disc(like_arcs, True), 1.6),
     Constant("place on an arc, 1e-15", evaluation.valued, place_rounded, 1e-15),
     Constant("angle from a coincidence, 3e-15", coincidences.angle_box, turn_rounded, 3e-15, draws=1000),
     Constant("regular chord, 4 misfits", evaluation.regular_error, nearly_at_a_coincidence, 4.0),
@@ -400,9 +440,9 @@ CONSTANTS = [
         2.0,
         within=lambda form: changed(form, EXACT=0.0),
     ),
-    Constant("place in a disc, 1.1", discs.value_disc, within_a_disc, 1.1),
-    Constant("tail anywhere on an arc, 2.2 R", discs.chord_tail, anywhere(False), 2.2, 0, draws=50),
-    Constant("tail anywhere on a line, 1.1", discs.chord_tail, anywhere(True), 1.1, draws=50),
+    Constant("place in a disc, 1.1", piece_bounds.value_disc, within_a_disc, 1.1),
+    Constant("tail anywhere on an arc, 2.2 R", piece_bounds.chord_tail, anywhere(False), 2.2, 0, draws=50),
+    Constant("tail anywhere on a line, 1.1", piece_bounds.chord_tail, anywhere(True), 1.1, draws=50),
     Constant(
         "tangency of line and arc, 2 roundings",
         intervals.add_pair,

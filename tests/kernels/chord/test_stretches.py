@@ -13,8 +13,8 @@ from hypothesis import given
 from chord_examples import SPECIAL, any_ranges, curve_row, is_rounded_coincidence, random_ranges, turn_at
 from exact_chords import cross, dot, exact_chord, exact_speed, exactly
 from strategies import seeds
-from workhold.kernels.chord.center_speeds import center_motion, turn_size
 from workhold.kernels.chord.coincidences import NONE
+from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, FROM, LENGTH, TO
 from workhold.kernels.chord.intervals import chord_intervals
 from workhold.kernels.chord.stretches import (
     ALONG_HIGH,
@@ -32,9 +32,10 @@ from workhold.kernels.chord.stretches import (
     Y_HIGH,
     Y_LOW,
     add_stretches,
+    center_motion,
+    turn_size,
     write_stretch,
 )
-from workhold.kernels.curves.columns import BRANCH, COINCIDENCE, FROM, LENGTH, TO
 
 # The step of a central difference is not exact.
 EXACT_TO = 1e-15
@@ -192,7 +193,10 @@ def test_the_size_of_the_turn_is_enclosed_over_any_range(seed):
         turn, x, y, along, _, _ = center_motion(a, b, curve, low, high, sign)
         with exactly():
             for alpha in places(random, low, high):
-                chord, speed = exact_chord(a, b, d, arb(alpha), branch), exact_speed(a, b, d, arb(alpha), branch)
+                chord, speed = (
+                    exact_chord(a, b, d, arb(alpha), branch),
+                    exact_speed(a, b, d, arb(alpha), branch),
+                )
                 if chord is None or speed is None:
                     continue
                 detail = (a.tolist(), b.tolist(), d, branch, low, high, alpha)

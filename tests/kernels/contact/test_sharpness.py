@@ -16,8 +16,8 @@ from rounding import Rounded, error_of
 from sharpness import Constant, changed, check_sharpness
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.given import Features
-from workhold.kernels.contact import closure, rules
-from workhold.kernels.crossing import three_and_one
+from workhold.kernels.contact import rules
+from workhold.kernels.curves import three_and_one
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Kernel = Callable[..., Any]
@@ -36,9 +36,11 @@ def minors_off(turned: bool) -> Callable[[Random, Kernel], float]:
         places = [random.uniform(-pi, pi) for _ in range(4)]
         points = 1.41 * length * np.array([(cos(p), sin(p)) for p in places])
         spread, square = random.choice([0.02, 0.3, 3.0]), random.choice([0.0, pi / 2])
-        angles = [random.choice([p + square, places[0] + square]) + random.uniform(-spread, spread) for p in places]
+        angles = [
+            random.choice([p + square, places[0] + square]) + random.uniform(-spread, spread) for p in places
+        ]
         worst = 0.0
-        closure.minors(points, np.array([(cos(a), sin(a)) for a in angles]), length, null)
+        rules.minors(points, np.array([(cos(a), sin(a)) for a in angles]), length, null)
         for signs in product((-1.0, 1.0), repeat=4):
             normals = np.array([(cos(a), sin(a)) for a in angles])
             there = points.copy()
@@ -47,7 +49,7 @@ def minors_off(turned: bool) -> Callable[[Random, Kernel], float]:
                 normals = np.array([(cos(a), sin(a)) for a in tilted])
             else:
                 there += OFF * np.array(signs)[:, None] * np.stack([-normals[:, 1], normals[:, 0]], axis=1)
-            closure.minors(there, normals, length, again)
+            rules.minors(there, normals, length, again)
             worst = max(worst, np.abs(null - again).max())
         return worst / float(kernel(OFF if turned else 0.0, 0.0 if turned else OFF, length))
 
@@ -71,7 +73,7 @@ class Rows(list):  # type: ignore[type-arg]
         return list.__getitem__(self, place[0])[place[1]]
 
 
-ROUNDED_MINORS = changed(closure.minors, cross=closure.cross.py_func)
+ROUNDED_MINORS = changed(rules.minors, cross=rules.cross.py_func)
 
 
 def needed(keeps: Callable[[float], bool]) -> float:
@@ -165,9 +167,9 @@ def row_met(lines: bool) -> Callable[[Random, Kernel], float]:
 
 
 CONSTANTS = [
-    Constant("minor, 20 swing", closure.minor_band, minors_off(True), 20.0, draws=400),
-    Constant("minor, 4 away / L", closure.minor_band, minors_off(False), 4.0, draws=400),
-    Constant("minor, rounding", closure.minor_band, minors_rounded, symbol="ROUNDING"),
+    Constant("minor, 20 swing", rules.minor_band, minors_off(True), 20.0, draws=400),
+    Constant("minor, 4 away / L", rules.minor_band, minors_off(False), 4.0, draws=400),
+    Constant("minor, rounding", rules.minor_band, minors_rounded, symbol="ROUNDING"),
     Constant("contact past the end, 1.2", rules.is_within, past_the_end, 1.2),
     Constant("gap, 2 radii", rules.is_fixture, at_the_edge("gap"), 2.0, 0, draws=60),
     Constant("clamping, 3 bands", rules.is_fixture, at_the_edge("clamp"), 3.0, 0, draws=1500),

@@ -20,20 +20,38 @@ from strategies import random_outline, seeds
 from workhold import Query, Vise, Workpiece
 from workhold.contact.problem import Problem
 from workhold.conventions import GAP_SLACK
+from workhold.kernels.chord.columns import (
+    CENTER,
+    CURVE,
+    HEAD,
+    HIGH,
+    LEFTWARD_LOW,
+    LOW,
+    PIECE_LENGTH,
+    RIGHTWARD_LOW,
+    STEADY,
+    TAIL,
+    VALUE_LEAST,
+    VALUE_MOST,
+    X_MOVING,
+    X_STANDING,
+)
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
-from workhold.kernels.contact.closure import minors, outward_normal
 from workhold.kernels.contact.record import PEG_LENGTH, place_peg
-from workhold.kernels.contact.rules import is_fixture, share_a_carrier
-from workhold.kernels.crossing.roots import (
+from workhold.kernels.contact.rules import is_fixture, minors, outward_normal, share_a_carrier
+from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
+from workhold.kernels.curves.pieces import cell_pieces
+from workhold.kernels.curves.roots import (
     MOST_ROOTS,
     ROOT_PSI,
     ROOT_RADIUS,
     STACK_DEPTH,
     STACK_LENGTH,
+    TRIPLE_ROWS,
     crossings,
     may_meet,
 )
-from workhold.kernels.crossing.three_and_one import (
+from workhold.kernels.curves.three_and_one import (
     faces_away,
     farthest_right,
     height_range,
@@ -42,7 +60,7 @@ from workhold.kernels.crossing.three_and_one import (
     row_meets,
     write_triple,
 )
-from workhold.kernels.crossing.two_and_two import (
+from workhold.kernels.curves.two_and_two import (
     ROLE_LENGTH,
     ROLE_X,
     flat_slope,
@@ -51,31 +69,26 @@ from workhold.kernels.crossing.two_and_two import (
     sort_from_right,
     write_roles,
 )
-from workhold.kernels.crossing.work_space import TRIPLE_ROWS
-from workhold.kernels.curves.columns import CENTER, HEAD, TAIL
-from workhold.kernels.curves.edges import HAIR, kept_edges
-from workhold.kernels.curves.piece_columns import (
-    CURVE,
-    HIGH,
-    LEFTWARD_LOW,
-    LOW,
-    PIECE_LENGTH,
-    RIGHTWARD_LOW,
-    STEADY,
-    VALUE_LEAST,
-    VALUE_MOST,
-    X_MOVING,
-    X_STANDING,
-)
-from workhold.kernels.curves.pieces import cell_pieces
 from workhold.search.cells import FIRST_ORIENTATION
 from workhold.search.toolkit_search import ToolkitSearch
 
 CELL = pi / 96
 # Columns of what the trials of pairs of pieces return, one row for each root.
-FIRST, SECOND, ROOT, REACH, VERDICT, FORCE_DIRECTIONS, HEIGHTS, COUNTED, APART, MEETS, STEEP, CLAMP, CLAMP_BOUND = (
-    range(13)
-)
+(
+    FIRST,
+    SECOND,
+    ROOT,
+    REACH,
+    VERDICT,
+    FORCE_DIRECTIONS,
+    HEIGHTS,
+    COUNTED,
+    APART,
+    MEETS,
+    STEEP,
+    CLAMP,
+    CLAMP_BOUND,
+) = range(13)
 # Columns of what the trials of triples return.
 FARTHEST, VALUES, MEETING, RIGHT_FACE, CLOSES = range(5)
 
@@ -92,7 +105,9 @@ def pieces_in(search: ToolkitSearch, low: float, high: float, mode: float) -> np
     pitch = search.frame.lattice.pitch_x
     kept = kept_edges(len(members))
     room = np.empty((1, PIECE_LENGTH))
-    pieces, count = cell_pieces(low, high, members, search.loose, table.curves, pitch, 0.0, mode, kept, np.inf, room)
+    pieces, count = cell_pieces(
+        low, high, members, search.loose, table.curves, pitch, 0.0, mode, kept, np.inf, room
+    )
     return pieces[:count]
 
 
@@ -114,8 +129,12 @@ def clamping(pegs, psi, features, length):
 def clamping_bound(one, two, psi, features, integers, reals):
     """The slope of the difference of heights over the distance y . (P_B - P_A); infinite where that is too small."""
     cosine, sine = cos(psi), sin(psi)
-    first = chord_state(features[integers[one, TAIL]], features[integers[one, HEAD]], reals[one], psi, cosine, sine)
-    second = chord_state(features[integers[two, TAIL]], features[integers[two, HEAD]], reals[two], psi, cosine, sine)
+    first = chord_state(
+        features[integers[one, TAIL]], features[integers[one, HEAD]], reals[one], psi, cosine, sine
+    )
+    second = chord_state(
+        features[integers[two, TAIL]], features[integers[two, HEAD]], reals[two], psi, cosine, sine
+    )
     px, py = second[6] - first[6], second[7] - first[7]
     error = first[9] + second[9]
     across = abs(cosine * py - sine * px) - error
@@ -189,7 +208,12 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
     out = np.empty((1 << 14, 5))
     count = 0
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
-    pegs, work, null, triple = np.empty((4, PEG_LENGTH)), np.empty((8, 2)), np.empty(4), np.empty((TRIPLE_ROWS, 3))
+    pegs, work, null, triple = (
+        np.empty((4, PEG_LENGTH)),
+        np.empty((8, 2)),
+        np.empty(4),
+        np.empty((TRIPLE_ROWS, 3)),
+    )
     farthest = farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
     length = limits.wrench_length
     for i in range(pieces.shape[0]):
@@ -231,7 +255,9 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
                             if verdict < 2:
                                 continue
                             row = out[count]
-                            row[FARTHEST] = as_number(first[X_STANDING] <= farthest and second[X_STANDING] <= farthest)
+                            row[FARTHEST] = as_number(
+                                first[X_STANDING] <= farthest and second[X_STANDING] <= farthest
+                            )
                             row[VALUES] = as_number(
                                 circle
                                 or (
@@ -241,8 +267,12 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
                             )
                             steady = first[STEADY] * second[STEADY] == 1.0 and not circle
                             row[MEETING] = as_number(not steady or may_meet(first, second, 0.0, 0.0))
-                            row[RIGHT_FACE] = as_number(not faces_away(rows[e], cx, cy, limits.clamping, reach))
-                            row[CLOSES] = as_number(may_close(triple, rows[e], x, y, radius, cx, cy, gap, limits))
+                            row[RIGHT_FACE] = as_number(
+                                not faces_away(rows[e], cx, cy, limits.clamping, reach)
+                            )
+                            row[CLOSES] = as_number(
+                                may_close(triple, rows[e], x, y, radius, cx, cy, gap, limits)
+                            )
                             count += 1
                             if count == out.shape[0]:
                                 return out
@@ -281,13 +311,19 @@ def check_type_two(search: ToolkitSearch, low: float, high: float) -> int:
 
 
 PARTS = {
-    "square": (Workpiece.from_loops("square", [[[0, 0, 0], [30, 0, 0], [30, 30, 0], [0, 30, 0]]]), Vise(5, 2, 2.0)),
+    "square": (
+        Workpiece.from_loops("square", [[[0, 0, 0], [30, 0, 0], [30, 30, 0], [0, 30, 0]]]),
+        Vise(5, 2, 2.0),
+    ),
     "triangle": (Workpiece.from_loops("triangle", [[[0, 0, 0], [33, 2, 0], [9, 28, 0]]]), Vise(4, 3, 1.0)),
     "two bumps": (two_bumps(), Vise(5, 2, 2.0)),
     "lug": (lug(), Vise(5, 2, 2.0)),
     "bracket": (bracket_with_fillet(3.0), Vise(6, 2, 2.0)),
     "ring": (ring(0.5), Vise(6, 2, 2.0)),
-    "disc with a hole": (Workpiece.from_loops("disc", [disc(20.0), disc(4.0, 6.0, 1.0)[::-1]]), Vise(5, 2, 1.0)),
+    "disc with a hole": (
+        Workpiece.from_loops("disc", [disc(20.0), disc(4.0, 6.0, 1.0)[::-1]]),
+        Vise(5, 2, 1.0),
+    ),
 }
 
 
@@ -296,7 +332,9 @@ def test_no_fixture_of_two_chords_is_discarded(name):
     """Every crossing whose four contacts lie inside their features passes the comparison of heights; every one that may be
     a fixture also those of pushes, places and slopes. All cells of half a turn."""
     search = prepared(*PARTS[name])
-    found = np.array([check_type_one(search, cell, cell + CELL) for cell in FIRST_ORIENTATION + CELL * np.arange(96)])
+    found = np.array(
+        [check_type_one(search, cell, cell + CELL) for cell in FIRST_ORIENTATION + CELL * np.arange(96)]
+    )
     roots, fixtures = found.sum(axis=0)
     assert roots > 3 * fixtures
     assert fixtures > 5
@@ -306,7 +344,10 @@ def test_no_fixture_of_two_chords_is_discarded(name):
 def test_no_fixture_of_three_pegs_and_one_is_discarded(name):
     """Every right peg that may make a fixture with three left ones passes all comparisons, in all cells of a turn."""
     search = prepared(*PARTS[name])
-    assert sum(check_type_two(search, cell, cell + CELL) for cell in FIRST_ORIENTATION + CELL * np.arange(192)) > 5
+    assert (
+        sum(check_type_two(search, cell, cell + CELL) for cell in FIRST_ORIENTATION + CELL * np.arange(192))
+        > 5
+    )
 
 
 @settings(max_examples=25)
@@ -315,7 +356,9 @@ def test_no_fixture_of_a_random_part_is_discarded(seed):
     """The same for random parts with arcs and holes, in one cell, narrow or wide."""
     random = Random(seed)
     part = random_outline(random, random.randint(3, 7))
-    vise = Vise(round(random.uniform(6, 18), 3), random.randint(1, 2), random.choice([0.0, 1.0]), row_offset=1.7)
+    vise = Vise(
+        round(random.uniform(6, 18), 3), random.randint(1, 2), random.choice([0.0, 1.0]), row_offset=1.7
+    )
     search = prepared(part, vise)
     low = random.uniform(-0.7, 5.0)
     high = low + random.choice([1e-3, CELL, 4 * CELL])

@@ -16,10 +16,21 @@ from sharpness import changed
 from strategies import random_row
 from workhold.contact.curves import curve_table
 from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.chord.discs import value_disc
-from workhold.kernels.crossing.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, value_at
-from workhold.kernels.curves.columns import BRANCH, HEAD, LENGTH, SHIFT, TAIL
-from workhold.kernels.curves.piece_columns import CURVE, HIGH, LOW, SLOPE_LOW, STEADY, VALUE_LOW
+from workhold.kernels.chord.columns import (
+    BRANCH,
+    CURVE,
+    HEAD,
+    HIGH,
+    LENGTH,
+    LOW,
+    SHIFT,
+    SLOPE_LOW,
+    STEADY,
+    TAIL,
+    VALUE_LOW,
+)
+from workhold.kernels.curves.piece_bounds import value_disc
+from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, value_at
 
 
 def sample_places(low: float, high: float, count: int) -> np.ndarray:
@@ -84,7 +95,9 @@ def check_pair(features, table, first, second, mode, offset, period, samples) ->
     assert ((counted - jumps)[~doubtful] <= 2).all(), ("too many", detail)
     for root, radius, multiple in roots:
         assert low <= root <= high and 0.0 < radius <= high - low
-        pair = [sampled(np.array([root]), int(p[CURVE]), features, table.curves, mode)[0] for p in (first, second)]
+        pair = [
+            sampled(np.array([root]), int(p[CURVE]), features, table.curves, mode)[0] for p in (first, second)
+        ]
         rest = pair[1][0] - pair[0][0] - offset
         assert circle or abs(rest / scale - multiple) < 0.5
         rest -= period * round(rest / period) if period else 0.0
@@ -92,7 +105,9 @@ def check_pair(features, table, first, second, mode, offset, period, samples) ->
         rough = pair[0][2] + pair[1][2]
         if first[STEADY] * second[STEADY] == 0.0:
             # Beside a tangency what is told is that the discs of both chords leave it in doubt.
-            rough = max(rough, 2 * sum(disc_size(p, root, radius, features, table, mode) for p in (first, second)))
+            rough = max(
+                rough, 2 * sum(disc_size(p, root, radius, features, table, mode) for p in (first, second))
+            )
         if radius < 1e-9:
             assert abs(rest) < 1e-9 + 1e-14 * min(steep, 1e9) + rough + 2 * steep * radius, (
                 "no root",
@@ -210,9 +225,9 @@ def test_shared_tails_do_not_depend_on_where_a_circle_has_its_seam():
             again = shared_tails(features, steps, low, low + 0.3)
             for one, other in ((first, again), (again, first)):
                 for s, psi in one:
-                    assert any(abs((s - t + pi) % tau - pi) < 1e-5 and abs(psi - phi) < 1e-5 for t, phi in other), (
-                        f"tail at {s}, psi {psi} is found with one seam only"
-                    )
+                    assert any(
+                        abs((s - t + pi) % tau - pi) < 1e-5 and abs(psi - phi) < 1e-5 for t, phi in other
+                    ), f"tail at {s}, psi {psi} is found with one seam only"
 
 
 def test_a_crossing_at_a_tangency_is_found():
@@ -224,7 +239,9 @@ def test_a_crossing_at_a_tangency_is_found():
         pieces = pieces_of(features, table, -2.0, 2.0, HEIGHT)
         for piece in pieces[np.isinf(pieces[:, SLOPE_LOW])][:4]:
             psi, curve = piece[LOW], int(piece[CURVE])
-            for other in pieces[(pieces[:, LOW] < psi) & (pieces[:, HIGH] > psi) & (pieces[:, CURVE] != curve)][:6]:
+            for other in pieces[
+                (pieces[:, LOW] < psi) & (pieces[:, HIGH] > psi) & (pieces[:, CURVE] != curve)
+            ][:6]:
                 if integers_agree(table, curve, int(other[CURVE])):
                     continue
                 there = sampled(np.array([psi]), int(other[CURVE]), features, table.curves, HEIGHT)
@@ -245,7 +262,8 @@ def test_known_crossings_of_two_ladders():
     steps = lattice(5.0, 3, 1)
     table = curve_table(features, steps, [0])
     pick = [
-        int(np.flatnonzero((table.curves.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0]) for columns in (1, 2)
+        int(np.flatnonzero((table.curves.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0])
+        for columns in (1, 2)
     ]
     pieces = pieces_of(features, table, -0.1, 6.1, HEIGHT)
     roots = []
@@ -343,7 +361,8 @@ def test_planted_double_roots_are_told(rest):
     features = np.array([line_row(0, 0, pi / 2, 40), line_row(0, 0, 0, 40)])
     table = curve_table(features, lattice(5.0, 3, 1), [0])
     pick = [
-        int(np.flatnonzero((table.curves.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0]) for columns in (1, 2)
+        int(np.flatnonzero((table.curves.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0])
+        for columns in (1, 2)
     ]
     # The height of the second over the first is -5/2 sin 2 psi: least where sin 2 psi = 1.
     pieces = pieces_of(features, table, 0.5, 1.1, HEIGHT)

@@ -18,15 +18,15 @@ from exact_chords import exactly
 from sharpness import Constant, changed, check_sharpness
 from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Lattice
-from workhold.kernels.contact.record import RECORD_LENGTH
-from workhold.kernels.crossing import roots, sliding_pairs, three_and_one
-from workhold.kernels.crossing.two_and_two import STATISTICS
-from workhold.kernels.crossing.work_space import work_space
-from workhold.kernels.curves.columns import (
+from workhold.kernels.chord.columns import (
     DIRECTION,
     SLIDING_PAIR_REALS,
     STEP_LENGTH,
 )
+from workhold.kernels.contact.record import RECORD_LENGTH
+from workhold.kernels.curves import roots, sliding_pairs, three_and_one
+from workhold.kernels.curves.roots import work_space
+from workhold.kernels.curves.two_and_two import STATISTICS
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Kernel = Callable[..., Any]
@@ -53,7 +53,10 @@ def slid(random: Random, misfit: float) -> tuple[Array, Array, Array]:
     a = arc_row(0, 0, random.uniform(2, 30))
     b = arc_row(away * cos(angle), away * sin(angle), a[6] + random.uniform(-1, 1) * misfit)
     pair = np.zeros(SLIDING_PAIR_REALS)
-    pair[DIRECTION], pair[STEP_LENGTH] = np.arctan2(b[2], b[1]), hypot(b[1], b[2]) + random.uniform(-1, 1) * misfit
+    pair[DIRECTION], pair[STEP_LENGTH] = (
+        np.arctan2(b[2], b[1]),
+        hypot(b[1], b[2]) + random.uniform(-1, 1) * misfit,
+    )
     return a, b, pair
 
 
@@ -127,10 +130,18 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
 
 CONSTANTS = [
     Constant("crossing, 4 half units", roots.solve, rest_rounded, symbol="ROUNDINGS", draws=400),
-    Constant("sliding pair, 4e-15", sliding_pairs.sliding_pair_reach, direction_rounded, symbol="ROUNDING", draws=300),
+    Constant(
+        "sliding pair, 4e-15",
+        sliding_pairs.sliding_pair_reach,
+        direction_rounded,
+        symbol="ROUNDING",
+        draws=300,
+    ),
     Constant("sliding arcs, 4 misfits", sliding_pairs.sliding_pair_reach, arcs_off, 4.0),
     Constant("sliding tail, 1.2", sliding_pairs.tail_inside, past_a_sliding_end, 1.2),
-    Constant("moving peg's height, 4 L", three_and_one.add_moving_pegs, moving_peg_off("height"), 4.0, 0, draws=20),
+    Constant(
+        "moving peg's height, 4 L", three_and_one.add_moving_pegs, moving_peg_off("height"), 4.0, 0, draws=20
+    ),
     Constant("moving peg's gap, 4 L", three_and_one.add_moving_pegs, moving_peg_off("gap"), 4.0, 1, draws=20),
 ]
 

@@ -9,13 +9,18 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row, line_row, off_carrier, overshoot
-from workhold.kernels.base.shallow import point_at
-from workhold.kernels.crossing.sliding_pairs import sliding_pairs_between
+from workhold.kernels.base.feature import point_at
+from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
 
 
 def random_sliding_pair(random: Random) -> tuple[np.ndarray, np.ndarray, float]:
     """Two features that may have a sliding pair: parallel lines, or equal arcs one chord apart."""
-    x, y, d, angle = random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(4, 20), random.uniform(-pi, pi)
+    x, y, d, angle = (
+        random.uniform(-9, 9),
+        random.uniform(-9, 9),
+        random.uniform(4, 20),
+        random.uniform(-pi, pi),
+    )
     if random.random() < 0.5:
         a = line_row(x, y, angle, random.uniform(2, 15))
         b = line_row(random.uniform(-9, 9), random.uniform(-9, 9), angle, random.uniform(2, 15))

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from curve_examples import HEIGHT, POSITION, pieces_of, pitch_of, random_table
-from workhold.kernels.curves.edges import kept_edges
-from workhold.kernels.curves.piece_columns import (
+from workhold.kernels.chord.columns import (
     CURVE,
     EDGE_LENGTH,
     EDGE_X,
@@ -20,6 +19,7 @@ from workhold.kernels.curves.piece_columns import (
     RIGHTWARD_LOW,
     X_STANDING,
 )
+from workhold.kernels.curves.piece_bounds import kept_edges
 from workhold.kernels.curves.pieces import cell_pieces
 
 
@@ -73,7 +73,17 @@ def test_an_edge_of_another_stretch_tells_nothing() -> None:
     features, table = random_table(Random(11))
     members, kept = np.arange(len(table)), np.zeros((len(table), EDGE_LENGTH + 1))
     kept[:, EDGE_X], kept[:, EDGE_LENGTH] = 1e9, -10.0
-    given = (members, features, table.curves, pitch_of(table), 0.0, POSITION, kept, 1000.0, np.empty((1, PIECE_LENGTH)))
+    given = (
+        members,
+        features,
+        table.curves,
+        pitch_of(table),
+        0.0,
+        POSITION,
+        kept,
+        1000.0,
+        np.empty((1, PIECE_LENGTH)),
+    )
     room, count = cell_pieces(0.0, 0.05, *given)
     assert count > 0
     np.testing.assert_array_equal(

@@ -15,49 +15,47 @@ from curve_examples import HEIGHT, POSITION, pieces_of, pitch_of, random_table, 
 from exact_chords import dot, exact_chord, exact_speed, exactly, plus
 from strategies import seeds
 from workhold.contact.curves import curve_table
-from workhold.kernels.base.between_ends import slope_range
-from workhold.kernels.chord.evaluation import chord_state
-from workhold.kernels.curves.columns import (
-    BRANCH,
-    COLUMN_STEP,
-    FROM,
-    HEAD,
-    LENGTH,
-    SHIFT,
-    TAIL,
-    TANGENT_FROM,
-    TANGENT_TO,
-    TO,
-)
-from workhold.kernels.curves.force_directions import force_range, write_force_directions
-from workhold.kernels.curves.piece_columns import (
+from workhold.kernels.base.interval import slope_range
+from workhold.kernels.chord.columns import (
     ACROSS_LEAST,
     ACROSS_MOST,
+    BRANCH,
+    COLUMN_STEP,
     CURVE,
     EDGE_LENGTH,
+    FROM,
+    HEAD,
     HEAD_NORMAL_X,
     HEAD_NORMAL_Y,
     HIGH,
     LEFTWARD_HIGH,
     LEFTWARD_LOW,
+    LENGTH,
     LOW,
     PIECE_LENGTH,
     RIGHTWARD_HIGH,
     RIGHTWARD_LOW,
     SECOND_DERIVATIVE_HIGH,
     SECOND_DERIVATIVE_LOW,
+    SHIFT,
     SLOPE_ERROR_HIGH,
     SLOPE_ERROR_LOW,
     SLOPE_HIGH,
     SLOPE_LOW,
     STEADY,
+    TAIL,
     TAIL_NORMAL_X,
     TAIL_NORMAL_Y,
+    TANGENT_FROM,
+    TANGENT_TO,
+    TO,
     VALUE_LEAST,
     VALUE_MOST,
     X_MOVING,
     X_STANDING,
 )
+from workhold.kernels.chord.evaluation import chord_state
+from workhold.kernels.curves.piece_bounds import force_range, write_force_directions
 from workhold.kernels.curves.pieces import largest_part
 
 # The check's own rounding: a number at 200 bits, doubled orientation and places as doubles.
@@ -127,9 +125,14 @@ def check_piece(features, table, piece, mode, random: Random) -> int:
     scale = 1.0 if a[0] == 0.0 else arb(float(a[6]))
     checked = 0
     with exactly():
-        for place in places(random, float(piece[LOW]), float(piece[HIGH])) + beyond(piece, table.curves.reals[curve]):
+        for place in places(random, float(piece[LOW]), float(piece[HIGH])) + beyond(
+            piece, table.curves.reals[curve]
+        ):
             psi = arb(place)
-            chord, speed = exact_chord(a, b, d, psi + shift, branch), exact_speed(a, b, d, psi + shift, branch)
+            chord, speed = (
+                exact_chord(a, b, d, psi + shift, branch),
+                exact_speed(a, b, d, psi + shift, branch),
+            )
             if chord is None or speed is None:
                 continue
             checked += 1
@@ -145,7 +148,9 @@ def check_piece(features, table, piece, mode, random: Random) -> int:
                 assert not exceeds(value, piece[VALUE_LEAST], piece[VALUE_MOST]), ("value", detail)
             assert not exceeds(slope, *slope_bounds(piece)), ("slope", detail)
             if piece[LOW] <= place <= piece[HIGH]:
-                assert not exceeds(second_derivative, piece[SECOND_DERIVATIVE_LOW], piece[SECOND_DERIVATIVE_HIGH]), (
+                assert not exceeds(
+                    second_derivative, piece[SECOND_DERIVATIVE_LOW], piece[SECOND_DERIVATIVE_HIGH]
+                ), (
                     "second derivative",
                     detail,
                 )
@@ -272,14 +277,18 @@ def test_what_the_errors_of_the_instant_centre_allow_is_told():
         features, table = special_table(random, random.choice(SPECIAL))
         for curve in random.sample(range(len(table)), min(4, len(table))):
             a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
-            low = float(table.curves.reals[curve, 0] - table.curves.reals[curve, SHIFT]) + 10 ** random.uniform(-12, -3)
+            low = float(
+                table.curves.reals[curve, 0] - table.curves.reals[curve, SHIFT]
+            ) + 10 ** random.uniform(-12, -3)
             pieces = pieces_of(features, table, low, low + 10 ** random.uniform(-9, -4), HEIGHT)
             for piece in pieces[(pieces[:, CURVE] == curve) & (pieces[:, STEADY] == 1.0)]:
                 for psi in (float(piece[LOW]), float(piece[HIGH])):
                     state = chord_state(a, b, table.curves.reals[curve], psi, cos(psi), sin(psi))
                     across = cos(psi) * state[7] - sin(psi) * state[6]
                     assert piece[ACROSS_LEAST] <= across - state[9] <= across + state[9] <= piece[ACROSS_MOST]
-                    assert piece[SECOND_DERIVATIVE_HIGH] >= (hypot(state[6], state[7]) + state[9]) * (1 - 1e-12)
+                    assert piece[SECOND_DERIVATIVE_HIGH] >= (hypot(state[6], state[7]) + state[9]) * (
+                        1 - 1e-12
+                    )
                     checked += 1
 
 
@@ -304,7 +313,9 @@ def test_push_range_holds_every_direction_between(seed):
     for _ in range(200):
         doubt = random.choice([0.0, 1e-9, 1e-3, 0.1])
         one = random.choice([random.uniform(-pi, pi), pi / 2, -pi / 2, 0.0])
-        two = random.choice([random.uniform(-pi, pi), one + pi, one, one + pi + random.uniform(-2, 2) * doubt])
+        two = random.choice(
+            [random.uniform(-pi, pi), one + pi, one, one + pi + random.uniform(-2, 2) * doubt]
+        )
         bottom, top = force_range(np.cos(one), np.sin(one), np.cos(two), np.sin(two), doubt)
         off = [random.uniform(-1, 1) * doubt / 2 for _ in range(2)]
         for angle in angle_range(one + off[0], two + off[1]):
@@ -316,7 +327,8 @@ def turning_edges(random: Random) -> list[tuple[np.ndarray, float, float]]:
     """Normals of tail and head at both ends of a piece and between, each turning evenly by less than one radian."""
     corners = (0.0, pi / 2, -pi / 2, pi)
     starts = [
-        random.choice([random.uniform(-pi, pi), random.choice(corners) + random.uniform(-0.2, 0.2)]) for _ in "ab"
+        random.choice([random.uniform(-pi, pi), random.choice(corners) + random.uniform(-0.2, 0.2)])
+        for _ in "ab"
     ]
     turns = [random.choice([random.uniform(-0.5, 0.5), random.uniform(-0.05, 0.05)]) for _ in "ab"]
     if random.random() < 0.4:

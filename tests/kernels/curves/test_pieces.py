@@ -13,19 +13,27 @@ from chord_examples import arc_row
 from curve_examples import HEIGHT, POSITION, pieces_of, random_table, sampled
 from exact_chords import exact_chord, exactly
 from workhold.contact.curves import LatticeSteps, curve_table
-from workhold.kernels.base.between_ends import slope_range
+from workhold.kernels.base.interval import slope_range
 from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.curves.columns import BRANCH, FROM, HEAD, LENGTH, SHIFT, TAIL, TANGENT_FROM, TANGENT_TO, TO
-from workhold.kernels.curves.piece_columns import (
+from workhold.kernels.chord.columns import (
+    BRANCH,
     CURVE,
+    FROM,
+    HEAD,
     HIGH,
+    LENGTH,
     LOW,
     SECOND_DERIVATIVE_HIGH,
     SECOND_DERIVATIVE_LOW,
+    SHIFT,
     SLOPE_ERROR_HIGH,
     SLOPE_ERROR_LOW,
     SLOPE_HIGH,
     SLOPE_LOW,
+    TAIL,
+    TANGENT_FROM,
+    TANGENT_TO,
+    TO,
     VALUE_ERROR_HIGH,
     VALUE_ERROR_LOW,
     VALUE_HIGH,
@@ -91,7 +99,11 @@ def test_slopes_stay_in_the_enclosure_of_a_piece(mode):
             slack = 1e-13 * (100 + np.abs(slopes)) / max(away, 1e-9)
             assert (slopes >= lowest - slack).all() and (slopes <= highest + slack).all()
             whole = slope_range(
-                piece[SLOPE_LOW], piece[SLOPE_HIGH], piece[SECOND_DERIVATIVE_LOW], piece[SECOND_DERIVATIVE_HIGH], span
+                piece[SLOPE_LOW],
+                piece[SLOPE_HIGH],
+                piece[SECOND_DERIVATIVE_LOW],
+                piece[SECOND_DERIVATIVE_HIGH],
+                span,
             )
             spread = max(piece[SLOPE_ERROR_LOW], piece[SLOPE_ERROR_HIGH])
             slack = np.where(np.isfinite(spread), slack, inf)
@@ -109,8 +121,20 @@ def test_values_at_the_ends_of_pieces_are_the_curves(mode):
         for piece in pieces_of(features, table, low, low + 1.5, mode):
             curve, span = int(piece[CURVE]), piece[HIGH] - piece[LOW]
             for end, inward, value, slope, tangent in (
-                (piece[LOW], 1e-9, piece[VALUE_LOW], piece[SLOPE_LOW], table.curves.reals[curve, TANGENT_FROM]),
-                (piece[HIGH], -1e-9, piece[VALUE_HIGH], piece[SLOPE_HIGH], table.curves.reals[curve, TANGENT_TO]),
+                (
+                    piece[LOW],
+                    1e-9,
+                    piece[VALUE_LOW],
+                    piece[SLOPE_LOW],
+                    table.curves.reals[curve, TANGENT_FROM],
+                ),
+                (
+                    piece[HIGH],
+                    -1e-9,
+                    piece[VALUE_HIGH],
+                    piece[SLOPE_HIGH],
+                    table.curves.reals[curve, TANGENT_TO],
+                ),
             ):
                 if span < 1e-8:
                     continue
@@ -178,7 +202,14 @@ def test_values_at_the_ends_of_pieces_are_within_their_errors():
                         off = (exact.height(psi) if mode == HEIGHT else exact.position())[0] - float(value)
                         if mode == POSITION and a[0] != 0.0:
                             off -= 2 * round(float(off.mid()) / tau) * arb.pi()
-                        assert abs(off) <= float(error), (a.tolist(), b.tolist(), d, float(end), shift, branch)
+                        assert abs(off) <= float(error), (
+                            a.tolist(),
+                            b.tolist(),
+                            d,
+                            float(end),
+                            shift,
+                            branch,
+                        )
                         checked += 1
     assert checked > 300
 

@@ -16,22 +16,20 @@ from chord_examples import any_ranges, curve_row
 from exact_chords import dot, exact_chord, exactly
 from sharpness import Constant, changed, check_sharpness
 from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.chord.evaluation import HEIGHT
-from workhold.kernels.chord.stretches import SPEED, STRETCH_LENGTH, write_stretch
-from workhold.kernels.curves import force_directions, pieces
-from workhold.kernels.curves.columns import BACKWARD_ERROR, KAPPA, SHIFT
-from workhold.kernels.curves.edges import write_edge
-from workhold.kernels.curves.piece_columns import (
+from workhold.kernels.chord.columns import (
+    BACKWARD_ERROR,
     EDGE_LENGTH,
     EDGE_VALUE,
     EDGE_VALUE_ERROR,
     EDGE_X,
     HEAD_NORMAL_X,
+    KAPPA,
     LEFTWARD_HIGH,
     LEFTWARD_LOW,
     PIECE_LENGTH,
     RIGHTWARD_HIGH,
     RIGHTWARD_LOW,
+    SHIFT,
     TAIL_NORMAL_X,
     VALUE_ERROR_HIGH,
     VALUE_ERROR_LOW,
@@ -40,6 +38,10 @@ from workhold.kernels.curves.piece_columns import (
     VALUE_MOST,
     X_MOVING,
 )
+from workhold.kernels.chord.evaluation import HEIGHT
+from workhold.kernels.chord.stretches import SPEED, STRETCH_LENGTH, write_stretch
+from workhold.kernels.curves import piece_bounds, pieces
+from workhold.kernels.curves.piece_bounds import write_edge
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Kernel = Callable[..., Any]
@@ -165,7 +167,10 @@ def sagging(shared: bool) -> Callable[[Random, Kernel], float]:
 
     def ratio(random: Random, kernel: Kernel) -> float:
         share, doubt = random.uniform(0.5, 0.99) if shared else 0.0, 10 ** random.uniform(-5, -2)
-        start, turns = [random.uniform(-pi, pi) for _ in range(2)], [random.uniform(-0.25, 0.25) for _ in range(2)]
+        start, turns = (
+            [random.uniform(-pi, pi) for _ in range(2)],
+            [random.uniform(-0.25, 0.25) for _ in range(2)],
+        )
         if shared:
             # Nearly opposite, so that their sums turn most.
             start[1], turns = start[0] + random.choice([-1, 1]) * random.uniform(2.4, 2.8), [0.0, 0.0]
@@ -176,7 +181,7 @@ def sagging(shared: bool) -> Callable[[Random, Kernel], float]:
         edges = [edge_of([a + part * t for a, t in zip(start, turns, strict=True)]) for part in (0, 1)]
         bare, told = np.zeros((2, PIECE_LENGTH))
         kernel(told, *edges, share, doubt)
-        force_directions.write_hull(bare, *edges, share, 0.0)
+        piece_bounds.write_hull(bare, *edges, share, 0.0)
         worst, signs = 0.0, set()
         for part, one, two in product((0.0, 0.2, 0.5, 0.8, 1.0), (-1, 1), (-1, 1)):
             sag = 4 * part * (1 - part) * doubt
@@ -208,10 +213,10 @@ def left(force: float, bare_low: float, bare_high: float, low: float, high: floa
 CONSTANTS = [
     Constant("between ends, w² / 8", pieces.write_steady, between_ends, 8.0, draws=60, times=10.0),
     Constant("directions of a piece, 2 errors", pieces.write_steady, normals_off, 2.0, 0, draws=150),
-    Constant("turn of normals, 1.06", force_directions.largest_turn, turn_told, 1.06),
-    Constant("hull of forces, 4 doubts", force_directions.write_hull, sagging(False), 4.0, draws=600),
-    Constant("forces at both ends, 2 doubts", force_directions.write_hull, sagging(False), 2.0, 0, draws=600),
-    Constant("sums of forces, 2.6", force_directions.write_force_directions, sagging(True), 2.6, draws=600),
+    Constant("turn of normals, 1.06", piece_bounds.largest_turn, turn_told, 1.06),
+    Constant("hull of forces, 4 doubts", piece_bounds.write_hull, sagging(False), 4.0, draws=600),
+    Constant("forces at both ends, 2 doubts", piece_bounds.write_hull, sagging(False), 2.0, 0, draws=600),
+    Constant("sums of forces, 2.6", piece_bounds.write_force_directions, sagging(True), 2.6, draws=600),
 ]
 
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from exact_chords import exact_solution, exactly
 from strategies import seeds
-from workhold.kernels.contact.equations import UNKNOWNS, WORK_LENGTH, touch
+from workhold.kernels.contact.record import UNKNOWNS, WORK_LENGTH, touch
 from workhold.kernels.proof import newton_kantorovich as kernel
 
 LENGTH = 30.0
@@ -27,7 +27,7 @@ class Planted:
     ----------
     features : (4, 10) rows, one for each peg.
     offsets, slides : the pegs' places from the first, and which move with the right jaw.
-    work, points : the kernel's work space, see ``kernels.contact.equations``.
+    work, points : the kernel's work space, see ``kernels.contact.record``.
     """
 
     features: np.ndarray
@@ -61,7 +61,22 @@ def planted(random: Random, tilt: float) -> Planted:
         if random.random() < 0.5:
             tangent = normal * 1j
             middle = place + tangent * random.uniform(-5, 5)
-            rows.append([0.0, middle.real, middle.imag, tangent.real, tangent.imag, 20.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+            rows.append(
+                [
+                    0.0,
+                    middle.real,
+                    middle.imag,
+                    tangent.real,
+                    tangent.imag,
+                    20.0,
+                    0.0,
+                    1.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                ]
+            )
         else:
             radius = 10.0 ** random.uniform(0, 2)
             center = place + radius * normal
@@ -85,13 +100,19 @@ def away(contacts: Planted, start: list[float]) -> float:
         z = exact_solution(contacts.features[:, :10].tolist(), contacts.offsets, contacts.slides, start)
         if z is None:
             return float("inf")
-        off = [(v - w) * (LENGTH if k == 0 else 1) for k, (v, w) in enumerate(zip(z, contacts.unknowns(), strict=True))]
+        off = [
+            (v - w) * (LENGTH if k == 0 else 1)
+            for k, (v, w) in enumerate(zip(z, contacts.unknowns(), strict=True))
+        ]
         return max(float(abs(v).upper()) for v in map(arb, off))
 
 
 def start_at(contacts: Planted, shift: list[float]) -> list[float]:
     """The unknowns moved by a shift in mm."""
-    return [n + (s / LENGTH if k == 0 else s) for k, (n, s) in enumerate(zip(contacts.unknowns(), shift, strict=True))]
+    return [
+        n + (s / LENGTH if k == 0 else s)
+        for k, (n, s) in enumerate(zip(contacts.unknowns(), shift, strict=True))
+    ]
 
 
 @given(seeds, st.floats(0.0, 6.0).map(lambda exponent: 10.0**-exponent))

@@ -17,7 +17,7 @@ from exact_chords import exact_solution, exactly
 from rounding import ROUNDED, error_of
 from sharpness import Constant, changed, check_sharpness
 from workhold.conventions import GAP_SLACK
-from workhold.kernels.contact.equations import INVERSE, OFF, SLOPES, UNKNOWNS, touch
+from workhold.kernels.contact.record import INVERSE, OFF, SLOPES, UNKNOWNS, touch
 from workhold.kernels.proof import newton_kantorovich as kantorovich
 from workhold.kernels.proof import variation
 from workhold.kernels.proof.newton_kantorovich import OPEN
@@ -87,7 +87,9 @@ def from_aside(random: Random, kernel: Kernel) -> float:
     if not isfinite(radius):
         return 0.0
     with exactly():
-        solution = exact_solution(contacts.rows[:, :10].tolist(), contacts.offsets, contacts.slides, start.tolist())
+        solution = exact_solution(
+            contacts.rows[:, :10].tolist(), contacts.offsets, contacts.slides, start.tolist()
+        )
         assert solution is not None
         away = [float(abs(v - float(w)).upper()) for v, w in zip(solution, work[UNKNOWNS], strict=True)]
     return max(away[0] * contacts.length, *away[1:]) / float(radius)
@@ -216,7 +218,13 @@ def numbers(contacts: Held, shift: Array) -> dict[int, Array]:
     }
 
 
-VARYING = [variation.VARIATION, variation.TILT, variation.ARM_BAND, variation.MOMENT_BAND, variation.FORCE_BAND]
+VARYING = [
+    variation.VARIATION,
+    variation.TILT,
+    variation.ARM_BAND,
+    variation.MOMENT_BAND,
+    variation.FORCE_BAND,
+]
 
 
 @pytest.mark.parametrize("about", [False, True])
@@ -236,7 +244,15 @@ def equation_error(random: Random, kernel: Kernel) -> float:
     pairs, told = np.zeros((3, 4, 2)), np.zeros((variation.NUMBERS, 4))
     pairs[0] = points
     kernel(
-        RECORD, contacts.rows, 0.0, setting(contacts.length), np.zeros((2, 4)), np.zeros((2, 4, 4)), work, pairs, told
+        RECORD,
+        contacts.rows,
+        0.0,
+        setting(contacts.length),
+        np.zeros((2, 4)),
+        np.zeros((2, 4, 4)),
+        work,
+        pairs,
+        told,
     )
     rows, centers = Rows(work), Rows(points)
     ROUNDED_TOUCH([int(v) for v in RECORD], contacts.rows.tolist(), contacts.length, rows, centers)
@@ -308,13 +324,17 @@ CONSTANTS = [
     Constant("certificate, v = 4.42", kantorovich.certificate, second_derivative_told(False), 4.42),
     Constant("certificate, 4 / L", kantorovich.certificate, second_derivative_told(True), 4.0, 0),
     Constant("certificate, radius", kantorovich.certificate, from_aside, 1.01),
-    Constant("contact equation, 16 half units", kantorovich.certificate, rounding_certified, symbol="ROUNDINGS"),
+    Constant(
+        "contact equation, 16 half units", kantorovich.certificate, rounding_certified, symbol="ROUNDINGS"
+    ),
     Constant("contact equation in a box", variation.spread, equation_error, symbol="HALF_UNIT"),
     Constant("judged, end 1.2", kantorovich.judged, judged_from_aside("end", True), 1.2, draws=20),
     Constant("judged, gap 1.5", kantorovich.judged, judged_from_aside("gap", True), 1.5, 0, draws=20),
     Constant("judged, reach 4.5", kantorovich.judged, judged_from_aside("end", True), 4.5, draws=20),
     Constant("certificate, R / 16", kantorovich.certificate, far_from_an_arc, 16.0),
-    Constant("judged, closure 1.1 bands", kantorovich.judged, judged_from_aside("closure", True), 1.1, draws=200),
+    Constant(
+        "judged, closure 1.1 bands", kantorovich.judged, judged_from_aside("closure", True), 1.1, draws=200
+    ),
     Constant("judged, span 4 bands", kantorovich.judged, judged_from_aside("span", True), 4.0, 0, draws=20),
 ]
 

@@ -7,7 +7,7 @@ import pytest
 
 from loose_sets import NOWHERE, laid_out, straight
 from workhold.kernels.seating.columns import Manifolds
-from workhold.kernels.seating.equilibrium_manifolds import BESIDE, first_sets, write_beyond, write_each_once
+from workhold.kernels.seating.gathering import BESIDE, first_sets, write_beyond, write_each_once
 
 STEP = 0.01
 
@@ -101,7 +101,9 @@ def test_of_sets_that_lie_in_each_other_the_one_with_the_most_contacts_is_told()
         kept = once(families)
         out = kept.across[:, 0].astype(np.int64).tolist()
         # All of each is handed on.
-        assert np.array_equal(kept.rows, families.rows[out]) and np.array_equal(kept.closed, families.closed[out])
+        assert np.array_equal(kept.rows, families.rows[out]) and np.array_equal(
+            kept.closed, families.closed[out]
+        )
         every = np.split(kept.configs, kept.begins[1:-1]) if out else []
         assert all(np.array_equal(one, parts[number]) for one, number in zip(every, out, strict=True))
         return out

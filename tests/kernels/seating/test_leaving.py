@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from sharpness import changed
-from workhold.kernels.seating import leaving, pieces, roots
-from workhold.kernels.seating.leaving import way_left
+from workhold.kernels.seating import free_space, obstacles, two_contact_curves
+from workhold.kernels.seating.free_space import way_left
 
 # Columns of a piece: arc, place, axis, half its extent, radius, sign.
 LINE = np.array([0.0, 3.0, -2.0, 0.8, 0.6, 4.0, 0.0, 1.0, 0.0, 0.0])
@@ -19,10 +19,10 @@ ARCS = [np.array([*ARC, half, 5.0, sign, 0.0, 0.0]) for half in (0.4, 1.5, 2.6, 
 # Each with those before it in their Python form.
 INNER: dict[str, Any] = {}
 for module, names in (
-    (pieces, ("length", "angle_from_middle", "on_piece", "normal_at")),
-    (roots, ("gap",)),
-    (leaving, ("add_range", "is_touched", "add_line", "seen_outside", "seen_inside", "add_side")),
-    (leaving, ("add_concave", "add_piece", "add_peg")),
+    (obstacles, ("length", "angle_from_middle", "on_piece", "normal_at")),
+    (two_contact_curves, ("gap",)),
+    (free_space, ("add_range", "is_touched", "add_line", "seen_outside", "seen_inside", "add_side")),
+    (free_space, ("add_concave", "add_piece", "add_peg")),
 ):
     for name in names:
         INNER[name] = changed(getattr(module, name), **INNER)
@@ -62,7 +62,7 @@ def test_directions_that_meet_a_piece_are_its_ranges(row):
     for x, y in rng.uniform(-9.0, 9.0, (60, 2)) + row[1:3]:
         if abs(hypot(x - row[1], y - row[2]) - row[6]) < 0.01:
             continue
-        ranges = np.empty((leaving.RANGES, 2))
+        ranges = np.empty((free_space.RANGES, 2))
         told = ranges[: INNER["add_piece"](row, x, y, ranges, 0)]
         for angle in rng.uniform(-pi, pi, 60):
             found, near = is_within(angle, told)
@@ -94,9 +94,9 @@ def test_a_peg_goes_along_what_it_touches_and_not_into_it():
     ):
         ranges = np.empty((8, 2))
         count = INNER["add_peg"](x, y, np.array(rows), 0, len(rows), ranges, 0)
-        assert [is_within(angle, ranges[:count])[0] for angle in (*free, *met)] == [False] * len(free) + [True] * len(
-            met
-        )
+        assert [is_within(angle, ranges[:count])[0] for angle in (*free, *met)] == [False] * len(free) + [
+            True
+        ] * len(met)
 
 
 def test_what_ranges_leave_is_found():

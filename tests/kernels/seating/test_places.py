@@ -10,7 +10,7 @@ import pytest
 from loose_sets import laid_out, straight
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP, GAVE_UP
 from workhold.kernels.seating.columns import Manifolds
-from workhold.kernels.seating.places import OUTSIDE, STOP, leads_out, write_places
+from workhold.kernels.seating.descent_paths import OUTSIDE, STOP, leads_out, write_places
 
 NO_SEATS = np.zeros((0, 4))
 
@@ -33,7 +33,16 @@ def told(
     ended = np.array([*how, *[AT_REST] * len(off)], np.int8)
     away = np.array([*(leaves or [0] * len(how)), *[0] * len(off)], np.int8)
     doubtful, out = np.concatenate([known, np.empty((len(every), 4))]), np.empty(len(ends), np.int64)
-    given = every, ended, away, families, lying, np.array(off, dtype=np.int64), seats, np.array(numbers, dtype=np.int64)
+    given = (
+        every,
+        ended,
+        away,
+        families,
+        lying,
+        np.array(off, dtype=np.int64),
+        seats,
+        np.array(numbers, dtype=np.int64),
+    )
     first = len(seats) + len(lying) if first is None else first
     count = write_places(*given, first, 10.0, doubtful, len(known), np.empty(len(off), np.int64), out)
     return out.tolist(), doubtful[:count]
@@ -80,7 +89,9 @@ def test_all_that_fall_on_one_way_end_where_it_ends():
     assert places == [0, 0, 0] and doubtful[:, 1].tolist() == [50.0]
     # As they did before, though what is not settled is found nearer to there.
     nearer = np.array([at(3.0, 9.0), at(49.8, 6.0), at(3.0, 8.0), at(3.0, 9.0)])
-    places, doubtful = told(nearer, [AT_REST] * 4, families, falling, NO_SEATS, (), None, np.array([at(50.4, 6.0)]))
+    places, doubtful = told(
+        nearer, [AT_REST] * 4, families, falling, NO_SEATS, (), None, np.array([at(50.4, 6.0)])
+    )
     assert places == [0, 1, 0, 0] and doubtful[:, 1].tolist() == [50.4, 49.8]
 
 
@@ -92,7 +103,10 @@ def test_of_two_seats_in_one_pose_the_level_one_is_the_nearest():
     places, doubtful = told(configs, [AT_REST] * 6, laid_out([]), (), seats, [3, 0], None, NO_SEATS, 5)
     assert places == [0, 3, 5, 6, 0, 5] and len(doubtful) == 2
     near = np.array([at(0.0, 9.0), at(0.03, 9.0)])
-    assert told(near[[0, 1]] + [0.0, 0.001, 0.0, 0.0], [AT_REST] * 2, laid_out([]), (), near, [0, 1])[0] == [0, 1]
+    assert told(near[[0, 1]] + [0.0, 0.001, 0.0, 0.0], [AT_REST] * 2, laid_out([]), (), near, [0, 1])[0] == [
+        0,
+        1,
+    ]
 
 
 def test_the_first_pass_that_joins_a_place_with_the_outside():

@@ -10,10 +10,9 @@ import pytest
 
 from seating_examples import cells_by_pair, solved
 from workhold.kernels.base.feature import IS_ARC
-from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.chord.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import DEPTH, FIRST_PEG, HIGH, KIND, LOW, PAIR, SOURCE, VAGUE
-from workhold.kernels.seating.middles import pair_in, ray_in
-from workhold.kernels.seating.pieces import foot, on_piece, share_normals
+from workhold.kernels.seating.obstacles import foot, on_piece, share_normals
 from workhold.kernels.seating.three_contacts import (
     ROOT_LENGTH,
     ROOT_PEG,
@@ -21,10 +20,12 @@ from workhold.kernels.seating.three_contacts import (
     ROOT_PSI,
     ROOT_SIDE,
     may_balance,
+    pair_in,
+    ray_in,
     three_contacts,
 )
 from workhold.kernels.seating.two_contact_curves import pair_at
-from workhold.seating.growing_rows import filled
+from workhold.seating.closing import filled
 from workhold.seating.pattern import Pattern
 from workhold.seating.two_contact_curves import TwoContactCurves
 
@@ -90,7 +91,9 @@ def test_where_a_third_peg_balances_it_is_found(number):
             one = cell[None, :], middle[None, :], given._replace(pegs=pegs), boundary.discs, -1e4
             roots = filled(ROOT_LENGTH, 64, three_contacts, *one, *work)
             here = (
-                (roots[:, ROOT_PIECE] == piece) & (roots[:, ROOT_SIDE] == side) & (abs(roots[:, ROOT_PSI] - psi) < 1e-7)
+                (roots[:, ROOT_PIECE] == piece)
+                & (roots[:, ROOT_SIDE] == side)
+                & (abs(roots[:, ROOT_PSI] - psi) < 1e-7)
             )
             assert set(roots[here, ROOT_PEG]) == set(np.flatnonzero(others))
             count += 1

@@ -29,10 +29,9 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     THETA,
 )
-from workhold.kernels.seating.subset_candidates import GATHERED_LENGTH, SUBSET, gathered
-from workhold.seating.growing_rows import filled
-from workhold.seating.pattern import Pattern
-from workhold.seating.peg_subsets import subsets_of
+from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, gathered
+from workhold.seating.closing import filled
+from workhold.seating.pattern import Pattern, subsets_of
 from workhold.seating.two_contact_curves import TwoContactCurves
 
 STOP, WIDEST = -20.0, 60.0

@@ -9,9 +9,8 @@ import pytest
 
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import DEPTH
-from workhold.kernels.seating.isolating import HALVES, NONE, ROOT, judged
-from workhold.kernels.seating.pocketed import value_of, zeros
-from workhold.kernels.seating.turning import SHAPE_LENGTH, contact, write_shape
+from workhold.kernels.seating.turning import HALVES, NONE, ROOT, SHAPE_LENGTH, contact, judged, write_shape
+from workhold.kernels.seating.wall_equilibria import value_of, zeros
 
 
 def random_shape(random):
@@ -59,7 +58,11 @@ def test_bounds_of_a_contact_enclose_it_over_its_range(within):
     random, seen = np.random.default_rng(5), 0
     for _ in range(1200):
         row, shape = random_shape(random)
-        low, width, facing = random.uniform(-4.0, 4.0), 10.0 ** random.uniform(-6.0, 0.0), random.choice([-1.0, 1.0])
+        low, width, facing = (
+            random.uniform(-4.0, 4.0),
+            10.0 ** random.uniform(-6.0, 0.0),
+            random.choice([-1.0, 1.0]),
+        )
         wave = random.uniform(-30.0, 30.0), random.choice([0.0, 15.0]), random.uniform(-pi, pi)
         thetas = np.linspace(low, low + width, 41)
         b, slope, nx, ny = places(row, facing, thetas, wave)

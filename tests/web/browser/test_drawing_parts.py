@@ -34,7 +34,13 @@ def test_a_part_is_drawn_with_the_mouse(walk: Walk) -> None:
     walk.click_at(0, 0)
     page.click("#draw-done")
     walk.seen("#faces button")
-    assert corners(walk) == [[0, 0, 0], [80, 0, 0], [80, 40, pytest.approx(1, abs=0.01)], [40, 40, 0], [0, 40, 0]]
+    assert corners(walk) == [
+        [0, 0, 0],
+        [80, 0, 0],
+        [80, 40, pytest.approx(1, abs=0.01)],
+        [40, 40, 0],
+        [0, 40, 0],
+    ]
     assert "80.00 mm" in page.inner_text("#part-words")
 
 
@@ -127,7 +133,9 @@ def test_zones_are_drawn_and_kept_clear_of(walk: Walk) -> None:
         walk.click_at(x, y)
     walk.seen("#zones button:has-text('polygon of 3')")
     walk.searched()
-    circle, polygon = page.evaluate("async () => (await import('/static/state.js')).request().restrictions.zones")
+    circle, polygon = page.evaluate(
+        "async () => (await import('/static/state.js')).request().restrictions.zones"
+    )
     assert circle[1][0] - circle[0][0] == pytest.approx(12, abs=0.5)
     assert [vertex[2] for vertex in polygon] == [0, 0, 0]
     page.click("#zones button >> nth=0")

@@ -51,7 +51,8 @@ def test_files_dropped_together_give_a_curve_and_a_plan(walk: Walk, files: list[
     page.wait_for_selector("#family-answer", state="visible", timeout=SEARCH_PATIENCE)
     counts = [int(words) for words in page.locator("#family-table th[scope=row]").all_inner_texts()]
     losses = [
-        float(words.split()[0]) for words in page.locator("#family-table tbody td:nth-child(2)").all_inner_texts()
+        float(words.split()[0])
+        for words in page.locator("#family-table tbody td:nth-child(2)").all_inner_texts()
     ]
     assert counts == sorted(counts) and losses == sorted(losses, reverse=True) and losses[-1] == 1.0
     assert page.evaluate(DECODED) > 0

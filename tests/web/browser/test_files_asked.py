@@ -209,8 +209,12 @@ def test_the_drawing_is_first_on_a_phone(browser: Any, server: RunningServer, tm
     assert walk.troubles == []
 
 
-@pytest.mark.parametrize(("size", "preset"), [(PHONE, "clamp-plate-20mm"), (DESK, "plate-20mm")], ids=["phone", "desk"])
-def test_no_label_lies_on_another(browser: Any, server: RunningServer, size: dict[str, int], preset: str) -> None:
+@pytest.mark.parametrize(
+    ("size", "preset"), [(PHONE, "clamp-plate-20mm"), (DESK, "plate-20mm")], ids=["phone", "desk"]
+)
+def test_no_label_lies_on_another(
+    browser: Any, server: RunningServer, size: dict[str, int], preset: str
+) -> None:
     """Holes, faces and the load, in the first fixtures, with and without a force."""
     context = browser.new_context(viewport=size, reduced_motion="reduce")
     walk = Walk(context.new_page(), server)

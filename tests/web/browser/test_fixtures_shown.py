@@ -153,7 +153,9 @@ def test_a_dragged_force_is_answered_as_the_server_answers_it(walk: Walk) -> Non
         "moment": force["moment"],
     }
     url = f"/api/jobs/{walk.job()}"
-    case = walk.server.client.post(f"{url}/fixtures/{row['rank']}/loads", json={"loads": [load]}).json()["cases"][0]
+    case = walk.server.client.post(f"{url}/fixtures/{row['rank']}/loads", json={"loads": [load]}).json()[
+        "cases"
+    ][0]
     mine = page.evaluate(
         """async () => {
           const { state } = await import("/static/state.js");
@@ -304,7 +306,11 @@ def test_a_plate_is_drawn_with_its_clamp(walk: Walk, way: str, bolted: bool) -> 
         "pinned": None,
     }
     packed = zlib.compressobj(wbits=-15)
-    text = base64.urlsafe_b64encode(packed.compress(json.dumps(kept).encode()) + packed.flush()).decode().rstrip("=")
+    text = (
+        base64.urlsafe_b64encode(packed.compress(json.dumps(kept).encode()) + packed.flush())
+        .decode()
+        .rstrip("=")
+    )
     walk.page.goto("about:blank")
     walk.open(f"{walk.home}#{text}")
     walk.seen("#faces button")

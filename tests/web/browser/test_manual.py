@@ -45,7 +45,9 @@ def test_every_page_is_found(site: Path) -> None:
     """Each is in the order that every page shows, those that mkdocs.yml does not name last."""
     home = (site / "index.html").read_text()
     assert [
-        path.stem for path in (ROOT / "docs").glob("*.md") if f'href="{path.stem}.html" class="md-nav' not in home
+        path.stem
+        for path in (ROOT / "docs").glob("*.md")
+        if f'href="{path.stem}.html" class="md-nav' not in home
     ] == []
 
 

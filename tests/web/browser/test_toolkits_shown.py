@@ -206,7 +206,9 @@ def test_the_clamp_closes(browser: Any, server: RunningServer) -> None:
     assert begun == pytest.approx([*clamp["hole"], *back, clamp["hole"][0]], abs=1e-6)
     page.wait_for_selector("#drawing-fixture .sliding:not([transform]) .peg", state="attached")
     body = page.locator("#drawing-fixture .clamp-edge")
-    assert [float(body.get_attribute(name) or "nan") for name in ("x2", "y2")] == pytest.approx(clamp["tip"], abs=1e-6)
+    assert [float(body.get_attribute(name) or "nan") for name in ("x2", "y2")] == pytest.approx(
+        clamp["tip"], abs=1e-6
+    )
     assert page.locator(moving).count() == 1
     context.close()
     assert walk.troubles == []

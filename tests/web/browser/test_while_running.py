@@ -5,7 +5,9 @@ from __future__ import annotations
 from walking import SEARCH_PATIENCE, Walk
 
 NEW_SEARCH = "state.job?.job && state.job.job !== given"
-SAME_FORCE = "() => import('/static/state.js').then(({ change, state }) => change({ force: { ...state.force } }))"
+SAME_FORCE = (
+    "() => import('/static/state.js').then(({ change, state }) => change({ force: { ...state.force } }))"
+)
 # In one go, as somebody quick would.
 PUSH_AND_SEARCH = "for (const id of ['push', 'search']) document.getElementById(id).click();"
 

@@ -39,7 +39,9 @@ class Walk:
     def __attrs_post_init__(self) -> None:
         self.page.set_default_timeout(SEEN_PATIENCE)
         self.page.on("pageerror", lambda error: self.troubles.append(str(error)))
-        self.page.on("console", lambda line: self.troubles.append(line.text) if line.type == "error" else None)
+        self.page.on(
+            "console", lambda line: self.troubles.append(line.text) if line.type == "error" else None
+        )
         self.page.on("request", lambda request: self.asked.append(request.url))
 
     @property

@@ -75,7 +75,9 @@ def seen_from_below(entity: Any) -> bool:
     return bool(z < 0)
 
 
-def in_layout(entity: Any, points: Sequence[Point3], bulges: Sequence[float], numbered: bool = False) -> RawChain:
+def in_layout(
+    entity: Any, points: Sequence[Point3], bulges: Sequence[float], numbered: bool = False
+) -> RawChain:
     """A chain in OCS as a chain in the layout's or block's coordinates."""
     if seen_from_below(entity):
         points = [(-x, y, -z) for x, y, z in points]
@@ -183,7 +185,9 @@ def spline(entity: Any) -> RawChain:
     if not control:
         return through_fit_points(entity)
     weights = list(entity.weights) or None
-    pieces = spline_pieces([point[:2] for point in control], weights, list(entity.knots), int(entity.dxf.degree))
+    pieces = spline_pieces(
+        [point[:2] for point in control], weights, list(entity.knots), int(entity.dxf.degree)
+    )
     return curve(pieces, [z for _, _, z in control])
 
 

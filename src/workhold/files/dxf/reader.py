@@ -16,9 +16,8 @@ from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
-from workhold.files.outline.chain import Drawing
-from workhold.files.outline.extent import unit_asked
-from workhold.files.outline.placement import Placement
+from workhold.files.outline.chain import Drawing, Placement
+from workhold.files.outline.diagnostics import unit_asked
 from workhold.files.questions import DRAWING_UNIT
 from workhold.units import unit_named
 
@@ -143,7 +142,9 @@ def opened(path: Path) -> tuple[Any, list[str]]:
             raise InputError(
                 f"the DXF file is damaged ({one_line(first)}): open it in a CAD program and export it again."
             ) from first
-        return document, [f"The DXF file was damaged and had to be repaired ({one_line(first)}); check the outline."]
+        return document, [
+            f"The DXF file was damaged and had to be repaired ({one_line(first)}); check the outline."
+        ]
 
 
 def one_line(error: Exception) -> str:
@@ -172,7 +173,9 @@ def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float
     if known is not None:
         if usual_unit is not None and known[1] != unit_named(usual_unit).millimetres:
             # Whoever gave the unit for the drawing's sake learns here that it did not count.
-            return known[1], [f"The file says its unit is {known[0]}; it was read so ({DRAWING_UNIT} overrides it)."]
+            return known[1], [
+                f"The file says its unit is {known[0]}; it was read so ({DRAWING_UNIT} overrides it)."
+            ]
         return known[1], []
     if usual_unit is not None:
         return unit_named(usual_unit).millimetres, []

@@ -17,9 +17,8 @@ from attrs import evolve, frozen
 from workhold.conventions import LEVEL
 from workhold.errors import InputError
 from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
-from workhold.files.outline.chain import Chain, counted, listed
+from workhold.files.outline.chain import Chain, Placement, counted, listed
 from workhold.files.outline.curves import CurveReader
-from workhold.files.outline.placement import Placement
 from workhold.files.questions import LAYERS
 
 __all__ = ["BlockNesting", "DxfWalk"]
@@ -147,7 +146,11 @@ class DxfWalk:
             raw = RawChain([*raw.points, *raw.points][:2] or [(0.0, 0.0, 0.0)] * 2, [0.0])
         self.check_level(raw, placement, label)
         count = len(raw.bulges)
-        labels = tuple(numbered(label, k) for k in range(count)) if raw.numbered and count > 1 else (label,) * count
+        labels = (
+            tuple(numbered(label, k) for k in range(count))
+            if raw.numbered and count > 1
+            else (label,) * count
+        )
         chain = self.curves.chain(raw.points, raw.bulges, labels, raw.curved, placement)
         if chain is None:
             chain = Chain((placement(raw.points[0]),) * 2, (0.0,), (label,))
@@ -194,7 +197,9 @@ class DxfWalk:
             return
         rows, columns = max(insert.dxf.row_count, 1), max(insert.dxf.column_count, 1)
         if rows * columns > MOST_ENTITIES:
-            raise InputError(f"{label} repeats its block {rows * columns} times: export the part's outline only.")
+            raise InputError(
+                f"{label} repeats its block {rows * columns} times: export the part's outline only."
+            )
         inner = evolve(
             nest,
             layer=layer,

@@ -1,4 +1,4 @@
-"""Chains: the pieces a drawing is made of, before they are joined into loops.
+"""Chains, the pieces a drawing is made of before they are joined into loops, and the maps that place them.
 
 Glossary
 --------
@@ -7,6 +7,7 @@ label : what a message calls one segment, such as ``ARC 30 of INSERT 41``.
 closed chain : its last point is its first.
 bulge : tan of a quarter of an arc's sweep, positive counter-clockwise, 0 for a line.
 drawing : what a file held: chains in mm, and remarks for the user.
+placement : the plane affine map that puts a block or a group in its drawing.
 """
 
 from __future__ import annotations
@@ -17,13 +18,71 @@ from math import copysign, hypot, isfinite, pi, sqrt, tan
 
 from attrs import field, frozen
 
-from workhold.conventions import SAME_POINT, SHORTEST
+from workhold.conventions import CIRCULAR, SAME_POINT, SHORTEST
 from workhold.errors import InputError
 from workhold.geometry.rational import Pieces
 from workhold.geometry.segment import Point
 from workhold.limits import MOST_LENGTH
 
-__all__ = ["Chain", "CurveReading", "Drawing", "arc_bulges", "cleaned", "listed", "rebulged"]
+__all__ = ["Chain", "CurveReading", "Drawing", "Placement", "arc_bulges", "cleaned", "listed", "rebulged"]
+
+
+@frozen
+class Placement:
+    """The map x' = a x + c y + e, y' = b x + d y + f, z' = height_scale z + height (the letters of an SVG matrix)."""
+
+    a: float = 1.0
+    b: float = 0.0
+    c: float = 0.0
+    d: float = 1.0
+    e: float = 0.0
+    f: float = 0.0
+    height_scale: float = 1.0
+    height: float = 0.0
+
+    def __call__(self, point: Sequence[float]) -> Point:
+        """The image of the x and y of a point."""
+        x, y = point[0], point[1]
+        return (self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f)
+
+    def after(self, inner: Placement) -> Placement:
+        """The map that applies ``inner`` first and then this one."""
+        e, f = self((inner.e, inner.f))
+        return Placement(
+            self.a * inner.a + self.c * inner.b,
+            self.b * inner.a + self.d * inner.b,
+            self.a * inner.c + self.c * inner.d,
+            self.b * inner.c + self.d * inner.d,
+            e,
+            f,
+            self.height_scale * inner.height_scale,
+            self.height_scale * inner.height + self.height,
+        )
+
+    @property
+    def determinant(self) -> float:
+        """Factor on areas; negative for a mirror image."""
+        return self.a * self.d - self.b * self.c
+
+    @property
+    def flat(self) -> bool:
+        """Whether the map crushes the plane onto a line or a point."""
+        first, second = hypot(self.a, self.b), hypot(self.c, self.d)
+        return not abs(self.determinant) > 1e-12 * max(first, second) ** 2
+
+    @property
+    def keeps_circles(self) -> bool:
+        """Whether circles stay circles."""
+        first, second = hypot(self.a, self.b), hypot(self.c, self.d)
+        slack = CIRCULAR * max(first, second)
+        return abs(first - second) <= slack and abs(self.a * self.c + self.b * self.d) <= slack * max(
+            first, second
+        )
+
+    def bulges(self, bulges: Sequence[float]) -> tuple[float, ...]:
+        """Bulges of the image of a chain: a mirror image turns every arc's sense."""
+        return tuple(-b if b else 0.0 for b in bulges) if self.determinant < 0 else tuple(bulges)
+
 
 # How many places a remark names before it only counts.
 NAMED = 10
@@ -57,7 +116,9 @@ class Chain:
 
     def reversed(self) -> Chain:
         """Returns the chain run the other way."""
-        return Chain(self.points[::-1], tuple(-b if b else 0.0 for b in reversed(self.bulges)), self.labels[::-1])
+        return Chain(
+            self.points[::-1], tuple(-b if b else 0.0 for b in reversed(self.bulges)), self.labels[::-1]
+        )
 
 
 @frozen
@@ -163,7 +224,9 @@ def cleaned(chains: Iterable[Chain]) -> Drawing:
         kept.append(good)
     remarks = []
     if empty:
-        remarks.append(f"Left out {counted(len(empty), 'entity', 'entities')} of zero length: {listed(empty)}.")
+        remarks.append(
+            f"Left out {counted(len(empty), 'entity', 'entities')} of zero length: {listed(empty)}."
+        )
     if doubled:
         remarks.append(
             f"Left out doubled vertices of {counted(len(doubled), 'polyline', 'polylines')}: {listed(doubled)}."
@@ -181,7 +244,10 @@ def refuse_unusable(chain: Chain) -> None:
     """
     for k, (x, y) in enumerate(chain.points):
         refuse_numbers(
-            chain.labels[min(k, len(chain.labels) - 1)], x, y, chain.bulges[k] if k < len(chain.bulges) else 0.0
+            chain.labels[min(k, len(chain.labels) - 1)],
+            x,
+            y,
+            chain.bulges[k] if k < len(chain.bulges) else 0.0,
         )
 
 
@@ -194,7 +260,9 @@ def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.
         Naming the segment.
     """
     if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
-        raise InputError(f"{label} has a coordinate, radius or bulge that is not a finite number: correct it.")
+        raise InputError(
+            f"{label} has a coordinate, radius or bulge that is not a finite number: correct it."
+        )
     if max(abs(x), abs(y)) > MOST_LENGTH:
         raise InputError(
             f"{label} lies more than 1 km from the origin: check the drawing's unit, or move it to the origin."

@@ -14,12 +14,11 @@ from math import isfinite
 
 from workhold.conventions import READING, SAME_POINT
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain, CurveReading, at, counted, listed, refuse_numbers
+from workhold.files.outline.chain import Chain, CurveReading, Placement, at, counted, listed, refuse_numbers
 from workhold.files.outline.joining import Loop
-from workhold.files.outline.placement import Placement
 from workhold.files.questions import FIT, LAYERS
-from workhold.geometry.chords import merged_chords
 from workhold.geometry.curve_fit import fitted_curve
+from workhold.geometry.merged_runs import merged_chords
 from workhold.geometry.rational import Pieces, arc_pieces, joined_pieces, mapped
 from workhold.geometry.segment import Point
 
@@ -49,7 +48,9 @@ def checked_fit(fit: float | None) -> float | None:
         When it is no length, or too small a one.
     """
     if fit is not None and not (isfinite(fit) and fit >= LEAST_FIT):
-        raise InputError(f"The fit {fit:g} is not usable: give a length of {LEAST_FIT:g} mm or more, such as 0.01.")
+        raise InputError(
+            f"The fit {fit:g} is not usable: give a length of {LEAST_FIT:g} mm or more, such as 0.01."
+        )
     return fit
 
 
@@ -87,7 +88,9 @@ class CurveReader:
             ends = [(float(p[0]), float(p[1])) for p in points]
             for label, bulge in zip(labels, bulges, strict=True):
                 refuse_numbers(label, bulge=bulge)
-            bent |= {k: arc_pieces(ends[k], ends[k + 1], b) for k, b in enumerate(bulges) if b and k not in bent}
+            bent |= {
+                k: arc_pieces(ends[k], ends[k + 1], b) for k, b in enumerate(bulges) if b and k not in bent
+            }
         turned = placement.bulges(bulges)
         matrix = ((placement.a, placement.c, placement.e), (placement.b, placement.d, placement.f))
         out_points, out_bulges, out_labels = [placement(points[0])], [], []
@@ -164,7 +167,8 @@ def refuse_true_curves(
         return
     for proposed in PROPOSED:
         fitted = [
-            (one.arcs, one.departure) if proposed == PROPOSED[0] else refitted(one, proposed) for one in true.values()
+            (one.arcs, one.departure) if proposed == PROPOSED[0] else refitted(one, proposed)
+            for one in true.values()
         ]
         arcs, away = sum(count for count, _ in fitted), max(departure for _, departure in fitted)
         if arcs <= MANY_ARCS:
@@ -173,7 +177,9 @@ def refuse_true_curves(
     more = f" and {len(true) - 3} more" if len(true) > 3 else ""
     one_of = "is a true curve, which is" if len(true) == 1 else "are true curves, which are"
     it = "it" if len(true) == 1 else "them"
-    leave = f", or leave {'its layer' if len(true) == 1 else 'their layers'} out with {LAYERS}" if layered else ""
+    leave = (
+        f", or leave {'its layer' if len(true) == 1 else 'their layers'} out with {LAYERS}" if layered else ""
+    )
     raise InputError(
         f"{names}{more} {one_of} not made of lines and arcs: give {FIT} {proposed:g} to put "
         f"{counted(arcs, 'line or arc', 'lines and arcs')} in place of {it}, nowhere farther than {away:.2g} mm off{leave}."

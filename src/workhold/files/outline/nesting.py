@@ -16,9 +16,14 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.files.outline.joining import Loop
-from workhold.geometry.intersect import bounding_box
-from workhold.geometry.loop import LoopShape, loop_segments, refuse_meeting_loops, reversed_vertices, signed_area
-from workhold.geometry.segment import Segment, segment_rows
+from workhold.geometry.loop import (
+    LoopShape,
+    loop_segments,
+    refuse_meeting_loops,
+    reversed_vertices,
+    signed_area,
+)
+from workhold.geometry.segment import Segment, bounding_box, segment_rows
 from workhold.kernels.base.distance import is_inside
 
 __all__ = ["DrawnPart", "nest", "refuse_loops_across"]

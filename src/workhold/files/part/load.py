@@ -21,13 +21,16 @@ from workhold.files.outline.curves import (
     refuse_true_curves,
     with_chords_merged,
 )
+from workhold.files.outline.diagnostics import (
+    refuse_nothing_closed,
+    refuse_open_outline,
+    stray_remarks,
+    with_layers_named,
+)
 from workhold.files.outline.joining import Loop, join
-from workhold.files.outline.layers import with_layers_named
 from workhold.files.outline.nesting import DrawnPart, chosen_part, nest, refuse_loops_across
-from workhold.files.outline.strays import refuse_nothing_closed, refuse_open_outline, stray_remarks
-from workhold.files.part.builtin import builtin_parts, builtin_path
-from workhold.files.part.finding import found, kind_of, read_bytes
-from workhold.files.part.objects import drawing_of_object
+from workhold.files.part.data import drawing_of_object
+from workhold.files.part.finding import builtin_parts, builtin_path, found, kind_of, read_bytes
 from workhold.files.questions import (
     DRAWING_UNIT,
     PART_NUMBER,
@@ -146,12 +149,20 @@ def read_workpiece(
         For a part that cannot be found, read or used, naming the place.
     """
     if not (isfinite(join_tolerance) and join_tolerance >= 0):
-        raise InputError(f"The join tolerance {join_tolerance} is not usable: give a length in mm, 0 or more.")
+        raise InputError(
+            f"The join tolerance {join_tolerance} is not usable: give a length in mm, 0 or more."
+        )
     checked_fit(fit)
     for name in (unit, usual_unit):
         if name is not None:
             unit_named(name)
-    options = {"unit": unit, "usual_unit": usual_unit, "layers": layers, "part_number": part_number, "fit": fit}
+    options = {
+        "unit": unit,
+        "usual_unit": usual_unit,
+        "layers": layers,
+        "part_number": part_number,
+        "fit": fit,
+    }
     options |= {"axis": axis, "section": section}
     path = found(part) if isinstance(part, str | PathLike) else None
     try:
@@ -175,7 +186,9 @@ def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) ->
         For an object that is none, has no outline, or to which a choice does not apply.
     """
     held = drawing_of_object(part, **options)
-    return from_drawing(Path(held.name), held.drawing, held.part_number, join_tolerance, options["fit"], held.layered)
+    return from_drawing(
+        Path(held.name), held.drawing, held.part_number, join_tolerance, options["fit"], held.layered
+    )
 
 
 def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
@@ -201,7 +214,12 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
         from workhold.files.dxf.reader import read_dxf
 
         return from_drawing(
-            path, read_dxf(path, content, **units, layers=layers, fit=fit), part_number, join_tolerance, fit, True
+            path,
+            read_dxf(path, content, **units, layers=layers, fit=fit),
+            part_number,
+            join_tolerance,
+            fit,
+            True,
         )
     refuse_layers(layers)
     from workhold.files.svg.reader import read_svg
@@ -210,7 +228,12 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
 
 
 def from_json(
-    path: Path, content: bytes, unit: str | None, layers: Sequence[str] | None, part_number: int | None, own: bool
+    path: Path,
+    content: bytes,
+    unit: str | None,
+    layers: Sequence[str] | None,
+    part_number: int | None,
+    own: bool,
 ) -> Loaded:
     """A workpiece from JSON bytes, of a file of the user's or of workhold's own.
 
@@ -219,7 +242,7 @@ def from_json(
     InputError
         For wrong content, or choices that do not apply to JSON.
     """
-    from workhold.files.part.json import read_json
+    from workhold.files.part.data import read_json
 
     refuse_layers(layers)
     if unit is not None:
@@ -227,7 +250,9 @@ def from_json(
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8 JSON.") from error
+        raise InputError(
+            f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8 JSON."
+        ) from error
     read = read_json(text, own=own)
     name = read.name or path.stem
     rows = [np.array(loop, dtype=np.float64).reshape(-1, 3) for loop in read.loops]
@@ -284,10 +309,14 @@ def from_drawing(
     except InputError as error:
         if not drawing.layers:
             raise
-        raise with_layers_named(error, drawing, partial(is_usable, path, part_number, tolerance, fit)) from error
+        raise with_layers_named(
+            error, drawing, partial(is_usable, path, part_number, tolerance, fit)
+        ) from error
 
 
-def is_usable(path: Path, part_number: int | None, tolerance: float, fit: float | None, drawing: Drawing) -> bool:
+def is_usable(
+    path: Path, part_number: int | None, tolerance: float, fit: float | None, drawing: Drawing
+) -> bool:
     """Whether a part can be read of a drawing."""
     try:
         outline_of(path, drawing, part_number, tolerance, fit, True)
@@ -369,4 +398,6 @@ def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | Non
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
     because = "" if asked is not None else f", the largest (choose another with {PART_NUMBER})"
     listing = "; ".join(str(part) for part in parts[:PART_LIST])
-    return [f"The file holds {len(parts)} separate parts: {listing}{more}. Part {chosen.number} is used{because}."]
+    return [
+        f"The file holds {len(parts)} separate parts: {listing}{more}. Part {chosen.number} is used{because}."
+    ]

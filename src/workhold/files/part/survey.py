@@ -1,5 +1,7 @@
 """What a file holds and what it leaves open, for someone who is asked on the spot instead of refused.
 
+The layers of a DXF drawing are told with what is on them, so that the ones with the outline can be chosen.
+
 Glossary
 --------
 question : what a refusal leaves to the user, see ``files.questions``.
@@ -9,6 +11,7 @@ gap : the distance from a loose end of a drawing to the nearest other loose end,
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from math import hypot
 from pathlib import Path
@@ -18,16 +21,103 @@ import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain, Drawing, cleaned
-from workhold.files.outline.extent import size_of
+from workhold.files.dxf.reader import opened, refuse_other_formats, scale_of, unit_code
+from workhold.files.dxf.walk import BlockNesting, DxfWalk
+from workhold.files.outline.chain import Chain, Drawing, Placement, cleaned
+from workhold.files.outline.diagnostics import size_of
 from workhold.files.outline.joining import join
 from workhold.files.outline.nesting import DrawnPart, nest
-from workhold.files.part.finding import kind_of, read_bytes
-from workhold.files.part.layers import DrawnLayer, drawn_layers
+from workhold.files.part.finding import found, kind_of, read_bytes
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.questions import MARK, UNIT, worded
 
-__all__ = ["Survey", "survey"]
+__all__ = ["DrawnLayer", "Survey", "drawn_layers", "survey"]
+
+
+@frozen
+class DrawnLayer:
+    """A layer of a drawing.
+
+    Parameters
+    ----------
+    name : as it is drawn.
+    kinds : how many entities of each kind are on it, blocks written out.
+    hidden : whether it is frozen, switched off or never printed, so that it is read only when it is named.
+    loops : how many closed outlines its own lines, arcs and curves make; None where they cannot be told.
+    size : width and height of these lines, arcs and curves; None where there are none.
+    chains : these lines, arcs and curves.
+    """
+
+    name: str
+    kinds: Mapping[str, int]
+    hidden: bool
+    loops: int | None
+    size: tuple[float, float] | None
+    chains: tuple[Chain, ...] = ()
+
+
+class LayerWalk(DxfWalk):
+    """Visits everything, on hidden layers too, whatever is wrong with it."""
+
+    def __init__(self, document: Any) -> None:
+        super().__init__(document, None)
+        self.kinds: dict[str, Counter[str]] = {}
+
+    def visit(self, entity: Any, nest: BlockNesting) -> None:
+        """Count an entity, and collect its chain where it has one."""
+        kind = entity.dxftype()
+        if kind != "INSERT":
+            self.kinds.setdefault(self.effective_layer(entity, nest), Counter())[kind] += 1
+        try:
+            super().visit(entity, nest)
+        except InputError:
+            self.level = None
+
+    def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
+        """Everything is looked at."""
+        return True
+
+
+def drawn_layers(
+    path: str | Path, unit: str | None, usual_unit: str | None
+) -> tuple[tuple[DrawnLayer, ...], bool]:
+    """The layers of a DXF file with something on them, by name, and whether their sizes are in mm; else in drawing units.
+
+    Raises
+    ------
+    InputError
+        For a file that is none, or damaged.
+    """
+    file = found(path)
+    content = read_bytes(file)
+    if kind_of(file, content) != "dxf":
+        raise InputError(f"{file.name}: only DXF files have layers.")
+    try:
+        refuse_other_formats(content)
+        document, _ = opened(file)
+    except InputError as error:
+        raise InputError(f"{file.name}: {error}") from error
+    known = scale_of(unit_code(document, content), unit, usual_unit)
+    scale = 1.0 if known is None else known[0]
+    walk = LayerWalk(document)
+    walk.visit_all(document.modelspace(), BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
+    layers = []
+    for name in sorted(walk.kinds, key=str.casefold):
+        chains = [chain for chain in walk.chains if walk.layers.get(chain.labels[0]) == name]
+        hidden = name.casefold() in walk.hidden_layers
+        layers.append(
+            DrawnLayer(name, walk.kinds[name], hidden, loops_of(chains), size_of(chains), tuple(chains))
+        )
+    return tuple(layers), known is not None
+
+
+def loops_of(chains: list[Chain]) -> int | None:
+    """How many closed outlines chains make; None where they could go on in more than one way."""
+    try:
+        return len(join(cleaned(chains).chains, 1e-3).loops)
+    except InputError:
+        return None
+
 
 # A gap wider than this share of the drawing is none: the end was not meant to meet another.
 WIDEST_GAP = 0.1
@@ -85,7 +175,9 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
         sentence = str(error)
     asked = tuple(dict.fromkeys(mark[1:-1] for mark in MARK.findall(sentence)))
     if loaded is not None:
-        loaded = Loaded(loaded.workpiece, tuple(worded(remark, called) for remark in loaded.remarks), loaded.parts)
+        loaded = Loaded(
+            loaded.workpiece, tuple(worded(remark, called) for remark in loaded.remarks), loaded.parts
+        )
     unit = ANY_UNIT if UNIT in sentence else None
     drawing = drawing_of(path, content, options if unit is None else {**options, "unit": unit})
     chains = cleaned(drawing.chains).chains
@@ -138,7 +230,9 @@ def gaps_and_parts(
     except InputError:
         # Ends that could go on in more than one way; the refusal tells where.
         return (), ()
-    ends = np.array([end for stray in strays for end in (stray.chain.points[0], stray.chain.points[-1])]).reshape(-1, 2)
+    ends = np.array(
+        [end for stray in strays for end in (stray.chain.points[0], stray.chain.points[-1])]
+    ).reshape(-1, 2)
     found = set()
     # A file with more loose ends than this is no outline at all.
     for k, (x, y) in enumerate(ends[:2000].tolist()):

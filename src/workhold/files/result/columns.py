@@ -21,10 +21,16 @@ from numpy.typing import NDArray
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
-from workhold.files.result.checks import refuse_faulty, refuse_unknown_types
-from workhold.files.result.head import checked_head, checked_query, result_with, with_seating
-from workhold.files.result.rounding import LENGTH_STEPS, rounded, rounded_degrees, significant
-from workhold.files.result.seating_forms import checked_seating, seatings_told
+from workhold.files.result.fixture_forms import checked_seating, seatings_told
+from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees, significant
+from workhold.files.result.parts import (
+    checked_head,
+    checked_query,
+    refuse_faulty,
+    refuse_unknown_types,
+    result_with,
+    with_seating,
+)
 from workhold.files.result.writer import FORMAT, head
 from workhold.files.text import json_value
 from workhold.model.columns import COLUMNS_OF, HEAD, columns_said
@@ -172,8 +178,12 @@ def read_columns(path: Path) -> Result:
     result = result_with(MappedTable(**columns, query=query, path=path), head, query, path)
     told = seatings_told(data, path)
     if len(told) > len(result):
-        raise InputError(f"{path}: the seating of {len(told)} fixtures is told, but {len(result)} are listed.")
+        raise InputError(
+            f"{path}: the seating of {len(told)} fixtures is told, but {len(result)} are listed."
+        )
     # The pose tells which of the seats is the fixture's own.
     poses = [fixture.pose for fixture in result[: len(told)]]
-    seating = [checked_seating(one, pose, path, k) for k, (one, pose) in enumerate(zip(told, poses, strict=True), 1)]
+    seating = [
+        checked_seating(one, pose, path, k) for k, (one, pose) in enumerate(zip(told, poses, strict=True), 1)
+    ]
     return with_seating(result, seating, path)

@@ -1,18 +1,159 @@
-"""The shape of a whole result file, fixtures included, for its JSON Schema.
+"""The shapes of a fixture and of its seating in a result file, as forms of pydantic.
 
-A file is not read by these forms: a million fixtures are collected into arrays (``files.result.reader``).
+A seating is checked by its form, and becomes what it is in the model. The form of a whole file, fixtures
+included, serves its JSON Schema only: a million fixtures are collected into arrays (``files.result.reader``).
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from math import inf
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from workhold.errors import InputError
 from workhold.files.result.forms import Head, Pair, Part
-from workhold.files.result.seating_forms import SeatingPart
+from workhold.model.fixture import Pose
+from workhold.model.quality import SEATING_FIGURES
+from workhold.model.seating import Seating
 
-__all__ = ["FixturePart", "ResultFile"]
+__all__ = ["FixturePart", "ResultFile", "SeatingPart", "checked_seating", "figures_told", "seatings_told"]
+
+SeatingPair = Annotated[list[float], Field(min_length=2, max_length=2)]
+Length = Annotated[float, Field(ge=0)]
+Peg = Annotated[int, Field(ge=0, le=3)]
+
+
+class SeatingKeys(BaseModel):
+    """Keys that must look like this; further keys are allowed."""
+
+    model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+class SeatPosePart(SeatingKeys):
+    """Where the part lies, as drawn or turned over."""
+
+    theta_deg: float
+    x: float
+    y: float
+
+
+class SeatContactPart(SeatingKeys):
+    """A peg, counted from 0, on a face, or on the corner where a face begins."""
+
+    peg: Peg
+    face: Annotated[int, Field(ge=0)] | None = None
+    corner: Annotated[int, Field(ge=0)] | None = None
+
+    @model_validator(mode="after")
+    def one_of_both(self) -> SeatContactPart:
+        """Refuse a contact with neither or both."""
+        if (self.face is None) == (self.corner is None):
+            raise ValueError("a contact is on a face or on a corner")
+        return self
+
+
+class SeatPart(SeatingKeys):
+    """Where closing the vise comes to rest."""
+
+    kind: Literal["fixture", "corner", "pocket", "curved", "loose", "unsettled"]
+    pose: SeatPosePart
+    jaw_separation: float
+    difference: float = Field(description="of the jaw separation from the fixture's")
+    mirrored: bool = Field(description="turned over: x to -x in the part's own frame")
+    same_place: bool = Field(description="whether the silhouette is that of the fixture's pose")
+    contacts: list[SeatContactPart] = Field(max_length=4)
+    forces: list[float] = Field(max_length=4)
+    depth: Length | None = Field(
+        default=None, description="how far the jaws open before the part gets elsewhere"
+    )
+
+
+class PassPart(SeatingKeys):
+    """Where the cage opens first."""
+
+    pose: SeatPosePart
+    jaw_separation: float
+    contacts: list[SeatContactPart] = Field(min_length=2, max_length=4)
+
+
+class CagePart(SeatingKeys):
+    """How far the part may be off and still come home."""
+
+    theta_deg: SeatingPair
+    x: SeatingPair
+    y: SeatingPair
+
+
+class CageShortPart(SeatingKeys):
+    """By how much the extremes of a cage may be too small at most."""
+
+    theta_deg: Length
+    share: Length = Field(description="of shifts, of their whole range")
+
+
+class SeatingPart(SeatingKeys):
+    """What else the pegs of a fixture can do with the part; see docs/seating.md."""
+
+    capture_opening: Length | None
+    drop_room: Length | None
+    room_factor: Annotated[float, Field(gt=0)]
+    pass_: PassPart | None = Field(alias="pass")
+    way_out: Length | None
+    cage: CagePart | None
+    cage_short: CageShortPart | None = None
+    placing: Length | None
+    sticking_friction: Length | None
+    stop: float | None
+    seats: list[SeatPart]
+    wrong_seats: Annotated[int, Field(ge=0)]
+    reading: Length | None
+    unsettled: list[str]
+
+
+def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
+    """The seating of a fixture, counted from 1, in a pose.
+
+    Raises
+    ------
+    InputError
+        Naming the first key that is missing or cannot be used.
+    """
+    try:
+        SeatingPart.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in ("seating", *first["loc"]))
+        reason = (
+            "it is missing" if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
+        )
+        raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
+    return Seating.of_fields(data, pose)
+
+
+def figures_told(data: Mapping[str, Any]) -> dict[str, float]:
+    """The figures of a seating as a file of this program tells it; what has no end is infinite."""
+    told = {figure.key: data[figure.key] for figure in SEATING_FIGURES}
+    # Without a pass it is not known how near a part must be put.
+    told["placing"] = 0.0 if data["pass"] is None and data["capture_opening"] is not None else told["placing"]
+    return {key: inf if value is None else float(value) for key, value in told.items()}
+
+
+def seatings_told(data: dict[str, Any], path: Path) -> list[Any]:
+    """The seating of the first fixtures as the head of a file in columns has it.
+
+    Raises
+    ------
+    InputError
+        When it is no list.
+    """
+    told = data.get("seatings", [])
+    if not isinstance(told, list):
+        raise InputError(f"{path}: seatings cannot be used: it is no list.")
+    return told
+
 
 Whole = Annotated[int, Field(ge=0)]
 
@@ -80,7 +221,9 @@ class FixturePart(Part):
     pegs: list[JawPegPart | LocatorPart | ClampPart] = Field(min_length=2, max_length=5)
     pose: PosePart
     jaw_separation: float | None = None
-    flats: list[float | None] | None = Field(None, description="which way the flat of each peg looks, in degrees")
+    flats: list[float | None] | None = Field(
+        None, description="which way the flat of each peg looks, in degrees"
+    )
     pairs: Whole | None = None
     quality: dict[str, float] = Field(default_factory=dict)
     seating: SeatingPart | None = None

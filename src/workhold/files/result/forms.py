@@ -8,16 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from workhold.errors import InputError
-from workhold.files.toolkit.shapes import forms_by_noun, one_of, optional
+from workhold.files.input_forms import forms_by_noun, one_of, optional
 from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.dowel import Fit
-from workhold.model.load import ANY_DIRECTION, Load
-from workhold.model.proof import Proof, Undecided
+from workhold.model.dowels import Fit
 from workhold.model.query import Query
-from workhold.model.restrictions import Restrictions, zone_of
-from workhold.model.tolerance import Tolerance
+from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
+from workhold.model.search_report import Proof, Undecided
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart"]
@@ -253,7 +251,9 @@ class Head(Part):
             When a part of it cannot be.
         """
         return Query(
-            Workpiece.from_loops(self.workpiece.name, self.workpiece.loops, departure=self.workpiece.departure),
+            Workpiece.from_loops(
+                self.workpiece.name, self.workpiece.loops, departure=self.workpiece.departure
+            ),
             self.asked_toolkit(),
             self.types,
             contact_margin=self.contact_margin,

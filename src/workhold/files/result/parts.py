@@ -1,21 +1,238 @@
-"""The two parts of a result file: its head, checked by pydantic, and its fixtures as JSON objects, one after the other.
+"""The two parts of a result file read back: its head, checked by pydantic, and its fixtures as JSON objects.
 
-A file with one fixture per line, as workhold writes it, is read line by line, so that no more than one fixture at a time is
-an object; any other layout of the same JSON is read as a whole. Whoever reads a result file reads it by this module.
+A file with one fixture per line, as workhold writes it, is read line by line, so that no more than one
+fixture at a time is an object. Any other layout of the same JSON is read as a whole. Whoever reads a result
+file reads it by this module. What the fixtures are held to is the same in whatever form they are written.
+
+Glossary
+--------
+head : everything but the fixtures, whatever form those have.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from workhold.errors import InputError
-from workhold.files.result.forms import Head
-from workhold.files.result.head import checked_head
-from workhold.files.text import json_value
+import numpy as np
+from attrs import evolve
+from numpy.typing import NDArray
+from pydantic import ValidationError
 
-__all__ = ["read_parts"]
+from workhold.errors import InputError
+from workhold.files.input_forms import TAGS
+from workhold.files.result.forms import Head, ProofPart
+from workhold.files.text import json_value
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result
+from workhold.model.search_report import Proof
+from workhold.model.seating import Seating
+
+__all__ = [
+    "LARGEST_LENGTH",
+    "LARGEST_NUMBER",
+    "checked_head",
+    "checked_query",
+    "read_parts",
+    "refuse_faulty",
+    "refuse_unknown_types",
+    "result_with",
+    "with_seating",
+]
+
+LARGEST_NUMBER = 2**31 - 1
+LARGEST_LENGTH = 1e300
+NOT_FINITE = "cannot be used: a length, an angle or a force is not a finite number"
+
+
+def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit, path: Path) -> None:
+    """Refuse indices (N,) of arrangements that a toolkit does not have.
+
+    Raises
+    ------
+    InputError
+        Naming the first fixture.
+    """
+    names = [one.title for one in toolkit.arrangements]
+    if arrangement.min(initial=0) < 0 or arrangement.max(initial=0) >= len(names):
+        number = int(np.argmax((arrangement < 0) | (arrangement >= len(names)))) + 1
+        raise InputError(f"{path}: fixture {number} cannot be used: its type is not {' or '.join(names)}.")
+
+
+def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequence[int]) -> None:
+    """Refuse fixtures of known types that contradict the toolkit, the workpiece or themselves.
+
+    Parameters
+    ----------
+    places : where in the file they stand, from 0.
+
+    Raises
+    ------
+    InputError
+        Naming the first of them.
+    """
+    if len(table) == 0:
+        return
+    toolkit = query.toolkit
+
+    def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
+        if faulty.any():
+            where = np.flatnonzero(faulty if faulty.ndim == 1 else faulty.any(axis=1))
+            raise InputError(f"{path}: fixture {places[int(where[0])] + 1} {reason}.")
+
+    asked = [number for number, one in enumerate(toolkit.arrangements) if one.name in query.arrangements]
+    refuse(~np.isin(table.arrangement, asked), "is of a type that was not asked for")
+    jaw = toolkit.peg_carriers(table.arrangement)
+    for number, carrier in enumerate(toolkit.carriers):
+        for what, places_on, most in (
+            ("column", table.column, carrier.columns),
+            ("row", table.row, carrier.rows),
+        ):
+            beyond = (jaw == number) & (
+                (places_on < 0) | (places_on >= (LARGEST_NUMBER if most is None else most))
+            )
+            refuse(beyond, f"has a peg in a {what} beyond the {most} of the {carrier.title}")
+    faces = [face.number for face in query.workpiece.faces]
+    refuse(~np.isin(table.face, faces), "has a peg on a segment that does not name a face of the workpiece")
+    for values in (table.theta, table.position, table.jaw_separation, table.force):
+        refuse(~(np.abs(values.reshape(len(table), -1)) <= LARGEST_LENGTH), NOT_FINITE)
+    refuse(np.isinf(table.quality), NOT_FINITE)
+    # Of two clamps either may lift a locator; both together press all.
+    refuse(table.null_vector <= 0, "has a peg whose force is not positive")
+    refuse((table.pairs < 1) | (table.pairs > LARGEST_NUMBER), "stands for no pair of clamps")
+
+
+def checked_head(data: Any, path: Path) -> Head:
+    """Check the head's keys.
+
+    Raises
+    ------
+    InputError
+        Naming the first key that is missing or cannot be used.
+    """
+    try:
+        return Head.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"] if part not in TAGS)
+        if first["type"] == "missing":
+            raise InputError(f"{path} is not a complete result file: the key {key} is missing.") from error
+        reason = first["msg"][:1].lower() + first["msg"][1:]
+        raise InputError(f"{path}: {key or 'the head'} cannot be used: {reason}.") from error
+
+
+def checked_query(head: Head, path: Path) -> Query:
+    """What was asked.
+
+    Raises
+    ------
+    InputError
+        When a part of it cannot be, or the counts are of other types.
+    """
+    try:
+        query = head.query()
+        refuse_other_types(head, query.toolkit)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    return query
+
+
+def refuse_other_types(head: Head, toolkit: Toolkit) -> None:
+    """Refuse counts of other types than the toolkit's.
+
+    Raises
+    ------
+    InputError
+        Naming the counts.
+    """
+    names = toolkit.types
+    for key in ("counts", "found", "distinct"):
+        counts = getattr(head, key)
+        if counts is not None and set(counts) != set(names):
+            raise InputError(
+                f"{key} does not give a number for each of the types {', '.join(names)} and no other."
+            )
+
+
+def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
+    """The result of a head and a table.
+
+    Raises
+    ------
+    InputError
+        When the counts are not those of the table, or the account of the search does not add up.
+    """
+    for name, listed in query.toolkit.arrangements_counted(table.arrangement).items():
+        if head.counts[name] != listed:
+            said = head.counts[name]
+            raise InputError(f"{path}: counts say {said} fixtures of type {name}, but {listed} are listed.")
+    return Result(
+        query,
+        table,
+        found=head.found or head.counts,
+        distinct=head.distinct or head.counts,
+        complete=head.complete,
+        notes=tuple(head.notes),
+        statistics=head.statistics,
+        proof=None if head.proof is None else checked_proof(head.proof, query, path),
+        pairs=head.pairs,
+        seats=head.seats,
+    )
+
+
+def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Result:
+    """A result with the seating of its first fixtures.
+
+    Raises
+    ------
+    InputError
+        Where that is told though it was not asked for, or of more fixtures than it was asked of.
+    """
+    query = result.query
+    if len(seating) > (query.seating or 0) or len(seating) > len(result):
+        raise InputError(
+            f"{path}: the seating of {len(seating)} fixtures is told, but it is asked of {query.seating or 0} and "
+            f"{len(result)} are listed."
+        )
+    return evolve(result, seating=tuple(one.in_toolkit(query.toolkit, query.opening) for one in seating))
+
+
+def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
+    """The account of the search.
+
+    Raises
+    ------
+    InputError
+        When its counts do not add up, or an undecided candidate names an unknown type or a segment that is no face.
+    """
+    accounted = part.discarded_by_bound + part.verified + len(part.undecided)
+    if accounted != part.candidates:
+        raise InputError(
+            f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified or undecided."
+        )
+    faces = {face.number for face in query.workpiece.faces}
+    # With two clamps also contacts of one of them may be undecided.
+    toolkits = (query.toolkit, *query.toolkit.ways)
+    types = list(dict.fromkeys(one.title for toolkit in toolkits for one in toolkit.arrangements))
+    for number, item in enumerate(part.undecided, 1):
+        if item.type not in types:
+            raise InputError(
+                f"{path}: undecided candidate {number} of the proof is not of type {' or '.join(types)}."
+            )
+        pegs = (4, query.toolkit.peg_count)
+        for key in ("columns", "rows", "segments"):
+            if len(getattr(item, key)) not in pegs:
+                raise InputError(
+                    f"{path}: proof.undecided.{number - 1}.{key} cannot be used: it needs one for each peg."
+                )
+        if not faces.issuperset(item.segments):
+            raise InputError(
+                f"{path}: undecided candidate {number} of the proof names a segment that is no face."
+            )
+    return part.proof()
+
 
 # Bytes of a file of another layout, which takes twenty times as much memory.
 LARGEST_WHOLE = 200_000_000

@@ -1,6 +1,6 @@
 """Reading a result file back (MODEL, "Result file"), from workhold or from any other program that writes the form.
 
-The head is checked by pydantic (``files.result.head``), the fixtures by array operations. A file in columns is mapped into
+The head is checked by pydantic (``files.result.parts``), the fixtures by array operations. A file in columns is mapped into
 memory, and its fixtures are checked when they are looked at. What a file is, its first bytes tell, not its name. Messages
 count fixtures and pegs from 1.
 """
@@ -19,11 +19,18 @@ from numpy.typing import NDArray
 from workhold.archive import is_archive
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
-from workhold.files.result.checks import LARGEST_LENGTH, LARGEST_NUMBER, refuse_faulty, refuse_unknown_types
 from workhold.files.result.columns import read_columns
-from workhold.files.result.head import checked_query, result_with, with_seating
-from workhold.files.result.parts import read_parts
-from workhold.files.result.seating_forms import checked_seating
+from workhold.files.result.fixture_forms import checked_seating
+from workhold.files.result.parts import (
+    LARGEST_LENGTH,
+    LARGEST_NUMBER,
+    checked_query,
+    read_parts,
+    refuse_faulty,
+    refuse_unknown_types,
+    result_with,
+    with_seating,
+)
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Pose
@@ -96,7 +103,9 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
                 raise InputError(f"{path}: fixture {number} cannot be used: {error}.") from error
             if "seating" in fixture:
                 if len(seating) < number - 1:
-                    raise InputError(f"{path}: fixture {number} has its seating told, but not the one before it.")
+                    raise InputError(
+                        f"{path}: fixture {number} has its seating told, but not the one before it."
+                    )
                 theta, x, y, *_ = rows[-1][4]
                 seating.append(checked_seating(fixture["seating"], Pose(theta, x, y), path, number))
             number += 1
@@ -104,7 +113,9 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
         pegs = pegs or (len(rows[0][1]) if rows else 4)
         if other := next((k for k, row in enumerate(rows) if len(row[1]) != pegs), None):
             wrong = number - len(rows) + other
-            raise InputError(f"{path}: fixture {wrong} cannot be used: it does not have as many pegs as the first.")
+            raise InputError(
+                f"{path}: fixture {wrong} cannot be used: it does not have as many pegs as the first."
+            )
         shapes = ((), (pegs,), (pegs, 3), (pegs, 4), (5,), (len(FIGURES),))
         for k, (kind, shape) in enumerate(zip(kinds, shapes, strict=True)):
             blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
@@ -147,7 +158,9 @@ def fixture_row(
     if any(not 0 <= value <= LARGEST_NUMBER for hole in holes for value in hole):
         raise ValueError("a peg's column, row or segment is negative or far too large")
     numbers = [value for contact in contacts for value in contact] + placing + known
-    if not {type(value) for value in numbers} <= {int, float} or any(abs(value) > LARGEST_LENGTH for value in numbers):
+    if not {type(value) for value in numbers} <= {int, float} or any(
+        abs(value) > LARGEST_LENGTH for value in numbers
+    ):
         raise ValueError("a length, an angle or a force is not a finite number")
     return name, jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
 
@@ -213,8 +226,13 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
     if len(columns.types) == 0:
         return FixtureTable.empty(toolkit)
     if columns.jaws.shape[1] != toolkit.peg_count:
-        raise InputError(f"{path}: its fixtures do not have the {toolkit.peg_count} pegs of the {toolkit.noun}.")
-    arrangements, carriers = [one.title for one in toolkit.arrangements], [one.name for one in toolkit.carriers]
+        raise InputError(
+            f"{path}: its fixtures do not have the {toolkit.peg_count} pegs of the {toolkit.noun}."
+        )
+    arrangements, carriers = (
+        [one.title for one in toolkit.arrangements],
+        [one.name for one in toolkit.carriers],
+    )
     arrangement, jaw = indices(columns.types, arrangements), indices(columns.jaws, carriers)
     order = np.argsort(jaw, axis=1, kind="stable")
     jaw = np.take_along_axis(jaw, order, axis=1)

@@ -13,7 +13,7 @@ __all__ = ["save"]
 
 WRITERS: Mapping[str, tuple[str, str]] = {
     "json": ("workhold.files.result.writer", "write_result"),
-    "csv": ("workhold.files.result.csv", "write_result_csv"),
+    "csv": ("workhold.files.result.fixture_text", "write_result_csv"),
     "npz": ("workhold.files.result.columns", "write_columns"),
 }
 

@@ -1,4 +1,4 @@
-"""Writing the result file: its head, and one line of JSON for every fixture (``files.result.fixture_lines``).
+"""Writing the result file: its head, and one line of JSON for every fixture (``files.result.fixture_text``).
 
 Glossary
 --------
@@ -18,18 +18,15 @@ from typing import IO, Any
 from attrs import asdict
 
 from workhold.files.atomic import text_file
-from workhold.files.result.fixture_lines import fixture_lines
-from workhold.files.result.rounding import rounded_degrees
-from workhold.fixels.flat import Flat
-from workhold.fixels.holes import Holes
+from workhold.files.result.fixture_text import fixture_lines, rounded_degrees
+from workhold.fixels.carrier import Flat, Holes
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.load import Load
-from workhold.model.proof import Proof
 from workhold.model.query import Query
+from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
+from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
-from workhold.model.tolerance import Tolerance
 from workhold.model.workpiece import Workpiece
 
 __all__ = [

@@ -138,7 +138,9 @@ def departure_remarks(
             if over > OVERHANG + outline.departure
             else ""
         )
-        remarks.append(f"The outline is the section at height {section_height:g} mm{reach}: pegs have to touch there.")
+        remarks.append(
+            f"The outline is the section at height {section_height:g} mm{reach}: pegs have to touch there."
+        )
     else:
         remarks.append(silhouette_remark(outline, layers, shape))
     hint = other_axis(solid, axis, "")
@@ -185,18 +187,14 @@ def silhouette_remark(outline: Outline, layers: Sequence[Layer], shape: Any) -> 
             else:
                 whole.append((layer.low, layer.high))
     worst, z = max(lacks)
-    lack = (
-        f"the section at height {z - outline.low:.6g} mm has {worst:.3g} mm² ({100 * worst / outline.area:.2g} %) less"
-    )
+    lack = f"the section at height {z - outline.low:.6g} mm has {worst:.3g} mm² ({100 * worst / outline.area:.2g} %) less"
     if not whole:
         return (
             f"The outline is the silhouette; no range of heights has all of it ({lack}): pegs have to reach over all "
             "heights."
         )
     ranges = " and ".join(span(outline, low, high) for low, high in whole)
-    return (
-        f"The outline is the silhouette, which is the section at heights {ranges} ({lack}): pegs have to touch there."
-    )
+    return f"The outline is the silhouette, which is the section at heights {ranges} ({lack}): pegs have to touch there."
 
 
 def probed(layer: Layer) -> list[float]:

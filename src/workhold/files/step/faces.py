@@ -140,7 +140,9 @@ def kind_of(surface: Any, lie: Lie) -> str:
         return {"level": "level plane", "upright": "wall", "leaning": "sloping plane"}[lie]
     if lie == "upright":
         round_wall = kind == Type.GeomAbs_Cylinder
-        return f"round wall of radius {surface.Cylinder().Radius():.6g} mm" if round_wall else "free-form wall"
+        return (
+            f"round wall of radius {surface.Cylinder().Radius():.6g} mm" if round_wall else "free-form wall"
+        )
     if kind == Type.GeomAbs_Cylinder:
         along_axis, _ = components(surface.Cylinder().Axis().Direction(), 2)
         return f"cylinder of radius {surface.Cylinder().Radius():.6g} mm {'across' if along_axis < 1e-6 else 'aslant'}"
@@ -161,7 +163,11 @@ def fold_of(surface: Any) -> float | None:
         return float(torus.Location().Z()) if components(torus.Axis().Direction(), 2)[1] <= ALIGNED else None
     if kind == Type.GeomAbs_Cylinder:
         cylinder = surface.Cylinder()
-        return float(cylinder.Location().Z()) if components(cylinder.Axis().Direction(), 2)[0] <= ALIGNED else None
+        return (
+            float(cylinder.Location().Z())
+            if components(cylinder.Axis().Direction(), 2)[0] <= ALIGNED
+            else None
+        )
     return None
 
 
@@ -189,7 +195,8 @@ def surface_points(face: SolidFace) -> NDArray[np.float64]:
     for edge in sub_shapes(face.shape, "EDGE"):
         curve = BRepAdaptor_Curve(edge)
         points += [
-            curve.Value(float(t)) for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), EDGE_POINTS)
+            curve.Value(float(t))
+            for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), EDGE_POINTS)
         ]
     surface = BRepAdaptor_Surface(face.shape)
     if face.lie == "leaning" and surface.GetType() != GeomAbs_SurfaceType.GeomAbs_Plane:

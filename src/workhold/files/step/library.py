@@ -43,4 +43,6 @@ def remedy(error: ImportError) -> str:
         package = SYSTEM_PACKAGES.get(name, " ".join(SYSTEM_PACKAGES.values()))
         return f"STEP files need the system library {name}, which is missing: apt install {package}."
     why = " ".join(str(error).split())[:160].rstrip(".")
-    return f"the library for STEP files cannot be loaded ({why}): pip install --force-reinstall '{REQUIREMENT}'."
+    return (
+        f"the library for STEP files cannot be loaded ({why}): pip install --force-reinstall '{REQUIREMENT}'."
+    )

@@ -1,9 +1,11 @@
-"""Parts in STEP files: from bytes to the outline of a prismatic part, in mm.
+"""Parts in STEP files, or in shapes of another library: the outline of a prismatic part, in mm.
 
-The outline is the silhouette along an axis: where some height of the part has material. Round pegs parallel to the axis
-touch a part just there. It is the union of the sections of all layers, of level faces, and of the sections where leaning
-faces meet or fold; each of these lies in the silhouette, and afterwards every face is looked at whether it reaches out of
-the union. Or it is the section at a height that the user chose.
+The outline is the silhouette along an axis: where some height of the part has material. Round pegs parallel
+to the axis touch a part just there. It is the union of the sections of all layers, of level faces, and of the
+sections where leaning faces meet or fold. Each of these lies in the silhouette, and afterwards every face is
+looked at whether it reaches out of the union. Or it is the section at a height that the user chose. Shapes of
+Open CASCADE that another library has made are solids seen along an axis, or flat faces, which are taken as
+they are.
 """
 
 from __future__ import annotations
@@ -15,10 +17,11 @@ from typing import Any
 import numpy as np
 from attrs import evolve
 
-from workhold.conventions import EDGE_GAP, FREE_VOLUME, SAME_HEIGHT, SAME_VOLUME
+from workhold.conventions import ALIGNED, EDGE_GAP, FREE_VOLUME, SAME_HEIGHT, SAME_VOLUME
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Chain, CurveReading, Drawing
+from workhold.files.questions import AXIS
 from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
 from workhold.files.step.faces import Layer, SolidFace, layers_of, solid_faces
 from workhold.files.step.library import load_step_library
@@ -27,8 +30,10 @@ from workhold.files.step.solids import (
     AXES,
     Solid,
     along,
+    bounding_box,
     chosen_solid,
     lost_remarks,
+    numbered,
     read_solids,
     solid_remarks,
     sub_shapes,
@@ -36,7 +41,7 @@ from workhold.files.step.solids import (
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["border_remarks", "read_solid", "read_step", "read_step_apart"]
+__all__ = ["border_remarks", "read_shapes", "read_solid", "read_step", "read_step_apart"]
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
@@ -49,7 +54,8 @@ def read_step_apart(content: bytes, **options: Any) -> Drawing:
     """
     told = run_apart(__name__, content, options, "the STEP file")
     chains = [
-        Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels)) for points, bulges, labels in told[0]
+        Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels))
+        for points, bulges, labels in told[0]
     ]
     curves = {
         label: CurveReading((x, y), departure, is_disguise, np.array(pieces), arcs)
@@ -61,7 +67,9 @@ def read_step_apart(content: bytes, **options: Any) -> Drawing:
 def prepare() -> None:
     """Load the library, and compile what the reader calls, see :func:`workhold.files.apart.run_apart`."""
     load_step_library()
-    rows = segment_rows([Line((0.0, 0.0), (1.0, 0.0)), Line((1.0, 0.0), (0.0, 1.0)), Line((0.0, 1.0), (0.0, 0.0))])
+    rows = segment_rows(
+        [Line((0.0, 0.0), (1.0, 0.0)), Line((1.0, 0.0), (0.0, 1.0)), Line((0.0, 1.0), (0.0, 0.0))]
+    )
     is_inside(0.2, 0.2, rows)
     outline_distances(np.zeros((1, 2)), rows)
 
@@ -168,7 +176,9 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
     prismatic = [layer for layer in layers if layer.prismatic]
     regions = [section(shape, layer.middle) for layer in prismatic]
     if len(prismatic) == len(layers):
-        swept = sum(area_of(region) * (layer.high - layer.low) for region, layer in zip(regions, layers, strict=True))
+        swept = sum(
+            area_of(region) * (layer.high - layer.low) for region, layer in zip(regions, layers, strict=True)
+        )
         free = any(face.kind.startswith("free-form") for face in faces)
         refuse_missing_volume(swept, volume, FREE_VOLUME if free else SAME_VOLUME)
     for face in faces:
@@ -235,7 +245,9 @@ def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any
         )
     z = low + height
     if any(face.lie == "level" and abs(face.low - z) <= SAME_HEIGHT for face in faces):
-        raise InputError(f"at the section height {height:g} lies a level face: give a height a little above or below.")
+        raise InputError(
+            f"at the section height {height:g} lies a level face: give a height a little above or below."
+        )
     region = section(shape, z)
     pieces = len(sub_shapes(region, "FACE"))
     if pieces > 1:
@@ -251,3 +263,66 @@ def border_remarks(edges: Borders) -> list[str]:
     if edges.gap > EDGE_GAP:
         remarks.append(f"Closed gaps of up to {edges.gap:.2g} mm between edges of the outline.")
     return remarks
+
+
+def read_shapes(
+    shapes: Sequence[Any],
+    *,
+    axis: str | None = None,
+    section_height: float | None = None,
+    part_number: int | None = None,
+    fit: float | None = None,
+) -> tuple[Drawing, int | None]:
+    """The drawing of some shapes, and the number of the part that is still to be taken of it.
+
+    Parameters
+    ----------
+    shapes : of Open CASCADE, in mm.
+    axis, section_height, part_number, fit : see :func:`workhold.files.step.reader.read_step`. Faces that lie level
+        to an axis need not be told which.
+
+    Raises
+    ------
+    InputError
+        For shapes with neither a solid nor a face, solids as in :func:`workhold.files.step.reader.read_step`, and faces that
+        are not flat, or do not lie level to an axis at one height.
+    """
+    load_step_library()
+    solids = [solid for shape in shapes for solid in sub_shapes(shape, "SOLID")]
+    if solids:
+        return read_solid(numbered(solids), axis, section_height, part_number, fit), None
+    faces = [face for shape in shapes for face in sub_shapes(shape, "FACE")]
+    if not faces:
+        raise InputError("the shape has neither a face nor a solid: make a face of its outline first.")
+    if section_height is not None:
+        raise InputError("a section is taken of solids, and this is a face: leave the section out.")
+    axes = [axis.strip().lower()] if axis else [*AXES]
+    views = [
+        [one for face in faces for one in sub_shapes(along(face, name), "FACE")]
+        for name in axes
+        if name in AXES
+    ]
+    level = [view for view in views if lie_level(view)]
+    if not level:
+        raise InputError(
+            f"the faces are not flat, level to an axis and at one height: move them there, or give {AXIS}."
+        )
+    edges = borders(union([level_region(face, bounding_box(face)[0][2], True) for face in level[0]]), fit)
+    return Drawing(edges.chains, tuple(border_remarks(edges)), edges.curves), part_number
+
+
+def lie_level(faces: Sequence[Any]) -> bool:
+    """Whether faces are flat and level, all at one height."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType
+
+    heights = []
+    for face in faces:
+        surface = BRepAdaptor_Surface(face)
+        if surface.GetType() != GeomAbs_SurfaceType.GeomAbs_Plane:
+            return False
+        normal = surface.Plane().Axis().Direction()
+        if max(abs(normal.X()), abs(normal.Y())) > ALIGNED:
+            return False
+        heights.append(surface.Plane().Location().Z())
+    return bool(max(heights) - min(heights) <= SAME_HEIGHT)

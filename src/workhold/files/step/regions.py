@@ -1,6 +1,7 @@
 """Flat regions: sections of a solid, their union, and their borders as chains of lines and arcs.
 
-A region is an Open CASCADE shape of one or more flat faces at z = 0.
+A region is an Open CASCADE shape of one or more flat faces at z = 0. Free-form edges are rational Bézier
+pieces, exactly: Open CASCADE's own poles, weights and knots.
 """
 
 from __future__ import annotations
@@ -17,11 +18,46 @@ from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, CurveReading, arc_bulges, rebulged
 from workhold.files.outline.curves import CurveReader
 from workhold.files.questions import SECTION
-from workhold.files.step.free_form import edge_curve
 from workhold.files.step.solids import bounding_box, sub_shapes
+from workhold.geometry.rational import Pieces, spline_pieces
 from workhold.geometry.segment import Point
 
-__all__ = ["Borders", "area_of", "borders", "level_region", "section", "union"]
+__all__ = ["Borders", "area_of", "borders", "edge_curve", "level_region", "section", "union"]
+
+
+def edge_curve(edge: Any) -> Pieces:
+    """The pieces of an edge's curve, seen from above, in its own direction.
+
+    Raises
+    ------
+    InputError
+        Where the library knows no curve of the edge, or the curve is no spline that can be used.
+    """
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Curve
+    from OCP.Geom import Geom_TrimmedCurve
+    from OCP.GeomConvert import GeomConvert
+
+    adaptor = BRepAdaptor_Curve(edge)
+    first, last = adaptor.FirstParameter(), adaptor.LastParameter()
+    curve = BRep_Tool.Curve_s(edge, first, last)
+    if curve is None:
+        raise InputError("the outline has an edge without a curve: repair the solid in the CAD program.")
+    spline = GeomConvert.CurveToBSplineCurve_s(Geom_TrimmedCurve(curve, first, last))
+    if spline.IsPeriodic():
+        spline.SetNotPeriodic()
+    numbers = range(1, spline.NbPoles() + 1)
+    poles = [spline.Pole(k) for k in numbers]
+    knots = [spline.Knot(k) for k in range(1, spline.NbKnots() + 1) for _ in range(spline.Multiplicity(k))]
+    try:
+        return spline_pieces(
+            [(pole.X(), pole.Y()) for pole in poles],
+            [spline.Weight(k) for k in numbers],
+            knots,
+            spline.Degree(),
+        )
+    except InputError as error:
+        raise InputError(f"an edge of the outline {error}") from error
 
 
 @frozen
@@ -64,7 +100,9 @@ def section(solid: Any, z: float) -> Any:
     sheet = BRepBuilderAPI_MakeFace(plane, x0 - more, x1 + more, y0 - more, y1 + more).Face()
     cut = BRepAlgoAPI_Common(sheet, solid).Shape()
     if not sub_shapes(cut, "FACE"):
-        raise InputError("the solid cannot be cut by a plane: repair it in the CAD program and export it again.")
+        raise InputError(
+            "the solid cannot be cut by a plane: repair it in the CAD program and export it again."
+        )
     move = gp_Trsf()
     move.SetTranslation(gp_Vec(0.0, 0.0, -z))
     return cut.Moved(TopLoc_Location(move))

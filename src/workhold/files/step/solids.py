@@ -13,7 +13,16 @@ from workhold.errors import InputError
 from workhold.files.questions import PART_NUMBER
 from workhold.limits import MOST_LENGTH
 
-__all__ = ["AXES", "Solid", "along", "chosen_solid", "lost_remarks", "numbered", "read_solids", "solid_remarks"]
+__all__ = [
+    "AXES",
+    "Solid",
+    "along",
+    "chosen_solid",
+    "lost_remarks",
+    "numbered",
+    "read_solids",
+    "solid_remarks",
+]
 
 # What becomes x, y and up for each axis: the part is seen from the axis's far end, right-handed.
 AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
@@ -57,7 +66,9 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
     solids = numbered(sub_shapes(shape, "SOLID"))
     if not solids:
         if told(content):
-            raise InputError("no solid of the STEP file can be read: repair it in a CAD program and export it again.")
+            raise InputError(
+                "no solid of the STEP file can be read: repair it in a CAD program and export it again."
+            )
         sheets = len(sub_shapes(shape, "FACE"))
         held = f"surfaces ({sheets}) but no solid" if sheets else "no solid"
         raise InputError(f"the STEP file holds {held}: export the part as a closed solid.")
@@ -101,7 +112,9 @@ def refuse_other_formats(content: bytes) -> None:
     if content.startswith(b"PK"):
         raise InputError("this is a compressed file, not a STEP file: unpack it first.")
     if b"ISO-10303-21" not in content[:4096]:
-        raise InputError("this is not a STEP file (it does not begin with ISO-10303-21): export the part as STEP.")
+        raise InputError(
+            "this is not a STEP file (it does not begin with ISO-10303-21): export the part as STEP."
+        )
     if b"END-ISO-10303-21" not in content[-4096:]:
         raise InputError("the STEP file is cut short (it has no end mark): export or copy it again.")
     # Files with nothing in them have no unit either, and are told apart later.

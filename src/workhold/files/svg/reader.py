@@ -13,20 +13,19 @@ physical size : a root width and height in mm, cm or in (or pt, pc). Pixels are 
 from __future__ import annotations
 
 from workhold.errors import InputError
-from workhold.files.outline.chain import Drawing
-from workhold.files.outline.extent import unit_asked
-from workhold.files.outline.placement import Placement
-from workhold.files.svg.cascade import Styles
-from workhold.files.svg.document import read_document
-from workhold.files.svg.lengths import ShapeElement, absolute, millimetres, physical
-from workhold.files.svg.view import ViewBox, viewbox_of
+from workhold.files.outline.chain import Drawing, Placement
+from workhold.files.outline.diagnostics import unit_asked
+from workhold.files.svg.document import Styles, read_document
+from workhold.files.svg.viewport import ShapeElement, ViewBox, absolute, millimetres, physical, viewbox_of
 from workhold.files.svg.walk import ElementNesting, SvgWalk
 from workhold.units import unit_named
 
 __all__ = ["read_svg"]
 
 
-def read_svg(content: bytes, *, unit: str | None, usual_unit: str | None = None, fit: float | None = None) -> Drawing:
+def read_svg(
+    content: bytes, *, unit: str | None, usual_unit: str | None = None, fit: float | None = None
+) -> Drawing:
     """Reads the visible outlines of an SVG file.
 
     Parameters
@@ -86,7 +85,9 @@ def page(
     if unit is not None:
         asked = unit_named(unit).millimetres
         if scale is not None and abs(scale - asked) > 1e-9 * asked:
-            remarks.append(f"The file's size makes a user unit {scale:.6g} mm; it was read as 1 {unit} as asked.")
+            remarks.append(
+                f"The file's size makes a user unit {scale:.6g} mm; it was read as 1 {unit} as asked."
+            )
         scale = asked
     if scale is None:
         return None
@@ -104,7 +105,9 @@ def pixels(root: ShapeElement, name: str) -> float | None:
     return None if given is None else absolute(given.text)
 
 
-def file_scale(root: ShapeElement, width: float | None, height: float | None, box: ViewBox | None) -> float | None:
+def file_scale(
+    root: ShapeElement, width: float | None, height: float | None, box: ViewBox | None
+) -> float | None:
     """Millimetres per user unit by the file's own physical size in mm; None when it has none.
 
     Raises

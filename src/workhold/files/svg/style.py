@@ -1,22 +1,26 @@
-"""Whether an element is seen: the computed values of ``display``, ``visibility``, ``opacity``, paints and their like.
+"""Whether an element is seen, and which of its loops bound its paint.
 
-A shape counts when its author sees its fill or its stroke (SVG 2, chapters 11 and 13); what colour that is does not matter.
+A shape counts when its author sees its fill or its stroke (SVG 2, chapters 11 and 13); what colour that is
+does not matter. That follows from the computed values of ``display``, ``visibility``, ``opacity``, paints and
+their like. Inside one fill, a loop in another may be painted over (SVG 2, 13.4.2).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TypeVar
 from xml.etree.ElementTree import Element
 
+import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.files.svg.cascade import Declared, Styles
-from workhold.files.svg.document import href, local_name, short
+from workhold.files.outline.chain import Chain, cleaned
+from workhold.files.svg.document import Declared, Styles, href, local_name, short
+from workhold.geometry.loop import LoopShape, encloses, loop_segments, refuse_meeting_loops, signed_area
 
-__all__ = ["INITIAL", "Style", "computed", "link_of", "refuse_effects"]
+__all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effects"]
 
 Value = TypeVar("Value")
 Declarations = dict[str, list[Declared]]
@@ -112,7 +116,9 @@ def computed(declarations: Declarations, around: Style, styles: Styles, label: s
             if parsed is not None:
                 return parsed
             if "(" in text or text == "revert-layer":
-                raise InputError(f"{label} has {name}: {short(text)}, which is not read: write a plain value.")
+                raise InputError(
+                    f"{label} has {name}: {short(text)}, which is not read: write a plain value."
+                )
         return inherited
 
     def painted(text: str) -> str | None:
@@ -123,7 +129,9 @@ def computed(declarations: Declarations, around: Style, styles: Styles, label: s
         raise InputError(f"{label} has display: contents, which is not read: remove it.")
     return Style(
         displayed=display != "none" and value("opacity", positive, True, True),
-        shown=value("visibility", {"visible": True, "hidden": False, "collapse": False}.get, around.shown, True),
+        shown=value(
+            "visibility", {"visible": True, "hidden": False, "collapse": False}.get, around.shown, True
+        ),
         fill=value("fill", painted, around.fill, INITIAL.fill),
         stroke=value("stroke", painted, around.stroke, INITIAL.stroke),
         fill_opaque=value("fill-opacity", positive, around.fill_opaque, True),
@@ -213,7 +221,9 @@ def paint(text: str, styles: Styles) -> str | None:
 
 def paints(server: Element, styles: Styles, deepest: int = 50) -> bool:
     """Whether a gradient has a stop that is seen, or a pattern has content; it may be that of another it links to."""
-    content = [child for child in server if (local_name(child) == "stop") == (local_name(server) != "pattern")]
+    content = [
+        child for child in server if (local_name(child) == "stop") == (local_name(server) != "pattern")
+    ]
     if content:
         return any(
             local_name(child) != "stop"
@@ -222,3 +232,40 @@ def paints(server: Element, styles: Styles, deepest: int = 50) -> bool:
         )
     linked = styles.document.linked(href(server))
     return linked is not None and deepest > 0 and paints(linked, styles, deepest - 1)
+
+
+def boundaries(chains: Sequence[Chain]) -> list[Chain]:
+    """The chains that have paint on one side only, by the nonzero rule.
+
+    How often the loops around a point turn about it, less those that turn the other way, is not zero where there is paint.
+    A loop that meets others stays, to be refused with its place.
+    """
+    clean = [cleaned([chain]).chains for chain in chains]
+    known = [k for k, found in enumerate(clean) if found and len(found[0].bulges) > 1]
+    shapes, turns = [], []
+    for k in known:
+        (chain,) = clean[k]
+        vertices = np.column_stack([chain.points[:-1], chain.bulges])
+        shapes.append(LoopShape.of(loop_segments(vertices)))
+        turns.append(int(np.sign(signed_area(shapes[-1].segments))))
+    boxes = np.array([shape.box for shape in shapes]).reshape(-1, 4)
+    over = set()
+    for at, (k, shape) in enumerate(zip(known, shapes, strict=True)):
+        x0, y0, x1, y1 = shape.box
+        around = (boxes[:, 0] <= x0) & (boxes[:, 1] <= y0) & (boxes[:, 2] >= x1) & (boxes[:, 3] >= y1)
+        around[at] = False
+        near = np.flatnonzero(around).tolist()
+        outer = [m for m in near if encloses(shapes[m], shape)]
+        outside = sum(turns[m] for m in outer)
+        if outside and outside + turns[at] and not any(meet(shape, shapes[m]) for m in near):
+            over.add(k)
+    return [chain for k, chain in enumerate(chains) if k not in over]
+
+
+def meet(one: LoopShape, other: LoopShape) -> bool:
+    """Whether two loops cross or touch."""
+    try:
+        refuse_meeting_loops(one, other, str, str)
+    except InputError:
+        return True
+    return False

@@ -6,10 +6,9 @@ import re
 from math import cos, degrees, isfinite, radians, sin, tan
 
 from workhold.errors import InputError
-from workhold.files.outline.placement import Placement
-from workhold.files.svg.cascade import Declared
-from workhold.files.svg.document import short
-from workhold.files.svg.lengths import ANGLES, NUMBER, absolute, numbers
+from workhold.files.outline.chain import Placement
+from workhold.files.svg.document import Declared, short
+from workhold.files.svg.viewport import ANGLES, NUMBER, absolute, numbers
 
 __all__ = ["transform_of"]
 
@@ -19,7 +18,14 @@ QUANTITY = re.compile(rf"({NUMBER})([a-z%]*)$", re.IGNORECASE)
 PROPERTIES = ("transform", "translate", "rotate", "scale")
 SIDES = {"left": (0, 0.0), "right": (0, 1.0), "top": (1, 0.0), "bottom": (1, 1.0)}
 # Functions of the attribute, and how many arguments they have.
-ATTRIBUTE = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
+ATTRIBUTE = {
+    "matrix": (6,),
+    "translate": (1, 2),
+    "scale": (1, 2),
+    "rotate": (1, 3),
+    "skewX": (1,),
+    "skewY": (1,),
+}
 
 
 def transform_of(
@@ -39,12 +45,16 @@ def transform_of(
         For transforms that are not SVG's, or not in the plane, naming the element.
     """
     given = {name: declarations[name][0] for name in PROPERTIES if name in declarations}
-    given = {name: value for name, value in given.items() if value.text not in ("", "none", "initial", "unset")}
+    given = {
+        name: value for name, value in given.items() if value.text not in ("", "none", "initial", "unset")
+    }
     if not given:
         return Placement()
     box = declarations.get("transform-box")
     if box and box[0].text != "view-box":
-        raise InputError(f"{label} has the transform-box '{short(box[0].text)}', which is not read: use view-box.")
+        raise InputError(
+            f"{label} has the transform-box '{short(box[0].text)}', which is not read: use view-box."
+        )
     x, y = origin(declarations, viewport, label)
     placement = Placement(e=x, f=y)
     for name in ("translate", "rotate", "scale"):
@@ -71,7 +81,9 @@ def origin(
         return 0.0, 0.0
     given = declarations["transform-origin"][0]
     text = given.text
-    error = InputError(f"{label} has the transform-origin '{short(text)}', which is not read: write two lengths.")
+    error = InputError(
+        f"{label} has the transform-origin '{short(text)}', which is not read: write two lengths."
+    )
     words = text.lower().split()
     if words in (["initial"], ["unset"]):
         return 0.0, 0.0
@@ -168,7 +180,11 @@ def single_transform(name: str, v: list[float]) -> Placement | None:
         case "rotate", 1 | 3:
             c, s = cos(radians(v[0])), sin(radians(v[0]))
             turn = Placement(c, s, -s, c)
-            return turn if count == 1 else Placement(e=v[1], f=v[2]).after(turn).after(Placement(e=-v[1], f=-v[2]))
+            return (
+                turn
+                if count == 1
+                else Placement(e=v[1], f=v[2]).after(turn).after(Placement(e=-v[1], f=-v[2]))
+            )
         case "skewX", 1:
             return Placement(c=tan(radians(v[0])))
         case "skewY", 1:

@@ -9,22 +9,31 @@ from xml.etree.ElementTree import Element
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain, counted
+from workhold.files.outline.chain import Chain, Placement, counted
 from workhold.files.outline.curves import CurveReader
-from workhold.files.outline.placement import Placement
-from workhold.files.svg.cascade import Declared, Styles
-from workhold.files.svg.document import DEEPEST, Document, href, local_name, short
-from workhold.files.svg.lengths import ShapeElement, Viewport
+from workhold.files.svg.document import DEEPEST, Declared, Document, Styles, href, local_name, short
 from workhold.files.svg.shapes import SHAPES
 from workhold.files.svg.style import INITIAL, Style, computed, link_of, refuse_effects
 from workhold.files.svg.transforms import transform_of
-from workhold.files.svg.view import Window, convex, fitted, viewbox_of
+from workhold.files.svg.viewport import ShapeElement, Viewport, Window, convex, fitted, viewbox_of
 
 __all__ = ["ElementNesting", "SvgWalk"]
 
 MOST_ELEMENTS = 1_000_000
 CONTAINERS = {"g", "a", "switch"}
-SILENT = {"defs", "symbol", "style", "title", "desc", "metadata", "clipPath", "mask", "marker", "pattern", "filter"}
+SILENT = {
+    "defs",
+    "symbol",
+    "style",
+    "title",
+    "desc",
+    "metadata",
+    "clipPath",
+    "mask",
+    "marker",
+    "pattern",
+    "filter",
+}
 SILENT |= {"linearGradient", "radialGradient", "view", "namedview"}
 CUT_OFF = ("hidden", "scroll", "clip")
 FEATURES = "http://www.w3.org/TR/SVG11/feature#"
@@ -97,7 +106,9 @@ class SvgWalk:
         inner = self.clipped(element, evolve(nest, placement=placement, style=style), declarations, label)
         if element is self.document.root:
             if placement != nest.placement:
-                raise InputError(f"{label} has a transform, which programs draw differently: put it on a group.")
+                raise InputError(
+                    f"{label} has a transform, which programs draw differently: put it on a group."
+                )
             self.visit_children(element, inner)
         elif tag in CONTAINERS:
             if tag == "a" and nest.anchored:
@@ -122,7 +133,9 @@ class SvgWalk:
                 if not suits(element, label):
                     continue
                 if local_name(element) in SILENT | {"a", "foreignObject"}:
-                    raise InputError(f"{label} is the choice of a switch, which not all programs show: remove it.")
+                    raise InputError(
+                        f"{label} is the choice of a switch, which not all programs show: remove it."
+                    )
                 self.visit(element, nest)
                 return
             self.visit(element, nest)
@@ -145,7 +158,7 @@ class SvgWalk:
             raise InputError(f"{label} has a transform that crushes it to a line: correct it.")
         found = list(self.placed(figure, nest.placement))
         if figure.closed and not style.even_odd and len(found) > 1:
-            from workhold.files.svg.painting import boundaries
+            from workhold.files.svg.style import boundaries
 
             bounding = boundaries(found)
             self.painted_over += len(found) - len(bounding)
@@ -157,7 +170,9 @@ class SvgWalk:
                 self.hidden += 1
                 return
             if shown - {"all"}:
-                raise InputError(f"{label} is cut by {window.label}: cut the shape itself, or remove what cuts it.")
+                raise InputError(
+                    f"{label} is cut by {window.label}: cut the shape itself, or remove what cuts it."
+                )
         self.chains += found
 
     def placed(self, figure: ShapeElement, placement: Placement) -> Iterator[Chain]:
@@ -204,7 +219,9 @@ class SvgWalk:
         declarations = self.styles.of(target)
         style = computed(declarations, nest.style, self.styles, label)
         if not (style.displayed and suits(target, label)):
-            raise InputError(f"{label} is switched off itself, which programs take differently: switch off the use.")
+            raise InputError(
+                f"{label} is switched off itself, which programs take differently: switch off the use."
+            )
         refuse_effects(declarations, label)
         inner = self.clipped(target, evolve(nest, style=style), declarations, label)
         own = ShapeElement(target, label, declarations, nest.viewport)
@@ -212,7 +229,9 @@ class SvgWalk:
         if local_name(target) == "symbol":
             names = {"x", "y", "refX", "refY"} | ({"width", "height"} - sized)
             if any(own.given(name) is not None for name in names):
-                raise InputError(f"{label} has a place or size, which programs draw differently: give them to the use.")
+                raise InputError(
+                    f"{label} has a place or size, which programs draw differently: give them to the use."
+                )
             self.visit_view(own, inner, (0.0, 0.0), use)
         else:
             self.visit_view(own, inner, (own.length("x"), own.length("y")), use)
@@ -274,7 +293,9 @@ class SvgWalk:
         # A drawing has two coordinate systems, outside and inside; programs differ in which of them a clip path is.
         target = self.document.linked(href(element)) if local_name(element) == "use" else element
         if target is not None and local_name(target) in ("svg", "symbol"):
-            raise InputError(f"{label} has a clip-path, which programs place differently: put it on a group around.")
+            raise InputError(
+                f"{label} has a clip-path, which programs place differently: put it on a group around."
+            )
         link = link_of(text)
         clip = None if link is None or link[1] else self.document.linked(link[0])
         if (
@@ -340,9 +361,13 @@ def suits(element: Element, label: str) -> bool:
     if element.get("requiredExtensions") is not None:
         return False
     if element.get("systemLanguage") is not None:
-        raise InputError(f"{label} is shown in some languages only (systemLanguage): keep one, without the condition.")
+        raise InputError(
+            f"{label} is shown in some languages only (systemLanguage): keep one, without the condition."
+        )
     if not all(name.startswith(FEATURES) for name in element.get("requiredFeatures", "").split()):
-        raise InputError(f"{label} is shown by some programs only (requiredFeatures): remove it, or the condition.")
+        raise InputError(
+            f"{label} is shown by some programs only (requiredFeatures): remove it, or the condition."
+        )
     return True
 
 

@@ -1,17 +1,21 @@
 """Kernels compiled when the package was built: one shared library that needs neither numba nor Python.
 
-The library holds each kernel under its name, as a function of an array of words: those of its result, one for a failure,
-and those of its arguments, with all records taken apart. It tells in ``DESCRIPTION`` what each is called with (written by
-``building/compile_kernels.py``). It is called through ctypes, which releases the interpreter lock. Kernels trust what they
-are given, so every call is checked. The word of an array is where NumPy keeps its header, in which the library itself looks
-up and checks what it is: seating calls small kernels often, and a call takes as long as its arrays take to be told.
+The library holds each kernel under its name, as a function of an array of words: those of its result, one for
+a failure, and those of its arguments, with all records taken apart. It tells in ``DESCRIPTION`` what each is
+called with (written by ``building/compile_kernels.py``). It is called through ctypes, which releases the
+interpreter lock. Kernels trust what they are given, so every call is checked. The word of an array is where
+NumPy keeps its header, in which the library itself looks up and checks what it is: seating calls small
+kernels often, and a call takes as long as its arrays take to be told.
+
+The library belongs to the sources of which it holds the hash: code compiled from others is never run.
 
 Glossary
 --------
 door : what Python calls: a kernel of the library behind its checks.
-argument : a number, as "int64", "float64" or "bool"; an array, as its element type and how many dimensions it has; or a
-    record, as the list of its fields.
-header : NumPy's record of an array in memory, of which its C interface fixes the layout (``PyArrayObject_fields``).
+argument : a number, as "int64", "float64" or "bool"; an array, as its element type and how many dimensions it
+    has; or a record, as the list of its fields.
+header : NumPy's record of an array in memory, of which its C interface fixes the layout
+    (``PyArrayObject_fields``).
 """
 
 from __future__ import annotations
@@ -21,14 +25,27 @@ import json
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
+from hashlib import sha256
 from inspect import signature
 from pathlib import Path
 from struct import Struct
+from sysconfig import get_platform
 from typing import Any
 
 import numpy as np
 
-__all__ = ["DESCRIPTION", "ELEMENTS", "KNOWN", "LIBRARY_NAME", "REFUSED", "RELEASE", "Door", "Library"]
+__all__ = [
+    "DESCRIPTION",
+    "ELEMENTS",
+    "KNOWN",
+    "LIBRARY_NAME",
+    "REFUSED",
+    "RELEASE",
+    "Door",
+    "Library",
+    "library_name",
+    "source_hash",
+]
 
 # Names that the library exports besides those of its kernels.
 DESCRIPTION, RELEASE, KNOWN = "workhold_description", "workhold_release", "workhold_known"
@@ -66,7 +83,9 @@ class Library:
         if sys.implementation.name != "cpython" or not are_headers_known():
             raise OSError("This Python keeps arrays in another way.")
         self.code = ctypes.CDLL(str(path))
-        described: Any = json.loads(ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self.code, DESCRIPTION))))
+        described: Any = json.loads(
+            ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self.code, DESCRIPTION)))
+        )
         self.source_hash: str = described["source_hash"]
         self.kernels: dict[str, Any] = described["kernels"]
         known = (ctypes.c_void_p * (1 + len(ELEMENTS))).in_dll(self.code, KNOWN)
@@ -94,7 +113,9 @@ class Door:
         For a call with anything else than the kernel was compiled for.
     """
 
-    def __init__(self, library: Library, function: Callable[..., Any], arguments: list[Any], result: Any) -> None:
+    def __init__(
+        self, library: Library, function: Callable[..., Any], arguments: list[Any], result: Any
+    ) -> None:
         self.library = library
         self.__name__, self.__doc__ = function.__name__, function.__doc__
         self.arguments = tuple(zip(signature(function).parameters, arguments, strict=True))
@@ -256,7 +277,11 @@ def plain(argument: Any, value: Any) -> Any:
 def refusal(name: str, argument: Any, value: Any) -> str | None:
     """Why a value is not taken, in words; None where it is."""
     if isinstance(argument, str):
-        return None if isinstance(value, SCALARS[argument][1]) else f"{name} must be {argument}, not {told(value)}"
+        return (
+            None
+            if isinstance(value, SCALARS[argument][1])
+            else f"{name} must be {argument}, not {told(value)}"
+        )
     if isinstance(argument, dict):
         element, dimensions = np.dtype(argument["array"]), argument["dimensions"]
         is_such = isinstance(value, np.ndarray) and value.dtype == element and value.ndim == dimensions
@@ -291,3 +316,21 @@ def told(value: Any) -> str:
         layout = "" if value.flags.c_contiguous else ", not contiguous"
         return f"an array of {value.dtype} of shape {value.shape}{layout}"
     return f"{type(value).__name__} of {len(value)}" if isinstance(value, tuple) else type(value).__name__
+
+
+# The folder of all kernels.
+KERNELS = Path(__file__).resolve().parents[1]
+
+
+def source_hash() -> str:
+    """Hash of the sources of all rooms of the kernels, and of the numbers that decide."""
+    digest, package = sha256(), KERNELS.parent
+    for path in (package / "conventions.py", *sorted(KERNELS.rglob("*.py"))):
+        digest.update(path.relative_to(package).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:20]
+
+
+def library_name() -> str:
+    """Name of the file of the library for this kind of machine."""
+    return LIBRARY_NAME.format(platform=get_platform().replace(".", "_"))

@@ -22,8 +22,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from workhold.errors import InputError
-from workhold.kernels.base.built import Library
-from workhold.kernels.base.sources import KERNELS, library_name, source_hash
+from workhold.kernels.base.built import KERNELS, Library, library_name, source_hash
 from workhold.limits import refuse_little_space
 
 __all__ = [
@@ -141,7 +140,9 @@ def are_stored(kernels: Sequence[str]) -> bool:
     if LIBRARY is not None:
         return True
     folder = cache_folder()
-    return folder is not None and set(kernels) <= {path.name.partition("-")[0] for path in folder.rglob("*.nbi")}
+    return folder is not None and set(kernels) <= {
+        path.name.partition("-")[0] for path in folder.rglob("*.nbi")
+    }
 
 
 def compiled(function: Function) -> Function:

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import EXACT, SAME_CENTER
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
 from workhold.kernels.base.interval import (
     TURN,
     Interval,
@@ -42,8 +42,7 @@ from workhold.kernels.base.interval import (
     isquare,
     isub,
 )
-from workhold.kernels.base.shallow import is_shallow
-from workhold.kernels.curves.columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
+from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 
 Array = NDArray[np.float64]
 Motion = tuple[float, float, float, float, float, float]

@@ -36,8 +36,20 @@ from numpy.typing import NDArray
 
 from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, HIGH_SLACK, IS_ARC, LOW_SLACK, RADIUS, X, Y
-from workhold.kernels.base.shallow import angle_on, is_shallow, local_size
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    HIGH_SLACK,
+    IS_ARC,
+    LOW_SLACK,
+    RADIUS,
+    X,
+    Y,
+    angle_on,
+    is_shallow,
+    local_size,
+)
 from workhold.kernels.chord.coincidences import (
     ARCS,
     CONCENTRIC,
@@ -47,8 +59,7 @@ from workhold.kernels.chord.coincidences import (
     coincidence,
     motion,
 )
-from workhold.kernels.chord.shallow import line_to_shallow, shallow_to_arc
-from workhold.kernels.curves.columns import (
+from workhold.kernels.chord.columns import (
     BACKWARD_ERROR,
     BRANCH,
     COINCIDENCE,
@@ -60,6 +71,7 @@ from workhold.kernels.curves.columns import (
     SIDE,
     SINE,
 )
+from workhold.kernels.chord.shallow import line_to_shallow, shallow_to_arc
 
 Array = NDArray[np.float64]
 Chord = tuple[float, float, float, float, float, float]
@@ -191,7 +203,9 @@ def backward_error(a: Array, b: Array, d: float) -> float:
     size = abs(a[X]) + abs(a[Y]) + abs(b[X]) + abs(b[Y]) + a[RADIUS] + b[RADIUS] + d
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         # Nearly parallel lines are touched far from their middles.
-        size = min(size / abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]), size + a[HALF_EXTENT] + b[HALF_EXTENT])
+        size = min(
+            size / abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]), size + a[HALF_EXTENT] + b[HALF_EXTENT]
+        )
     spread = 1.0
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
         # The head's distance from its circle is found from that of the tail: an error grows with the ratio of radii.
@@ -253,7 +267,10 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
      directions), the errors infinite where these formulas do not bound them, too near a tangency
     """
     d = curve[LENGTH]
-    wx, wy = d * (cosine * curve[COSINE] - sine * curve[SINE]), d * (sine * curve[COSINE] + cosine * curve[SINE])
+    wx, wy = (
+        d * (cosine * curve[COSINE] - sine * curve[SINE]),
+        d * (sine * curve[COSINE] + cosine * curve[SINE]),
+    )
     kappa, kind = curve[KAPPA], curve[COINCIDENCE]
     if kind != NONE and kind != CONCENTRIC:
         regular, u = motion(a, b, curve, psi)
@@ -303,7 +320,9 @@ def valued(
 
 
 @inner
-def curve_value(a: Array, b: Array, curve: Array, psi: float, mode: float) -> tuple[float, float, float, float]:
+def curve_value(
+    a: Array, b: Array, curve: Array, psi: float, mode: float
+) -> tuple[float, float, float, float]:
     """Value and derivative over psi of a chord curve.
 
     Parameters

@@ -18,9 +18,20 @@ from numpy.typing import NDArray
 
 from workhold.conventions import EXACT, PARALLEL
 from workhold.kernels.base.compiling import inner, inner_making_arrays
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    IS_ARC,
+    RADIUS,
+    X,
+    Y,
+    is_shallow,
+    local_size,
+    middle_of,
+    point_at,
+)
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.base.shallow import is_shallow, local_size, middle_of, point_at
 from workhold.kernels.chord.coincidences import are_concentric, are_one_chord_apart, beyond_line
 from workhold.kernels.chord.evaluation import chord, parameter_on
 from workhold.kernels.chord.shallow import arcs_cosine, is_turned, tangent_off
@@ -87,7 +98,9 @@ def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: fl
             dx, dy, k = x - mx, y - my, 1.0 / fixed[RADIUS]
             rx, ry = fixed[AXIS_X] + k * dx, fixed[AXIS_Y] + k * dy
             size = hypot(rx, ry)
-            cosine = -(k * (dx * dx + dy * dy + d * d) / 2.0 + dx * fixed[AXIS_X] + dy * fixed[AXIS_Y]) / (d * size)
+            cosine = -(k * (dx * dx + dy * dy + d * d) / 2.0 + dx * fixed[AXIS_X] + dy * fixed[AXIS_Y]) / (
+                d * size
+            )
             count = add_pair(events, count, atan2(ry, rx) + turned, cosine, kind, 0.0)
         else:
             apart = hypot(dx, dy)
@@ -141,7 +154,9 @@ def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) 
 
 
 @inner
-def add_gap(events: Array, count: int, middle: float, apart: float, d: float, a: Array, b: Array, gap: float) -> int:
+def add_gap(
+    events: Array, count: int, middle: float, apart: float, d: float, a: Array, b: Array, gap: float
+) -> int:
     """Append the tangencies at which the centre of b, moved back by the chord, is ``gap`` away from the centre of a.
 
     That distance is g with g^2 = (apart - d)^2 + 4 apart d sin(gamma / 2)^2, gamma the angle between chord and centres.
@@ -149,7 +164,9 @@ def add_gap(events: Array, count: int, middle: float, apart: float, d: float, a:
     difference = apart - d
     rounding = ROUNDINGS * (abs(a[X]) + abs(a[Y]) + abs(b[X]) + abs(b[Y]) + a[RADIUS] + b[RADIUS] + d)
     square = (gap - difference) * (gap + difference) / (4.0 * apart * d)
-    error = 2.0 * rounding * (abs(gap) + abs(difference) + rounding) / (4.0 * apart * d) + ROUNDINGS * abs(square)
+    error = 2.0 * rounding * (abs(gap) + abs(difference) + rounding) / (4.0 * apart * d) + ROUNDINGS * abs(
+        square
+    )
     if not 0.0 <= square <= 1.0:
         return count
     sine, cosine = sqrt(square), sqrt(1.0 - square)
@@ -208,7 +225,9 @@ def only_touch(a: Array, b: Array, d: float) -> bool:
         return False
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
         apart = hypot(b[X] - a[X], b[Y] - a[Y])
-        return abs(apart - d) >= a[RADIUS] + b[RADIUS] - EXACT or apart + d <= abs(a[RADIUS] - b[RADIUS]) + EXACT
+        return (
+            abs(apart - d) >= a[RADIUS] + b[RADIUS] - EXACT or apart + d <= abs(a[RADIUS] - b[RADIUS]) + EXACT
+        )
     line, arc = (a, b) if a[IS_ARC] == 0.0 else (b, a)
     apart = line[AXIS_Y] * (arc[X] - line[X]) - line[AXIS_X] * (arc[Y] - line[Y])
     return arc[IS_ARC] != 0.0 and abs(apart) - d >= arc[RADIUS] - EXACT
@@ -268,9 +287,16 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
         none: their chords are sliding pairs. Nor do concentric arcs whose chord lies on a line through the centre: their
         contacts share one line of action.
     """
-    if are_concentric(a, b) and min(abs(d - a[RADIUS] - b[RADIUS]), abs(d - abs(a[RADIUS] - b[RADIUS]))) <= EXACT:
+    if (
+        are_concentric(a, b)
+        and min(abs(d - a[RADIUS] - b[RADIUS]), abs(d - abs(a[RADIUS] - b[RADIUS]))) <= EXACT
+    ):
         return np.empty((0, 5))
-    if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0 and abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL:
+    if (
+        a[IS_ARC] == 0.0
+        and b[IS_ARC] == 0.0
+        and abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL
+    ):
         return np.empty((0, 5))
     if only_touch(a, b, d):
         return np.empty((0, 5))

@@ -18,7 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    IS_ARC,
+    RADIUS,
+    X,
+    Y,
+    beside_middle,
+    exact_dot,
+    middle_of,
+)
 from workhold.kernels.base.interval import (
     Interval,
     iadd,
@@ -31,7 +41,6 @@ from workhold.kernels.base.interval import (
     isub,
     outward,
 )
-from workhold.kernels.base.shallow import beside_middle, exact_dot, middle_of
 
 Array = NDArray[np.float64]
 Chord = tuple[float, float, float, float, float, float]
@@ -43,7 +52,9 @@ def line_to_shallow(a: Array, b: Array, wx: float, wy: float, branch: float) -> 
     nx, ny = a[AXIS_Y], -a[AXIS_X]
     mx, my = middle_of(b)
     off = nx * (a[X] + wx - mx) + ny * (a[Y] + wy - my)
-    x, y, rx, ry = beside_middle(b, nx, ny, exact_dot(a[AXIS_X], a[AXIS_Y], b[AXIS_X], b[AXIS_Y]), off, branch)
+    x, y, rx, ry = beside_middle(
+        b, nx, ny, exact_dot(a[AXIS_X], a[AXIS_Y], b[AXIS_X], b[AXIS_Y]), off, branch
+    )
     return (mx + x - wx, my + y - wy, nx, ny, rx, ry)
 
 
@@ -60,7 +71,12 @@ def shallow_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> C
     off = ((qx * qx + qy * qy) / 2.0 + b[RADIUS] * (qx * b[AXIS_X] + qy * b[AXIS_Y])) / gap
     # Cross products of c_b - w - c_a = R_a t_a - R_b t_b - q with t_a.
     across = (
-        -(b[RADIUS] * exact_dot(b[AXIS_X], -b[AXIS_Y], a[AXIS_Y], a[AXIS_X]) + qx * a[AXIS_Y] - qy * a[AXIS_X]) / gap
+        -(
+            b[RADIUS] * exact_dot(b[AXIS_X], -b[AXIS_Y], a[AXIS_Y], a[AXIS_X])
+            + qx * a[AXIS_Y]
+            - qy * a[AXIS_X]
+        )
+        / gap
     )
     x, y, rx, ry = beside_middle(a, nx, ny, across, off, branch)
     return (ax + x, ay + y, rx, ry, b[AXIS_X] + (x + qx) / b[RADIUS], b[AXIS_Y] + (y + qy) / b[RADIUS])
@@ -117,7 +133,12 @@ def arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float
     drift = iadd(imul(qx, vx), imul(qy, vy))
     bend = iscale(0.5 * ka * kb, ishift(d * d, iadd(isquare(qx), isquare(qy))))
     both = iadd(drift, bend)
-    lx, ly, mx, my = a[AXIS_X] - b[AXIS_X], a[AXIS_Y] - b[AXIS_Y], a[AXIS_X] + b[AXIS_X], a[AXIS_Y] + b[AXIS_Y]
+    lx, ly, mx, my = (
+        a[AXIS_X] - b[AXIS_X],
+        a[AXIS_Y] - b[AXIS_Y],
+        a[AXIS_X] + b[AXIS_X],
+        a[AXIS_Y] + b[AXIS_Y],
+    )
     less = iscale(0.5, iadd(isquare(outward(lx, lx)), isquare(outward(ly, ly))))
     more = iscale(0.5, iadd(isquare(outward(mx, mx)), isquare(outward(my, my))))
     swing = d * ka * kb * hypot(b[X] - a[X], b[Y] - a[Y])

@@ -1,31 +1,262 @@
-"""Stretches: ranges of direction over which a chord's instant centre P moves at a bounded speed.
+"""How fast a chord's instant centre moves, and stretches: ranges of direction over which its speed is bounded.
 
-All lattice steps of one length share the stretches of their curves: P, seen from the workpiece, depends on the direction
-alpha only. Beside a tangency, where P runs off to infinity, a short stretch tells of X^3 P' and X^3 instead (see
-``chord.center_speeds``), from which the signs of second derivatives follow.
+Let C_a = cross(w, r_a), C_b = cross(w, r_b), X = cross(r_a, r_b), and let k_a and k_b be the features'
+curvatures (0 for a line, 1 / R for an arc). Differentiating the two lines of action through the instant
+centre P gives
 
-Columns of a stretch: STRETCH_HIGH (where it ends, alpha in radians; it begins where the one before it ends, the first part
-of a stretch where that begins), SPEED (bound of |P'| in mm per radian, infinite beside a tangency), X_LOW, X_HIGH, Y_LOW,
-Y_HIGH (of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a), LARGEST_CROSS (largest |X|, with the sign of X), LEAST_CUBE
-(smallest |X|^3), PART_A, PART_B (largest sizes of the parts of X^3 P' along r_a and r_b), PARTS (how many of the rows that
-follow divide this stretch once more, for lattice steps whose curves it tells too little of).
+    X^3 P' = (C_a X + k_b C_a^2) r_a - (C_b X + k_a C_b^2) r_b,
+
+The right-hand side stays finite at a tangency, where X = 0, so the sign of the second derivatives made of it,
+
+    h'' = -y . P - x . P'        and        s'' = -P' . r_a      (divided by R_a on an arc),
+
+is bounded there too (see ``curves.pieces``).
+
+Between two arcs of nearly equal radii R_a and R_b whose centres are nearly one chord apart, r_a and r_b
+nearly agree, and the terms on the right nearly cancel. With g = c - w, c from centre to centre, R_a r_a - R_b
+r_b = g gives the same without cancellation: X = -G / R_b with G = cross(r_a, g), and with W = cross(w, c), E
+= C_a - G, rho = R_a / R_b
+
+    R_b X^3 P' = (1 - rho^2) C_a E r_a + rho C_a E g / R_b
+                 + (rho C_a W / R_a + (W / R_b) (E - W / R_a)) (rho r_a - g / R_b).
+
+All lattice steps of one length share the stretches of their curves: P, seen from the workpiece, depends on
+the direction alpha only. Beside a tangency, where P runs off to infinity, a short stretch tells of X^3 P' and
+X^3 instead, from which the signs of second derivatives follow.
+
+Columns of a stretch: STRETCH_HIGH (where it ends, alpha in radians; it begins where the one before it ends,
+the first part of a stretch where that begins), SPEED (bound of |P'| in mm per radian, infinite beside a
+tangency), X_LOW, X_HIGH, Y_LOW, Y_HIGH (of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a), LARGEST_CROSS
+(largest |X|, with the sign of X), LEAST_CUBE (smallest |X|^3), PART_A, PART_B (largest sizes of the parts of
+X^3 P' along r_a and r_b), PARTS (how many of the rows that follow divide this stretch once more, for lattice
+steps whose curves it tells too little of).
 """
 
 from __future__ import annotations
 
-from math import hypot, inf
+from math import atan2, hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.kernels.base.arrays import with_room
 from workhold.kernels.base.compiling import inner, inner_making_arrays
-from workhold.kernels.base.feature import IS_ARC
-from workhold.kernels.base.growing import with_room
-from workhold.kernels.chord.center_speeds import center_motion
-from workhold.kernels.chord.evaluation import chord
-from workhold.kernels.curves.columns import BRANCH, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
+from workhold.kernels.base.interval import (
+    Interval,
+    iadd,
+    icos,
+    icross,
+    idivide,
+    idot,
+    imul,
+    ineg,
+    iscale,
+    ishift,
+    isin,
+    isqrt,
+    isquare,
+    isub,
+    outward,
+)
+from workhold.kernels.chord.coincidences import ARCS, CONCENTRIC, NONE, motion_box
+from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
+from workhold.kernels.chord.evaluation import chord, curvature
+from workhold.kernels.chord.shallow import shallow_turn_size
 
 Array = NDArray[np.float64]
+# Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of contact.
+NEAR = 0.5
+ChordBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
+CenterMotion = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
+# What is not known.
+ANYTHING = (-inf, inf)
+
+
+@inner
+def line_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float) -> ChordBox:
+    """Enclosure of ``line_to_arc``."""
+    nx, ny = a[AXIS_Y], -a[AXIS_X]
+    moved_x, moved_y = ishift(a[X] - b[X], wx), ishift(a[Y] - b[Y], wy)
+    across = iadd(iscale(nx, moved_x), iscale(ny, moved_y))
+    inside = imul(isub((b[RADIUS], b[RADIUS]), across), ishift(b[RADIUS], across))
+    half = iscale(branch, isqrt(inside))
+    rx = iadd(iscale(nx, across), iscale(a[AXIS_X], half))
+    ry = iadd(iscale(ny, across), iscale(a[AXIS_Y], half))
+    ux, uy = isub(ishift(b[X], rx), wx), isub(ishift(b[Y], ry), wy)
+    return (ux, uy, (nx, nx), (ny, ny), iscale(1.0 / b[RADIUS], rx), iscale(1.0 / b[RADIUS], ry))
+
+
+@inner
+def arc_to_arc_box(
+    a: Array, b: Array, wx: Interval, wy: Interval, branch: float, one_chord_apart: bool
+) -> ChordBox:
+    """Enclosure of ``arc_to_arc``."""
+    cx, cy = b[X] - a[X], b[Y] - a[Y]
+    gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
+    gap = isqrt(iadd(isquare(gx), isquare(gy)))
+    if one_chord_apart and cx * wx[0] + cy * wy[0] > 0.0 and cx * wx[1] + cy * wy[1] > 0.0:
+        mx, my = ishift(cx, wx), ishift(cy, wy)
+        size = isqrt(iadd(isquare(mx), isquare(my)))
+        middle_x, middle_y = (wx[0] + wx[1]) / 2.0, (wy[0] + wy[1]) / 2.0
+        side = 1.0 if cx * middle_y - cy * middle_x >= 0.0 else -1.0
+        dx, dy = iscale(side, idivide(my, size)), iscale(-side, idivide(mx, size))
+        along = iscale(0.5, gap)
+    else:
+        dx, dy = idivide(gx, gap), idivide(gy, gap)
+        difference = (a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS])
+        along = iscale(0.5, iadd(gap, idivide((difference, difference), gap)))
+    inside = imul(isub((a[RADIUS], a[RADIUS]), along), ishift(a[RADIUS], along))
+    half = iscale(branch, isqrt(inside))
+    rx, ry = isub(imul(along, dx), imul(half, dy)), iadd(imul(along, dy), imul(half, dx))
+    one, other = 1.0 / a[RADIUS], 1.0 / b[RADIUS]
+    qx, qy = iscale(other, isub(rx, gx)), iscale(other, isub(ry, gy))
+    return (ishift(a[X], rx), ishift(a[Y], ry), iscale(one, rx), iscale(one, ry), qx, qy)
+
+
+@inner
+def line_to_line_box(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox:
+    """Enclosure of the chord between two lines."""
+    nx, ny = b[AXIS_Y], -b[AXIS_X]
+    reach = iadd(
+        iscale(nx, isub((b[X] - a[X], b[X] - a[X]), wx)), iscale(ny, isub((b[Y] - a[Y], b[Y] - a[Y]), wy))
+    )
+    s = iscale(1.0 / (nx * a[AXIS_X] + ny * a[AXIS_Y]), reach)
+    ux, uy = ishift(a[X], iscale(a[AXIS_X], s)), ishift(a[Y], iscale(a[AXIS_Y], s))
+    return (ux, uy, (a[AXIS_Y], a[AXIS_Y]), (-a[AXIS_X], -a[AXIS_X]), (nx, nx), (ny, ny))
+
+
+@inner
+def chord_box(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> ChordBox:
+    """Enclosure of ``chord_along`` for all w in a box."""
+    branch = curve[BRANCH]
+    if a[IS_ARC] == 0.0:
+        if b[IS_ARC] == 0.0:
+            return line_to_line_box(a, b, wx, wy)
+        return line_to_arc_box(a, b, wx, wy, branch)
+    if b[IS_ARC] == 0.0:
+        vx, vy, rbx, rby, rax, ray = line_to_arc_box(b, a, ineg(wx), ineg(wy), branch)
+        return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
+    if a[RADIUS] <= b[RADIUS]:
+        return arc_to_arc_box(a, b, wx, wy, branch, curve[COINCIDENCE] == ARCS)
+    # Seen from the smaller circle, the contact on the larger one is known better.
+    vx, vy, rbx, rby, rax, ray = arc_to_arc_box(b, a, ineg(wx), ineg(wy), -branch, curve[COINCIDENCE] == ARCS)
+    return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
+
+
+@inner
+def one_sided(turn: Interval, sign: float) -> Interval:
+    """Cut a cross product known to keep its sign (0 at a tangency) to that side."""
+    if sign > 0.0:
+        return (max(turn[0], 0.0), max(turn[1], 0.0))
+    return (min(turn[0], 0.0), min(turn[1], 0.0))
+
+
+@inner
+def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
+    r"""Enclosure of abs(X) for alpha in [low, high], by the sides of a triangle.
+
+    Between a line and an arc X^2 = 1 - (across / R)^2; between two arcs, with g = \|c - w\|,
+    X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
+    g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2, gamma the angle between w and c.
+    """
+    if is_shallow(a) or is_shallow(b):
+        return shallow_turn_size(a, b, d, low, high)
+    # Differences of coordinates are intervals too: what is left of them beside a tangency is of the size of their rounding.
+    cx, cy = outward(b[X] - a[X], b[X] - a[X]), outward(b[Y] - a[Y], b[Y] - a[Y])
+    if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
+        turn = icross(
+            (a[AXIS_X], a[AXIS_X]), (a[AXIS_Y], a[AXIS_Y]), (b[AXIS_X], b[AXIS_X]), (b[AXIS_Y], b[AXIS_Y])
+        )
+        return isqrt(isquare(turn))
+    if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0:
+        line, arc = (a, b) if a[IS_ARC] == 0.0 else (b, a)
+        # The arc's centre from the line's middle, in direction of the normal, less the head's way in the same direction.
+        fixed = isub(iscale(line[AXIS_Y], cx), iscale(line[AXIS_X], cy))
+        normal = atan2(-line[AXIS_X], line[AXIS_Y])
+        across = isub(fixed, iscale(d, icos((low - normal, high - normal))))
+        inside = imul(isub((arc[RADIUS], arc[RADIUS]), across), ishift(arc[RADIUS], across))
+        return iscale(1.0 / arc[RADIUS], isqrt(inside))
+    apart, middle = isqrt(iadd(isquare(cx), isquare(cy))), atan2(b[Y] - a[Y], b[X] - a[X])
+    half = isin(((low - middle) / 2.0, (high - middle) / 2.0))
+    square = iadd(isquare(ishift(-d, apart)), iscale(4.0 * d, imul(apart, isquare(half))))
+    difference, total = a[RADIUS] - b[RADIUS], a[RADIUS] + b[RADIUS]
+    less, more = outward(difference, difference), outward(total, total)
+    inside = imul(isub(square, isquare(less)), isub(isquare(more), square))
+    return iscale(0.5 / (a[RADIUS] * b[RADIUS]), isqrt(inside))
+
+
+@inner
+def arcs_motion(
+    a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, turn_sign: float
+) -> CenterMotion:
+    """``center_motion`` between arcs of which each contact direction is nearly the other."""
+    _, _, rx, ry, _, _ = chord
+    cx, cy = b[X] - a[X], b[Y] - a[Y]
+    gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
+    rho, inverse, own = a[RADIUS] / b[RADIUS], 1.0 / b[RADIUS], 1.0 / a[RADIUS]
+    swing = icross(rx, ry, gx, gy)
+    turn = one_sided(iscale(-inverse, swing), turn_sign)
+    cross_a = icross(wx, wy, rx, ry)
+    across = icross(wx, wy, (cx, cx), (cy, cy))
+    rest = isub(cross_a, swing)
+    unequal = -(a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS]) * inverse * inverse
+    product = imul(cross_a, rest)
+    last = iadd(
+        iscale(rho / a[RADIUS], imul(cross_a, across)),
+        iscale(inverse, imul(across, isub(rest, iscale(own, across)))),
+    )
+    hx, hy = isub(iscale(rho, rx), iscale(inverse, gx)), isub(iscale(rho, ry), iscale(inverse, gy))
+    # R_b X^3 P' is along * r_a + product * rho g / R_b + last * h.
+    along, beside = iscale(unequal, product), iscale(rho * inverse, product)
+    nx = iscale(inverse, iadd(imul(along, rx), iadd(imul(beside, gx), imul(last, hx))))
+    ny = iscale(inverse, iadd(imul(along, ry), iadd(imul(beside, gy), imul(last, hy))))
+    return (turn, nx, ny, idot(nx, ny, rx, ry), ANYTHING, ANYTHING)
+
+
+@inner
+def center_motion(
+    a: Array, b: Array, curve: Array, low: float, high: float, turn_sign: float
+) -> CenterMotion:
+    """Enclosures over alpha in [low, high] of what the instant centre's speed P' is made of.
+
+    Parameters
+    ----------
+    curve : row of the curve table.
+    turn_sign : sign of X inside the range (X vanishes at most at its ends).
+
+    Returns
+    -------
+    (X, x and y of X^3 P', X^3 P' . r_a, its part along r_a, its part against r_b); near a coincidence P' is enclosed itself,
+     X is 1, and what cannot be told is infinite
+    """
+    unit, zero = (1.0, 1.0), (0.0, 0.0)
+    if curve[COINCIDENCE] == CONCENTRIC:
+        # The instant centre is the common centre.
+        return (unit, zero, zero, zero, zero, zero)
+    if curve[COINCIDENCE] != NONE:
+        regular, u = motion_box(a, b, curve, low, high)
+        if regular:
+            # P = u + J u', J the quarter turn.
+            return (unit, isub(u[2], u[5]), iadd(u[3], u[4]), ANYTHING, ANYTHING, ANYTHING)
+    d = curve[LENGTH]
+    wx, wy = iscale(d, icos((low, high))), iscale(d, isin((low, high)))
+    box = chord_box(a, b, curve, wx, wy)
+    if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
+        gap = hypot(b[X] - a[X] - (wx[0] + wx[1]) / 2.0, b[Y] - a[Y] - (wy[0] + wy[1]) / 2.0)
+        if gap < NEAR * min(a[RADIUS], b[RADIUS]):
+            return arcs_motion(a, b, wx, wy, box, turn_sign)
+    _, _, rax, ray, rbx, rby = box
+    turn = turn_size(a, b, d, low, high)
+    if turn_sign < 0.0:
+        turn = ineg(turn)
+    cross_a, cross_b = icross(wx, wy, rax, ray), icross(wx, wy, rbx, rby)
+    part_a = imul(cross_a, iadd(turn, iscale(curvature(b), cross_a)))
+    part_b = imul(cross_b, iadd(turn, iscale(curvature(a), cross_b)))
+    nx, ny = isub(imul(part_a, rax), imul(part_b, rbx)), isub(imul(part_a, ray), imul(part_b, rby))
+    along = isub(part_a, imul(part_b, idot(rax, ray, rbx, rby)))
+    return (turn, nx, ny, along, part_a, part_b)
+
 
 STRETCH_HIGH, SPEED, X_LOW, X_HIGH, Y_LOW, Y_HIGH, ALONG_LOW, ALONG_HIGH = range(8)
 LARGEST_CROSS, LEAST_CUBE, PART_A, PART_B, PARTS = range(8, 13)

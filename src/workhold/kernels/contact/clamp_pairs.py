@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLOSURE, NO_REACTION
+from workhold.kernels.base.arrays import grown
 from workhold.kernels.base.compiling import compiled, compiled_making_arrays, inner
-from workhold.kernels.base.growing import grown
 
 __all__ = ["CLAMP_LENGTH", "PAIR_LENGTH", "PUSH", "Clamps", "Hardware", "closures_of", "pairs_of"]
 
@@ -137,7 +137,9 @@ def ratio_range(one: Array, other: Array) -> tuple[float, float]:
 
 
 @inner
-def boxes_apart(ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float) -> float:
+def boxes_apart(
+    ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> float:
     """Distance in mm between two pieces along the axes, from (ax, ay) to (bx, by) and from (cx, cy) to (dx, dy)."""
     across = max(min(ax, bx) - max(cx, dx), min(cx, dx) - max(ax, bx), 0.0)
     along = max(min(ay, by) - max(cy, dy), min(cy, dy) - max(ay, by), 0.0)
@@ -159,7 +161,9 @@ def spread_of(seat: IntArray, clamps: Clamps, m: int, hole: Array, bolted: bool,
 
 
 @inner
-def best_holes(seat: IntArray, clamps: Clamps, i: int, j: int, hardware: Hardware, spread: IntArray) -> tuple[int, int]:
+def best_holes(
+    seat: IntArray, clamps: Clamps, i: int, j: int, hardware: Hardware, spread: IntArray
+) -> tuple[int, int]:
     """The holes of two clamps with the least total travel in which they have a place together, (-1, -1) for none.
 
     Parameters
@@ -221,7 +225,14 @@ def add_pair(
     if first < 0:
         return count
     row = out[count]
-    row[SEAT], row[KIND], row[CLAMPS], row[CLAMPS + 1], row[HOLES], row[HOLES + 1] = number, kind, i, j, first, second
+    row[SEAT], row[KIND], row[CLAMPS], row[CLAMPS + 1], row[HOLES], row[HOLES + 1] = (
+        number,
+        kind,
+        i,
+        j,
+        first,
+        second,
+    )
     row[COUNT], row[FREEDOM], row[MARGIN] = 1.0, max(degrees(atan(high) - atan(low)), 0.0), margin
     row[OPEN] = 1.0 if lead - doubt <= 0.0 else 0.0
     return count + 1
@@ -326,7 +337,9 @@ def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardwa
     out, spread = np.empty((64, PAIR_LENGTH)), np.empty(4, np.int64)
     count, number = int(np.int64(0)), int(np.int64(0))
     while number < seats.shape[0]:
-        more = add_pairs(out, count, number, halves[number] != 0, seats[number], clamps, hardware, every, spread)
+        more = add_pairs(
+            out, count, number, halves[number] != 0, seats[number], clamps, hardware, every, spread
+        )
         if more < 0:
             out = grown(out)
             continue

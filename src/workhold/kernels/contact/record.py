@@ -1,23 +1,46 @@
-"""Pegs in place and records: what kernels write of four contacts that may be a fixture.
+"""Four pegs in place: records of contacts that may be a fixture, and their contact equations.
 
-Columns of a peg: PEG_X, PEG_Y (centre in the workpiece's frame), PEG_FEATURE, PEG_COLUMN, PEG_ROW, PEG_RADIUS (in mm, of its
-error).
-Columns of a record: STANDING (how many pegs, the first ones, are on the carrier that stands still; the others are on the one
-that moves), FEATURES (4), COLUMNS (4) and ROWS (4) of the pegs on their carriers' lattices counted from the first standing
-peg (rows) and from each carrier's first peg (columns), PSI, TAIL_X and TAIL_Y (centre of the first peg in the workpiece's
-frame), SEPARATION (x distance from the first standing to the first moving peg), REACH (radius of psi in radians),
-LARGEST_RADIUS (of the pegs, in mm). A negative STANDING tells of a pair of chords that was given up: its features and steps,
-with the orientation in PSI.
+Columns of a peg: PEG_X, PEG_Y (centre in the workpiece's frame), PEG_FEATURE, PEG_COLUMN, PEG_ROW, PEG_RADIUS
+(in mm, of its error).
+
+Columns of a record: STANDING (how many pegs, the first ones, are on the carrier that stands still; the others
+are on the one that moves), FEATURES (4), COLUMNS (4) and ROWS (4) of the pegs on their carriers' lattices
+counted from the first standing peg (rows) and from each carrier's first peg (columns), PSI, TAIL_X and TAIL_Y
+(centre of the first peg in the workpiece's frame), SEPARATION (x distance from the first standing to the
+first moving peg), REACH (radius of psi in radians), LARGEST_RADIUS (of the pegs, in mm). A negative STANDING
+tells of a pair of chords that was given up: its features and steps, with the orientation in PSI.
+
+The unknowns are z = (psi, tail x, tail y, separation): the turn of the pegs in the workpiece's frame, the
+centre of the first peg, and the separation. That is the x distance from the first standing to the first
+moving peg (sigma in the paper). The contact equations say that every centre lies on its feature's line or
+circle; their Jacobian is taken over (L psi, tail x, tail y, separation), all in mm.
+
+Work space: ``w`` (19, 4), a row of four numbers, one for each peg where nothing else is said, at
+
+- UNKNOWNS: z;
+- MOVING: 1 for a peg of the moving carrier, else 0;
+- STEP_X, STEP_Y: places in mm from the first peg, without the separation;
+- OFF: distances in mm of the centres from their lines and circles, outward positive;
+- NEWTON: the Newton step in mm, over (L psi, tail x, tail y, separation);
+- SLOPES (4): the Jacobian, a row for each peg;
+- REST (4), INVERSE (4): what elimination leaves of the Jacobian, and its inverse;
+- NULL: a null vector.
+
+``points`` (4, 2) holds the centres in mm.
 """
 
 from __future__ import annotations
 
+from math import cos, hypot, sin
+
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.kernels.base.arrays import eliminate
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.curves.columns import COLUMN_STEP, HEAD, ROW_STEP, TAIL
-from workhold.kernels.curves.piece_columns import CURVE, HIGH, LOW
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow, off_shallow
+from workhold.kernels.base.given import Lattice
+from workhold.kernels.chord.columns import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -34,18 +57,24 @@ RECORD_LENGTH = 19
 
 
 @inner
-def place_peg(peg: Array, x: float, y: float, feature: int, column: float, line: float, radius: float) -> None:
+def place_peg(
+    peg: Array, x: float, y: float, feature: int, column: float, line: float, radius: float
+) -> None:
     """Write one peg to its (6,) place in a work array."""
     peg[PEG_X], peg[PEG_Y], peg[PEG_FEATURE] = x, y, feature
     peg[PEG_COLUMN], peg[PEG_ROW], peg[PEG_RADIUS] = column, line, radius
 
 
 @inner
-def write_record(row: Array, standing: float, pegs: Array, psi: float, separation: float, reach: float) -> None:
+def write_record(
+    row: Array, standing: float, pegs: Array, psi: float, separation: float, reach: float
+) -> None:
     """Write four pegs in place to a (19,) row of the records."""
     row[STANDING], row[PSI], row[SEPARATION], row[REACH] = standing, psi, separation, reach
     row[TAIL_X], row[TAIL_Y] = pegs[0, PEG_X], pegs[0, PEG_Y]
-    row[LARGEST_RADIUS] = max(pegs[0, PEG_RADIUS], pegs[1, PEG_RADIUS], pegs[2, PEG_RADIUS], pegs[3, PEG_RADIUS])
+    row[LARGEST_RADIUS] = max(
+        pegs[0, PEG_RADIUS], pegs[1, PEG_RADIUS], pegs[2, PEG_RADIUS], pegs[3, PEG_RADIUS]
+    )
     for k in range(4):
         row[FEATURES + k] = pegs[k, PEG_FEATURE]
         row[COLUMNS + k] = pegs[k, PEG_COLUMN]
@@ -63,3 +92,64 @@ def write_given_up(row: Array, standing: float, first: Array, second: Array, int
         step = integers[int(first[CURVE])] if k == 0 else integers[int(second[CURVE])]
         row[FEATURES + 2 * k], row[FEATURES + 2 * k + 1] = step[TAIL], step[HEAD]
         row[COLUMNS + 2 * k + 1], row[ROWS + 2 * k + 1] = step[COLUMN_STEP], step[ROW_STEP]
+
+
+UNKNOWNS, MOVING, STEP_X, STEP_Y, OFF, NEWTON, SLOPES, REST, INVERSE, NULL = 0, 1, 2, 3, 4, 5, 6, 10, 14, 18
+WORK_LENGTH = 19
+
+
+@inner
+def take_pegs(record: Array, lattice: Lattice, w: Array) -> None:
+    """Bring the pegs of a (19,) record to their places on the carriers, and the unknowns to its own."""
+    w[UNKNOWNS, 0], w[UNKNOWNS, 1] = record[PSI], record[TAIL_X]
+    w[UNKNOWNS, 2], w[UNKNOWNS, 3] = record[TAIL_Y], record[SEPARATION]
+    for k in range(4):
+        w[MOVING, k] = 1.0 if k >= record[STANDING] else 0.0
+        w[STEP_X, k] = record[COLUMNS + k] * lattice.pitch_x
+        w[STEP_Y, k] = record[ROWS + k] * lattice.pitch_y + w[MOVING, k] * lattice.row_offset
+
+
+@inner
+def touch(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
+    """Fill in centres, distances and Jacobian for the unknowns in place; ``length`` is L in mm."""
+    cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
+    for k in range(4):
+        row = features[int(record[FEATURES + k])]
+        across, along = w[STEP_X, k] + w[MOVING, k] * w[UNKNOWNS, 3], w[STEP_Y, k]
+        turned_x, turned_y = cosine * across - sine * along, sine * across + cosine * along
+        x, y = w[UNKNOWNS, 1] + turned_x, w[UNKNOWNS, 2] + turned_y
+        points[k, 0], points[k, 1] = x, y
+        gx, gy = row[AXIS_Y], -row[AXIS_X]
+        dx, dy = x - row[X], y - row[Y]
+        if row[IS_ARC] == 0.0:
+            w[OFF, k] = dx * gx + dy * gy
+        elif is_shallow(row):
+            w[OFF, k], gx, gy = off_shallow(row, x, y)
+        else:
+            size = hypot(dx, dy)
+            w[OFF, k] = size - row[RADIUS]
+            # In its very centre no direction of an arc is nearer than another, and none is told.
+            gx, gy = (dx / size, dy / size) if size > 0.0 else (0.0, 0.0)
+        w[SLOPES + k, 0] = (gy * turned_x - gx * turned_y) / length
+        w[SLOPES + k, 1], w[SLOPES + k, 2] = gx, gy
+        w[SLOPES + k, 3] = w[MOVING, k] * (gx * cosine + gy * sine)
+
+
+@inner
+def invert(w: Array) -> float:
+    """Invert the Jacobian and make the Newton step.
+
+    Returns
+    -------
+    float
+        The size of the determinant; where it is 0 or NaN there is no inverse.
+    """
+    for i in range(4):
+        for j in range(4):
+            w[REST + i, j] = w[SLOPES + i, j]
+    determinant = eliminate(w[REST : REST + 4], w[INVERSE : INVERSE + 4])
+    for i in range(4):
+        w[NEWTON, i] = 0.0
+        for j in range(4):
+            w[NEWTON, i] += w[INVERSE + i, j] * w[OFF, j]
+    return determinant

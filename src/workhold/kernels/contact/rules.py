@@ -1,12 +1,19 @@
-"""When four pegs in place may be a fixture: two carriers, one of which slides along x, and when that clamps.
+"""When four pegs in place may be a fixture: ends of features, the gap, force closure and clamping.
 
-Four pegs at simultaneous contact are a fixture when every contact lies inside its feature, the pegs of the moving carrier
-stand the smallest gap to the right of the standing ones, and the wrenches close with the standing pegs pushing to the right,
-or to the left where opening clamps (model: conditions 1, 3, 4 and 5). Where the moving peg is one of two clamps, instead of
-closing, the three standing pegs must fix the pose, which the last of the four minors tells, and the clamp must push.
+The wrench of a contact at q with outward unit normal n is w = (n, (q - c) x n / L). Four wrenches of the
+plane's three-dimensional wrench space have a null vector: up to a common factor its entries are the signed
+3x3 minors of [w1 w2 w3 w4] (Cramer's rule). The wrenches positively span the space exactly when all entries
+have one sign and none is 0. Reference: B. Mishra, J. T. Schwartz, M. Sharir, *On the existence and synthesis
+of multifinger positive grips*, Algorithmica 2 (1987); the construction from minors is linear algebra.
 
-Every rule is decided by bounds: the exact contact is within a radius of the computed one, and only what breaks a rule
-everywhere within that radius is discarded.
+Four pegs at simultaneous contact are a fixture under three rules (model: conditions 1, 3, 4 and 5). Every
+contact lies inside its feature. The pegs of the moving carrier stand the smallest gap to the right of the
+standing ones. The wrenches close with the standing pegs pushing to the right, or to the left where opening
+clamps. Where the moving peg is one of two clamps, the wrenches need not close. Instead, the three standing
+pegs must fix the pose, which the last of the four minors tells, and the clamp must push.
+
+Every rule is decided by bounds: the exact contact is within a radius of the computed one, and only what
+breaks a rule everywhere within that radius is discarded.
 """
 
 from __future__ import annotations
@@ -18,14 +25,76 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.base.feature import IS_ARC, RADIUS
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.given import Features, Limits
+from workhold.kernels.chord.columns import COLUMN_STEP, ROW_STEP
 from workhold.kernels.chord.evaluation import end_slack
-from workhold.kernels.contact.closure import minor_band, minors, outward_normal
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y
-from workhold.kernels.curves.columns import COLUMN_STEP, ROW_STEP
 
 Array = NDArray[np.float64]
+
+# Rounding of a minor.
+ROUNDING = 1e-14
+
+
+@inner
+def cross(ax: float, ay: float, bx: float, by: float) -> float:
+    """Cross product of two vectors of the plane."""
+    return ax * by - ay * bx
+
+
+@inner
+def minors(points: Array, normals: Array, length: float, out: Array) -> float:
+    """Null vector of the four wrenches, not scaled: their signed 3x3 minors.
+
+    Parameters
+    ----------
+    points : (4, 2) contact points (or peg centres: they lie on the same lines of action) about the centre c, in mm.
+    normals : (4, 2) outward unit normals.
+    length : L in mm.
+    out : (4,) receives the minors.
+
+    Returns
+    -------
+    float
+        The sum of their sizes; 0 when the wrenches do not span the space.
+    """
+    t0 = cross(points[0, 0], points[0, 1], normals[0, 0], normals[0, 1]) / length
+    t1 = cross(points[1, 0], points[1, 1], normals[1, 0], normals[1, 1]) / length
+    t2 = cross(points[2, 0], points[2, 1], normals[2, 0], normals[2, 1]) / length
+    t3 = cross(points[3, 0], points[3, 1], normals[3, 0], normals[3, 1]) / length
+    m01 = cross(normals[0, 0], normals[0, 1], normals[1, 0], normals[1, 1])
+    m02 = cross(normals[0, 0], normals[0, 1], normals[2, 0], normals[2, 1])
+    m03 = cross(normals[0, 0], normals[0, 1], normals[3, 0], normals[3, 1])
+    m12 = cross(normals[1, 0], normals[1, 1], normals[2, 0], normals[2, 1])
+    m13 = cross(normals[1, 0], normals[1, 1], normals[3, 0], normals[3, 1])
+    m23 = cross(normals[2, 0], normals[2, 1], normals[3, 0], normals[3, 1])
+    out[0] = t1 * m23 - t2 * m13 + t3 * m12
+    out[1] = -(t0 * m23 - t2 * m03 + t3 * m02)
+    out[2] = t0 * m13 - t1 * m03 + t3 * m01
+    out[3] = -(t0 * m12 - t1 * m02 + t2 * m01)
+    return abs(out[0]) + abs(out[1]) + abs(out[2]) + abs(out[3])
+
+
+@inner
+def minor_band(swing: float, away: float, length: float) -> float:
+    """How far a minor may be off when normals may be turned by ``swing`` radians and points be off by ``away`` mm.
+
+    Moments over L, of size 1.42 at most, are off by away / L + 1.42 swing, and products of two normals by 2 swing. A minor
+    is three products of one with the other, so it is off by 12.8 swing + 3 away / L; the rest is for the second order.
+    """
+    return 20.0 * swing + 4.0 * away / length + ROUNDING
+
+
+@inner
+def outward_normal(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Outward unit normal of a feature at a point on it."""
+    if row[IS_ARC] == 0.0:
+        return (row[AXIS_Y], -row[AXIS_X])
+    scale = row[SIGN] / row[RADIUS]
+    return (scale * (x - row[X]), scale * (y - row[Y]))
+
+
 IntArray = NDArray[np.int64]
 
 
@@ -37,7 +106,14 @@ def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> b
 
 @inner
 def is_fixture(
-    pegs: Array, standing: float, psi: float, reach: float, features: Features, limits: Limits, work: Array, null: Array
+    pegs: Array,
+    standing: float,
+    psi: float,
+    reach: float,
+    features: Features,
+    limits: Limits,
+    work: Array,
+    null: Array,
 ) -> tuple[int, float]:
     """Check four pegs at simultaneous contact.
 

@@ -26,12 +26,60 @@ from math import cos, floor, hypot, inf, isfinite, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.kernels.base.arrays import grown
 from workhold.kernels.base.compiling import inner, inner_making_arrays
-from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
-from workhold.kernels.base.growing import grown
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, local_size
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.base.shallow import local_size
-from workhold.kernels.chord.discs import tail_disc, value_disc
+from workhold.kernels.chord.columns import (
+    ACROSS_LEAST,
+    ACROSS_MOST,
+    COLUMN_STEP,
+    CURVE,
+    EDGE_ACROSS,
+    EDGE_ARM,
+    EDGE_CENTER,
+    EDGE_CENTER_ERROR,
+    EDGE_ERROR,
+    EDGE_LENGTH,
+    EDGE_SLOPE,
+    EDGE_SLOPE_ERROR,
+    EDGE_VALUE,
+    EDGE_VALUE_ERROR,
+    EDGE_X,
+    END_STRETCH,
+    FIRST_STRETCH,
+    FROM,
+    HEAD,
+    HEAD_NORMAL_X,
+    HEAD_NORMAL_Y,
+    HIGH,
+    KAPPA,
+    LENGTH,
+    LOW,
+    SECOND_DERIVATIVE_HIGH,
+    SECOND_DERIVATIVE_LOW,
+    SHIFT,
+    SLOPE_ERROR_HIGH,
+    SLOPE_ERROR_LOW,
+    SLOPE_HIGH,
+    SLOPE_LOW,
+    STEADY,
+    TAIL,
+    TAIL_NORMAL_X,
+    TAIL_NORMAL_Y,
+    TANGENT_FROM,
+    TANGENT_TO,
+    TO,
+    VALUE_ERROR_HIGH,
+    VALUE_ERROR_LOW,
+    VALUE_HIGH,
+    VALUE_LEAST,
+    VALUE_LOW,
+    VALUE_MOST,
+    X_MOVING,
+    X_STANDING,
+    Curves,
+)
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, curve_value
 from workhold.kernels.chord.stretches import (
     ALONG_HIGH,
@@ -48,59 +96,14 @@ from workhold.kernels.chord.stretches import (
     Y_HIGH,
     Y_LOW,
 )
-from workhold.kernels.curves.columns import (
-    COLUMN_STEP,
-    END_STRETCH,
-    FIRST_STRETCH,
-    FROM,
-    HEAD,
-    KAPPA,
-    LENGTH,
-    SHIFT,
-    TAIL,
-    TANGENT_FROM,
-    TANGENT_TO,
-    TO,
-    Curves,
-)
-from workhold.kernels.curves.edges import is_farther, write_edge
-from workhold.kernels.curves.force_directions import HAIR, write_all_force_directions, write_force_directions
-from workhold.kernels.curves.piece_columns import (
-    ACROSS_LEAST,
-    ACROSS_MOST,
-    CURVE,
-    EDGE_ACROSS,
-    EDGE_ARM,
-    EDGE_CENTER,
-    EDGE_CENTER_ERROR,
-    EDGE_ERROR,
-    EDGE_LENGTH,
-    EDGE_SLOPE,
-    EDGE_SLOPE_ERROR,
-    EDGE_VALUE,
-    EDGE_VALUE_ERROR,
-    EDGE_X,
-    HEAD_NORMAL_X,
-    HEAD_NORMAL_Y,
-    HIGH,
-    LOW,
-    SECOND_DERIVATIVE_HIGH,
-    SECOND_DERIVATIVE_LOW,
-    SLOPE_ERROR_HIGH,
-    SLOPE_ERROR_LOW,
-    SLOPE_HIGH,
-    SLOPE_LOW,
-    STEADY,
-    TAIL_NORMAL_X,
-    TAIL_NORMAL_Y,
-    VALUE_ERROR_HIGH,
-    VALUE_ERROR_LOW,
-    VALUE_HIGH,
-    VALUE_LEAST,
-    VALUE_LOW,
-    VALUE_MOST,
-    X_MOVING,
-    X_STANDING,
+from workhold.kernels.curves.piece_bounds import (
+    DIRECTION_HAIR,
+    is_farther,
+    tail_disc,
+    value_disc,
+    write_all_force_directions,
+    write_edge,
+    write_force_directions,
 )
 
 Array = NDArray[np.float64]
@@ -133,19 +136,19 @@ def second_derivative_beside(
         first = min(x * stretch[X_LOW], x * stretch[X_HIGH]) + min(y * stretch[Y_LOW], y * stretch[Y_HIGH])
         last = max(x * stretch[X_LOW], x * stretch[X_HIGH]) + max(y * stretch[Y_LOW], y * stretch[Y_HIGH])
         size = hypot(max(-stretch[X_LOW], stretch[X_HIGH]), max(-stretch[Y_LOW], stretch[Y_HIGH]))
-        doubt = size * (half + HAIR) + stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS] * d
+        doubt = size * (half + DIRECTION_HAIR) + stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS] * d
         swing_low, swing_high, fixed = -last - doubt, -first + doubt, reach
     else:
         scale = 1.0 if a[IS_ARC] == 0.0 else 1.0 / a[RADIUS]
         swing_low, swing_high, fixed = -scale * stretch[ALONG_HIGH], -scale * stretch[ALONG_LOW], 0.0
-        swing_low -= HAIR * abs(swing_low)
-        swing_high += HAIR * abs(swing_high)
+        swing_low -= DIRECTION_HAIR * abs(swing_low)
+        swing_high += DIRECTION_HAIR * abs(swing_high)
     if cube < 0.0:
         swing_low, swing_high, cube = -swing_high, -swing_low, -cube
     if swing_low > 0.0 and cube > 0.0:
-        return (swing_low / cube * (1.0 - HAIR) - fixed, inf)
+        return (swing_low / cube * (1.0 - DIRECTION_HAIR) - fixed, inf)
     if swing_high < 0.0 and cube > 0.0:
-        return (-inf, swing_high / cube * (1.0 - HAIR) + fixed)
+        return (-inf, swing_high / cube * (1.0 - DIRECTION_HAIR) + fixed)
     return (-inf, inf)
 
 
@@ -179,22 +182,26 @@ def write_steady(
     arm = max(low[EDGE_ARM], high[EDGE_ARM]) + speed * width + with_backward_error
     curved = curve[KAPPA]
     turns_little = (curved * arm + 1.0) * width <= MOST_TURN
-    turned = curved * (speed * sag + 2.0 * error) + HAIR * width + SAME
+    turned = curved * (speed * sag + 2.0 * error) + DIRECTION_HAIR * width + SAME
     if mode == HEIGHT:
         # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs along a line.
         tail = head = 1.0
         if turns_little:
-            tail = largest_part(low[TAIL_NORMAL_X], low[TAIL_NORMAL_Y], high[TAIL_NORMAL_X], high[TAIL_NORMAL_Y])
-            head = largest_part(low[HEAD_NORMAL_X], low[HEAD_NORMAL_Y], high[HEAD_NORMAL_X], high[HEAD_NORMAL_Y])
+            tail = largest_part(
+                low[TAIL_NORMAL_X], low[TAIL_NORMAL_Y], high[TAIL_NORMAL_X], high[TAIL_NORMAL_Y]
+            )
+            head = largest_part(
+                low[HEAD_NORMAL_X], low[HEAD_NORMAL_Y], high[HEAD_NORMAL_X], high[HEAD_NORMAL_Y]
+            )
         swing = (stretch[PART_A] * (tail + turned) + stretch[PART_B] * (head + turned)) / stretch[LEAST_CUBE]
-        second_derivative = (center + min(speed, swing)) * (1.0 + HAIR)
+        second_derivative = (center + min(speed, swing)) * (1.0 + DIRECTION_HAIR)
     else:
-        second_derivative = (speed if a[IS_ARC] == 0.0 else speed / a[RADIUS]) * (1.0 + HAIR)
+        second_derivative = (speed if a[IS_ARC] == 0.0 else speed / a[RADIUS]) * (1.0 + DIRECTION_HAIR)
     row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH] = -second_derivative, second_derivative
     doubt = second_derivative * sag + max(row[VALUE_ERROR_LOW], row[VALUE_ERROR_HIGH])
     row[VALUE_LEAST] = min(row[VALUE_LOW], row[VALUE_HIGH]) - doubt
     row[VALUE_MOST] = max(row[VALUE_LOW], row[VALUE_HIGH]) + doubt
-    doubt = (center + speed) * sag + error + HAIR
+    doubt = (center + speed) * sag + error + DIRECTION_HAIR
     row[X_STANDING] = min(low[EDGE_X], high[EDGE_X]) - doubt
     row[X_MOVING] = max(low[EDGE_X], high[EDGE_X]) + doubt
     if mode == HEIGHT:
@@ -203,7 +210,7 @@ def write_steady(
         else:
             write_all_force_directions(row)
     # The slope of y . P is bounded by |P| + K.
-    doubt = 0.5 * (center + speed) * width + with_backward_error + HAIR
+    doubt = 0.5 * (center + speed) * width + with_backward_error + DIRECTION_HAIR
     row[ACROSS_LEAST] = min(low[EDGE_ACROSS], high[EDGE_ACROSS]) - doubt
     row[ACROSS_MOST] = max(low[EDGE_ACROSS], high[EDGE_ACROSS]) + doubt
     row[STEADY] = 1.0
@@ -211,7 +218,14 @@ def write_steady(
 
 @inner
 def write_beside(
-    row: Array, a: Array, b: Array, curve: Array, stretch: Array, tangent_low: float, tangent_high: float, mode: float
+    row: Array,
+    a: Array,
+    b: Array,
+    curve: Array,
+    stretch: Array,
+    tangent_low: float,
+    tangent_high: float,
+    mode: float,
 ) -> None:
     """Write the enclosures of a piece beside a tangency; the tangency is at an end whose error is not 0."""
     middle = (row[LOW] + row[HIGH]) / 2.0
@@ -224,9 +238,13 @@ def write_beside(
     )
     # Where the branches meet the slope is infinite, with the sign the second derivative gives it.
     if tangent_low > 0.0:
-        row[SLOPE_LOW], row[SLOPE_ERROR_LOW] = end_slope(row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH], -1.0)
+        row[SLOPE_LOW], row[SLOPE_ERROR_LOW] = end_slope(
+            row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH], -1.0
+        )
     if tangent_high > 0.0:
-        row[SLOPE_HIGH], row[SLOPE_ERROR_HIGH] = end_slope(row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH], 1.0)
+        row[SLOPE_HIGH], row[SLOPE_ERROR_HIGH] = end_slope(
+            row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH], 1.0
+        )
     # There, or nearly there, the value is bounded by a disc, a hair beyond the end included.
     if tangent_low > 0.0 or not isfinite(row[VALUE_ERROR_LOW]):
         row[VALUE_LOW], row[VALUE_ERROR_LOW] = value_disc(a, b, curve, row[LOW], tangent_low + SAME, mode)
@@ -234,7 +252,7 @@ def write_beside(
         row[VALUE_HIGH], row[VALUE_ERROR_HIGH] = value_disc(a, b, curve, row[HIGH], tangent_high + SAME, mode)
     value, doubt = value_disc(a, b, curve, middle, reach, mode)
     row[VALUE_LEAST], row[VALUE_MOST] = value - doubt, value + doubt
-    place, doubt = cos(middle) * x + sin(middle) * y, radius + size * reach + HAIR
+    place, doubt = cos(middle) * x + sin(middle) * y, radius + size * reach + DIRECTION_HAIR
     row[X_STANDING], row[X_MOVING] = place - doubt, place + doubt
     write_all_force_directions(row)
     row[ACROSS_LEAST], row[ACROSS_MOST] = -inf, inf
@@ -242,7 +260,9 @@ def write_beside(
 
 
 @inner
-def end_slope(second_derivative_low: float, second_derivative_high: float, side: float) -> tuple[float, float]:
+def end_slope(
+    second_derivative_low: float, second_derivative_high: float, side: float
+) -> tuple[float, float]:
     """Slope at a tangency and its error: infinite, with the sign the second derivative gives it (side -1 at the low
     end, +1 at the high end), or unknown."""
     if second_derivative_low >= 0.0:
@@ -332,7 +352,10 @@ def add_pieces(
             row[VALUE_LOW], row[SLOPE_LOW] = at_low[EDGE_VALUE], at_low[EDGE_SLOPE]
             row[VALUE_HIGH], row[SLOPE_HIGH] = at_high[EDGE_VALUE], at_high[EDGE_SLOPE]
             row[VALUE_ERROR_LOW], row[SLOPE_ERROR_LOW] = at_low[EDGE_VALUE_ERROR], at_low[EDGE_SLOPE_ERROR]
-            row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = at_high[EDGE_VALUE_ERROR], at_high[EDGE_SLOPE_ERROR]
+            row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = (
+                at_high[EDGE_VALUE_ERROR],
+                at_high[EDGE_SLOPE_ERROR],
+            )
             steady = steady and isfinite(row[SLOPE_ERROR_LOW]) and isfinite(row[SLOPE_ERROR_HIGH])
             if circles and steady:
                 unwind(row, a, b, curve)

@@ -7,14 +7,10 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.kernels.base.arrays import with_room
 from workhold.kernels.base.compiling import compiled_making_arrays, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.kernels.base.growing import with_room
-from workhold.kernels.chord.evaluation import write_curve, write_shift
-from workhold.kernels.chord.intervals import chord_intervals
-from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
-from workhold.kernels.crossing.sliding_pairs import sliding_pairs_between
-from workhold.kernels.curves.columns import (
+from workhold.kernels.chord.columns import (
     CENTER,
     COLUMN_STEP,
     CURVE_INTEGERS,
@@ -33,6 +29,10 @@ from workhold.kernels.curves.columns import (
     TANGENT_TO,
     TO,
 )
+from workhold.kernels.chord.evaluation import write_curve, write_shift
+from workhold.kernels.chord.intervals import chord_intervals
+from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
+from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -49,7 +49,13 @@ def reach(row: Array) -> float:
 
 @compiled_making_arrays
 def tail_curves(
-    tail: int, features: Array, centers: IntArray, lengths: Array, starts: IntArray, steps: IntArray, angles: Array
+    tail: int,
+    features: Array,
+    centers: IntArray,
+    lengths: Array,
+    starts: IntArray,
+    steps: IntArray,
+    angles: Array,
 ) -> tuple[IntArray, Array, IntArray, Array, Array]:
     """All chords whose tail is on one feature and whose head is on the same feature or one of a higher number.
 
@@ -127,4 +133,10 @@ def tail_curves(
 @inner
 def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
     """Write the whole numbers of a curve or sliding pair."""
-    row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP], row[CENTER] = tail, head, column_step, row_step, center
+    row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP], row[CENTER] = (
+        tail,
+        head,
+        column_step,
+        row_step,
+        center,
+    )

@@ -24,21 +24,35 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled_making_arrays, inner, inner_making_arrays
 from workhold.kernels.base.given import Setting
-from workhold.kernels.contact.closure import ROUNDING
-from workhold.kernels.contact.equations import (
+from workhold.kernels.contact.record import (
+    LARGEST_RADIUS,
     MOVING,
     NEWTON,
     NULL,
     OFF,
+    PSI,
+    REACH,
+    SEPARATION,
     SLOPES,
+    TAIL_X,
+    TAIL_Y,
     UNKNOWNS,
     WORK_LENGTH,
     take_pegs,
     touch,
 )
-from workhold.kernels.contact.record import LARGEST_RADIUS, PSI, REACH, SEPARATION, TAIL_X, TAIL_Y
+from workhold.kernels.contact.rules import ROUNDING
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, LEAST_REACH, OPEN, PROVEN, ROUNDINGS, sizes
-from workhold.kernels.proof.variation import ERROR, FORCE_BAND, MOMENT_BAND, NUMBERS, TILT, is_broken, move_to, spread
+from workhold.kernels.proof.variation import (
+    ERROR,
+    FORCE_BAND,
+    MOMENT_BAND,
+    NUMBERS,
+    TILT,
+    is_broken,
+    move_to,
+    spread,
+)
 
 Array = NDArray[np.float64]
 Verdicts = NDArray[np.int8]
@@ -180,7 +194,9 @@ def begin(record: Array, frame: Array, length: float, place: Array) -> None:
     for j in range(4):
         place[0, j] = 0.0
         tail = abs(frame[1, 1, j]) + abs(frame[1, 2, j]) + 2.0 * abs(frame[1, 3, j])
-        place[1, j] = (1.0 + RIM) * (abs(frame[1, 0, j]) * turn + tail * radius + 2.0 * abs(frame[1, 3, j]) * turn)
+        place[1, j] = (1.0 + RIM) * (
+            abs(frame[1, 0, j]) * turn + tail * radius + 2.0 * abs(frame[1, 3, j]) * turn
+        )
 
 
 @inner
@@ -194,7 +210,9 @@ def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Arr
     for j in range(4):
         width = max(-bounds[0, j], bounds[1, j])
         root[REACH] += abs(frame[1, 0, j]) * width / length
-        root[LARGEST_RADIUS] += max(max(abs(frame[1, 1, j]), abs(frame[1, 2, j])), abs(frame[1, 3, j]) / 2.0) * width
+        root[LARGEST_RADIUS] += (
+            max(max(abs(frame[1, 1, j]), abs(frame[1, 2, j])), abs(frame[1, 3, j]) / 2.0) * width
+        )
 
 
 @inner
@@ -305,7 +323,9 @@ def solutions_in_all(
 
 
 @compiled_making_arrays
-def interval_newton(records: Array, features: Array, setting: Setting, frames: Array) -> tuple[Verdicts, Array]:
+def interval_newton(
+    records: Array, features: Array, setting: Setting, frames: Array
+) -> tuple[Verdicts, Array]:
     """Contract boxes one by one.
 
     Parameters
@@ -325,7 +345,9 @@ def interval_newton(records: Array, features: Array, setting: Setting, frames: A
 
 
 @inner
-def write_jacobians(records: Array, features: Array, setting: Setting, w: Array, points: Array, out: Array) -> None:
+def write_jacobians(
+    records: Array, features: Array, setting: Setting, w: Array, points: Array, out: Array
+) -> None:
     """Write the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
     for n in range(records.shape[0]):
         take_pegs(records[n], setting.lattice, w)

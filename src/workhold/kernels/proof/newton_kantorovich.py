@@ -38,23 +38,25 @@ from workhold.conventions import (
 )
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.distance import segment_distance
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, largest_number
 from workhold.kernels.base.given import Setting
-from workhold.kernels.base.shallow import largest_number
 from workhold.kernels.chord.evaluation import end_slack
-from workhold.kernels.contact.closure import minor_band, minors, outward_normal
-from workhold.kernels.contact.equations import (
+from workhold.kernels.contact.record import (
+    FEATURES,
     INVERSE,
+    LARGEST_RADIUS,
     MOVING,
     NEWTON,
     NULL,
+    PSI,
+    REACH,
     SLOPES,
     UNKNOWNS,
     invert,
     take_pegs,
     touch,
 )
-from workhold.kernels.contact.record import FEATURES, LARGEST_RADIUS, PSI, REACH
+from workhold.kernels.contact.rules import minor_band, minors, outward_normal
 
 Array = NDArray[np.float64]
 Verdicts = NDArray[np.int8]
@@ -106,7 +108,9 @@ def sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
 
 
 @inner
-def certificate(w: Array, size: float, smallest: float, length: float, backward_error: float) -> tuple[float, float]:
+def certificate(
+    w: Array, size: float, smallest: float, length: float, backward_error: float
+) -> tuple[float, float]:
     """Certify the contacts in place.
 
     The second derivatives of the contact equations are bounded so: a peg's centre moves by at most (sqrt 2 + 2 + 1) per unit
@@ -222,12 +226,17 @@ def judged(
     reach = 4.5 * radius
     swing = reach / smallest
     band = minor_band(swing, reach, length)
-    verdict = sign_of(nearest_end(record, features, pairs[0]) - setting.limits.contact_margin, 1.2 * reach + 1e-12)
+    verdict = sign_of(
+        nearest_end(record, features, pairs[0]) - setting.limits.contact_margin, 1.2 * reach + 1e-12
+    )
     if setting.limits.pairing != 0.0:
         verdict = min(verdict, sign_of(abs(null[3]) - LEAST_SEAT, band))
         facing = pairs[1, 3, 0] * cos(w[UNKNOWNS, 0]) + pairs[1, 3, 1] * sin(w[UNKNOWNS, 0])
         return min(verdict, sign_of(setting.limits.clamping * facing - LEAST_PUSH, swing + radius / length))
-    low, high = min(min(null[0], null[1]), min(null[2], null[3])), max(max(null[0], null[1]), max(null[2], null[3]))
+    low, high = (
+        min(min(null[0], null[1]), min(null[2], null[3])),
+        max(max(null[0], null[1]), max(null[2], null[3])),
+    )
     sign = 1.0 if high >= -low else -1.0
     closure = low if sign > 0.0 else -high
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
@@ -247,7 +256,12 @@ def discs_around(outline: Array, margin: float) -> Array:
     wide = np.where(half < pi / 2.0, radius * np.cos(short), 0.0)
     reach = np.where(outline[:, IS_ARC] == 0.0, half, radius * np.sin(short)) + margin
     return np.stack(
-        [outline[:, X] + wide * outline[:, AXIS_X], outline[:, Y] + wide * outline[:, AXIS_Y], 1.001 * reach**2], axis=1
+        [
+            outline[:, X] + wide * outline[:, AXIS_X],
+            outline[:, Y] + wide * outline[:, AXIS_Y],
+            1.001 * reach**2,
+        ],
+        axis=1,
     )
 
 

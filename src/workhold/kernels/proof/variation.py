@@ -14,11 +14,10 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.kernels.base.compiling import inner
-from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y, is_shallow, local_size
 from workhold.kernels.base.given import Setting
-from workhold.kernels.base.shallow import is_shallow, local_size
-from workhold.kernels.contact.closure import ROUNDING, minors
-from workhold.kernels.contact.equations import (
+from workhold.kernels.contact.record import (
+    FEATURES,
     MOVING,
     NEWTON,
     OFF,
@@ -26,7 +25,7 @@ from workhold.kernels.contact.equations import (
     STEP_X,
     UNKNOWNS,
 )
-from workhold.kernels.contact.record import FEATURES
+from workhold.kernels.contact.rules import ROUNDING, minors
 from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, nearest_end
 
 Array = NDArray[np.float64]
@@ -112,12 +111,18 @@ def spread(
 
 
 @inner
-def turned_by(record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array) -> tuple[float, float]:
+def turned_by(
+    record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array
+) -> tuple[float, float]:
     """Size of the cross product of two normals, and how much it varies over a part."""
     one, other = pairs[2, i, 0] * pairs[2, j, 1], pairs[2, i, 1] * pairs[2, j, 0]
     cross = one - other
     band = b[TILT, i] + b[TILT, j] + b[TILT, i] * b[TILT, j]
-    if abs(pairs[2, i, 0]) != abs(pairs[2, j, 0]) or abs(pairs[2, i, 1]) != abs(pairs[2, j, 1]) or cross != 0.0:
+    if (
+        abs(pairs[2, i, 0]) != abs(pairs[2, j, 0])
+        or abs(pairs[2, i, 1]) != abs(pairs[2, j, 1])
+        or cross != 0.0
+    ):
         # Normals of exactly the same or opposite direction, as lines have, are parallel without error.
         band += ROUNDINGS * (abs(one) + abs(other))
     return (abs(cross), min(band, arcs_turned_by(record, features, i, j, pairs, w, b)))
@@ -154,7 +159,9 @@ def face_one_way(pairs: Array, b: Array) -> bool:
 
 
 @inner
-def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs: Array, null: Array, b: Array) -> bool:
+def is_broken(
+    record: Array, features: Array, setting: Setting, w: Array, pairs: Array, null: Array, b: Array
+) -> bool:
     """Whether some rule is broken everywhere in a part."""
     reach = 0.0
     moving, standing = inf, -inf

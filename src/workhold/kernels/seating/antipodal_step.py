@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import DescentWorkSpace, Obstacles
-from workhold.kernels.seating.pieces import angle_from_middle, nearest_piece, place_on_part
-from workhold.kernels.seating.walls import off_wall
+from workhold.kernels.seating.obstacles import angle_from_middle, nearest_piece, off_wall, place_on_part
 
 Array = NDArray[np.float64]
 
@@ -122,7 +121,9 @@ def antipodal_pose(
 
 
 @inner
-def is_free(config: Array, cosine: float, sine: float, p: int, q: int, obstacles: Obstacles, known: Array) -> bool:
+def is_free(
+    config: Array, cosine: float, sine: float, p: int, q: int, obstacles: Obstacles, known: Array
+) -> bool:
     """Whether no peg but two is in the part, and no wall, at an orientation of known cosine and sine."""
     for peg in range(obstacles.pegs.shape[0]):
         if peg in (p, q):
@@ -190,7 +191,10 @@ def antipodal_step(
     sx, sy = tangent_at(a, ax, ay)
     tx, ty = tangent_at(b, bx, by)
     us, ut = ux * sx + uy * sy, ux * tx + uy * ty
-    haa, hbb = (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy), (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy)
+    haa, hbb = (
+        (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy),
+        (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy),
+    )
     along_a, along_b = newton_step(haa, -(sx * tx + sy * ty - us * ut) / d, hbb, -us, ut, longest)
     asked = hypot(along_a, along_b)
     a_unit = a[RADIUS] if a[IS_ARC] != 0.0 else 1.0

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.chord.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import (
     ANGLE,
     CANDIDATE_LENGTH,
@@ -32,7 +32,7 @@ from workhold.kernels.seating.columns import (
     THETA,
     Given,
 )
-from workhold.kernels.seating.pieces import Foot, clearance, distance_to, foot, normal_at, on_piece
+from workhold.kernels.seating.obstacles import Foot, clearance, distance_to, foot, normal_at, on_piece
 from workhold.kernels.seating.three_contacts import (
     ROOT_DOUBT,
     ROOT_PAIR,
@@ -83,7 +83,15 @@ def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> N
 
 @inner
 def slope_of_miss(
-    pair: Array, piece: Array, side: float, s: PairState, f: Foot, cosine: float, sine: float, psi: float, given: Given
+    pair: Array,
+    piece: Array,
+    side: float,
+    s: PairState,
+    f: Foot,
+    cosine: float,
+    sine: float,
+    psi: float,
+    given: Given,
 ) -> float:
     """The derivative of MISS in mm per radian; infinite, or no number, where that of P is not known.
 
@@ -163,11 +171,16 @@ def complete_two(roots: Array, given: Given, pocket_pieces: IntArray, out: Array
         psi = roots[r, ROOT_PSI]
         one, two = given.pairs[int(roots[r, ROOT_PAIR])], given.pairs[int(roots[r, ROOT_PIECE])]
         s, t = pair_at(one, given, psi), pair_at(two, given, psi)
-        if not (is_on_its_pieces(one, given, psi, s[0], s[1]) and is_on_its_pieces(two, given, psi, t[0], t[1])):
+        if not (
+            is_on_its_pieces(one, given, psi, s[0], s[1]) and is_on_its_pieces(two, given, psi, t[0], t[1])
+        ):
             continue
         cosine, sine = cos(psi), sin(psi)
         p, q = int(one[FIRST_PEG]), int(two[FIRST_PEG])
-        x, y = given.pegs[p, 0] - (cosine * s[0] + sine * s[1]), given.pegs[p, 1] - (cosine * s[1] - sine * s[0])
+        x, y = (
+            given.pegs[p, 0] - (cosine * s[0] + sine * s[1]),
+            given.pegs[p, 1] - (cosine * s[1] - sine * s[0]),
+        )
         row = out[count]
         write_pose(row, -psi, x, y, 4)
         row[SEPARATION] = x - (given.pegs[q, 0] - (cosine * t[0] + sine * t[1]))
@@ -326,7 +339,12 @@ def judge_balance(candidates: Array, slack: float, slack_in_doubt: float, verdic
             pressed = pressed and row[FORCE + k] > LEAST_FORCE
         if pressed and row[DOUBT] == 0.0 and row[RESIDUAL] < BALANCED and row[CLEAR] > -slack:
             verdicts[number] = IN_BALANCE
-        elif pressed and row[DOUBT] != 0.0 and row[RESIDUAL] < BALANCED_IN_DOUBT and row[CLEAR] > -slack_in_doubt:
+        elif (
+            pressed
+            and row[DOUBT] != 0.0
+            and row[RESIDUAL] < BALANCED_IN_DOUBT
+            and row[CLEAR] > -slack_in_doubt
+        ):
             verdicts[number] = DOUBTFUL
 
 

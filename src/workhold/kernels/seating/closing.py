@@ -1,10 +1,13 @@
-"""Closing the jaws without friction, step by small step: linear programs over what pegs come near.
+"""Closing the jaws without friction, and how far a part can be moved with the separation below a bound.
 
 At a configuration (theta, x, y, S) the clearances of pegs from pieces nearby are linearized. The step that
 lowers S most within a box is a linear program of four unknowns; what it enters to second order is undone by
 the shortest way out. The box grows and shrinks as steps prove good. Where one peg of each jaw touches, the
 step is one of Newton (``antipodal_step``). So the configuration stays free, S only falls, and the path has no
 gap wider than a step.
+
+A path that turns or shifts the part takes the steps that lead farthest along its aim, with the bound of S as
+one more clearance. So it is connected too, and where it ends something holds the part back.
 """
 
 from __future__ import annotations
@@ -17,9 +20,18 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.antipodal_step import antipodal_step
-from workhold.kernels.seating.columns import COSINE, MOVED, SINE, STEP, STEP_ALONG, TURNED, DescentWorkSpace, Obstacles
-from workhold.kernels.seating.linear_program import best_step, shortest_out
-from workhold.kernels.seating.walls import add_wall
+from workhold.kernels.seating.columns import (
+    COSINE,
+    MOVED,
+    SINE,
+    STEP,
+    STEP_ALONG,
+    TURNED,
+    DescentWorkSpace,
+    Obstacles,
+)
+from workhold.kernels.seating.linear_program import Four, best_step, shortest_out
+from workhold.kernels.seating.obstacles import add_wall
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -46,7 +58,9 @@ DOWN = (0.0, 0.0, 0.0, -1.0)
 
 
 @inner
-def remember(peg: int, x: float, y: float, reach: float, obstacles: Obstacles, work: DescentWorkSpace) -> None:
+def remember(
+    peg: int, x: float, y: float, reach: float, obstacles: Obstacles, work: DescentWorkSpace
+) -> None:
     """Writes the pieces within a reach of a peg's place on the part, in their order, to a peg's list."""
     count, side = 0, obstacles.right[peg]
     for k in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
@@ -71,7 +85,13 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
     count, near = 0, work.near
     cosine, sine = cos(config[0]), sin(config[0])
     if config[3] - obstacles.stop <= reach:
-        near[0, 0], near[0, 1], near[0, 2], near[0, 3], near[0, 4] = 0.0, 0.0, 0.0, 1.0, config[3] - obstacles.stop
+        near[0, 0], near[0, 1], near[0, 2], near[0, 3], near[0, 4] = (
+            0.0,
+            0.0,
+            0.0,
+            1.0,
+            config[3] - obstacles.stop,
+        )
         near[0, 5], near[0, 6] = -1.0, -1.0
         count = 1
     if obstacles.most - config[3] <= reach:
@@ -101,7 +121,10 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
                 if abs(off) > reach:
                     continue
                 # An angle from the middle is less than another where its cosine is more.
-                forth, end = dx * row[AXIS_X] + dy * row[AXIS_Y], 3 if dy * row[AXIS_X] > dx * row[AXIS_Y] else 2
+                forth, end = (
+                    dx * row[AXIS_X] + dy * row[AXIS_Y],
+                    3 if dy * row[AXIS_X] > dx * row[AXIS_Y] else 2,
+                )
                 if row[HALF_EXTENT] < pi and forth < size * obstacles.spans[k, end]:
                     continue
             if count >= near.shape[0]:
@@ -170,7 +193,9 @@ def add_node(config: Array, trust: float, longest: float, nodes: Array, first: i
         if at > first:
             before = nodes[at - 1]
             node[TURNED] = before[TURNED] + abs(node[0] - before[0])
-            node[MOVED] = before[MOVED] + abs(node[1] - before[1]) + abs(node[2] - before[2]) + abs(node[3] - before[3])
+            node[MOVED] = (
+                before[MOVED] + abs(node[1] - before[1]) + abs(node[2] - before[2]) + abs(node[3] - before[3])
+            )
     return at + 1
 
 
@@ -274,5 +299,98 @@ def close_jaws(
         work.known[peg, 3] = 0.0
     for k in range(configs.shape[0]):
         begins[k] = count
-        ends[k], count = close_one(configs[k], lengths[k, 0], lengths[k, 1], most, obstacles, seats, work, nodes, count)
+        ends[k], count = close_one(
+            configs[k], lengths[k, 0], lengths[k, 1], most, obstacles, seats, work, nodes, count
+        )
+    begins[configs.shape[0]] = count
+
+
+# Steps of one path.
+MOST_STEPS_OUT = 600
+
+
+@inner
+def reached(config: Array, aim: Four, size: float) -> float:
+    """How far in mm a configuration lies along an aim."""
+    return aim[0] * config[0] * size + aim[1] * config[1] + aim[2] * config[2] + aim[3] * config[3]
+
+
+@inner
+def reach_one(
+    config: Array,
+    aim: Four,
+    far: float,
+    trust: float,
+    most: float,
+    obstacles: Obstacles,
+    work: DescentWorkSpace,
+    nodes: Array,
+    at: int,
+) -> int:
+    """Moves a configuration along an aim, in place, until nothing leads on.
+
+    Returns the next number of a node.
+    """
+    trial, first, won = work.trial, at, 0.0
+    at = add_node(config, trust, trust, nodes, first, at)
+    count = push_out(config, obstacles, ahead(trust, most), work)
+    if count < 0:
+        return at
+    for _ in range(MOST_STEPS_OUT):
+        if count < 0:
+            count = look_around(config, obstacles, ahead(trust, most), work)
+        gain = best_step(count, trust, work, aim)
+        good = gain >= LEAST_GAIN
+        if good:
+            trial[0] = config[0] + work.step[0] / obstacles.size
+            for j in range(1, 4):
+                trial[j] = config[j] + work.step[j]
+            count = push_out(trial, obstacles, ahead(trust, most), work)
+            won = reached(trial, aim, obstacles.size) - reached(config, aim, obstacles.size)
+            good = count >= 0 and won > 0.1 * gain
+        if not good:
+            trust *= 0.4 if gain >= LEAST_GAIN else 0.01
+            if trust < LEAST_STEP:
+                break
+            count = -1
+            continue
+        if won > 0.7 * gain:
+            trust = min(WIDER * trust, most)
+        for j in range(4):
+            config[j] = trial[j]
+        at = add_node(config, trust, trust, nodes, first, at)
+        if reached(config, aim, obstacles.size) > far:
+            break
+    return at
+
+
+@compiled
+def reach_out(
+    configs: Array,
+    aims: Array,
+    far: Array,
+    trust: float,
+    most: float,
+    obstacles: Obstacles,
+    work: DescentWorkSpace,
+    begins: IntArray,
+    nodes: Array,
+) -> None:
+    """Moves configurations (N, 4) of theta, x, y and S, in place, along aims as far as they lead.
+
+    Parameters
+    ----------
+    aims : (N, 4) unit vectors of (theta size, x, y, S), in mm.
+    far : (N,) how far along them in mm a way ends at the latest.
+    trust, most : how long the first steps and all of them are at most, in mm.
+    begins : (N + 1,) where the nodes of each path begin and, last, end, written here.
+    nodes : (M, 10) configurations after each step, as of ``closing.close_jaws``, as far as there is room.
+    """
+    count = 0
+    for peg in range(obstacles.pegs.shape[0]):
+        work.places[peg, 2] = -inf
+    for k in range(configs.shape[0]):
+        begins[k] = count
+        aim = (aims[k, 0], aims[k, 1], aims[k, 2], aims[k, 3])
+        count = reach_one(configs[k], aim, far[k], trust, most, obstacles, work, nodes, count)
     begins[configs.shape[0]] = count

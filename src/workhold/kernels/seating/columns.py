@@ -112,7 +112,7 @@ class Obstacles(NamedTuple):
     pegs, right, parts : as of ``Given``.
     size : of the part in mm, by which turns are compared with shifts.
     stop : the smallest jaw separation, in mm.
-    hull : (H, 6) what may touch a wall, see ``seating.walls``; none where there is no wall.
+    hull : (H, 6) what may touch a wall, see ``kernels.seating.obstacles``; none where there is no wall.
     half_plane : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall
         is.
     most : the largest jaw separation, in mm.
@@ -156,7 +156,12 @@ class SelfMotions(NamedTuple):
     def room(cls, count: int, configs: int) -> SelfMotions:
         """Room for so many, and for so many configurations along them; of nothing is known whose it is."""
         numbers = np.full((2, count, 4), -1)
-        made = np.empty((configs, 4)), np.zeros(count, np.int64), np.zeros(count, np.int8), np.empty((count, 2))
+        made = (
+            np.empty((configs, 4)),
+            np.zeros(count, np.int64),
+            np.zeros(count, np.int8),
+            np.empty((count, 2)),
+        )
         return cls(*made, numbers[0], numbers[1], np.zeros((configs, 4)))
 
     def first(self, count: int) -> SelfMotions:

@@ -29,11 +29,20 @@ from workhold.kernels.seating.columns import (
     Given,
     JawCells,
 )
-from workhold.kernels.seating.middles import COSINE, SINE, pair_in
-from workhold.kernels.seating.pieces import length
-from workhold.kernels.seating.roots import APART, GAP, gap, have_no_root, is_level, root_between
-from workhold.kernels.seating.three_contacts import HALVES, MAYBE, NOTHING, write_root
-from workhold.kernels.seating.two_contact_curves import END, PairState, height, pair_at
+from workhold.kernels.seating.obstacles import length
+from workhold.kernels.seating.three_contacts import COSINE, HALVES, MAYBE, NOTHING, SINE, pair_in, write_root
+from workhold.kernels.seating.two_contact_curves import (
+    APART,
+    END,
+    GAP,
+    PairState,
+    gap,
+    have_no_root,
+    height,
+    is_level,
+    pair_at,
+    root_between,
+)
 
 Array = NDArray[np.float64]
 
@@ -64,7 +73,9 @@ def verdict_on_two(p: Array, q: Array, low: float, high: float, given: Given) ->
 
 
 @inner
-def verdict_on_third(cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: Given) -> int:
+def verdict_on_third(
+    cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: Given
+) -> int:
     """The verdict on a range in which a peg (ox, oy) from the first may touch a piece."""
     psi = (low + high) / 2.0
     s = pair_at(given.pairs[int(cell[PAIR])], given, psi)
@@ -227,7 +238,12 @@ def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack
         cell, middle = cells[number], middles[number]
         pair = given.pairs[int(cell[PAIR])]
         tail, head = int(pair[FIRST_PEG]), int(pair[SECOND_PEG])
-        reach, s, at_low, at_high = (cell[HIGH] - cell[LOW]) / 2.0, pair_in(middle), pair_in(middle), pair_in(middle)
+        reach, s, at_low, at_high = (
+            (cell[HIGH] - cell[LOW]) / 2.0,
+            pair_in(middle),
+            pair_in(middle),
+            pair_in(middle),
+        )
         if cell[VAGUE] != 0.0:
             at_low, at_high = pair_at(pair, given, cell[LOW]), pair_at(pair, given, cell[HIGH])
         for third in range(given.pegs.shape[0]):
@@ -239,7 +255,11 @@ def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack
             if cell[VAGUE] != 0.0:
                 low = place_of(at_low, cos(cell[LOW]), sin(cell[LOW]), ox, oy)
                 high = place_of(at_high, cos(cell[HIGH]), sin(cell[HIGH]), ox, oy)
-            play = (length(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach + END + ROUNDING
+            play = (
+                (length(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach
+                + END
+                + ROUNDING
+            )
             for piece in range(given.parts[given.right[tail], 0], given.parts[given.right[tail], 1]):
                 row = given.rows[piece]
                 if cell[VAGUE] != 0.0:
@@ -247,7 +267,10 @@ def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack
                         continue
                 else:
                     dx, dy, far = x - discs[piece, 0], y - discs[piece, 1], discs[piece, 2] + play
-                    if dx * dx + dy * dy > far * far or verdict_on_place(cell, s, x, y, row, reach) == NOTHING:
+                    if (
+                        dx * dx + dy * dy > far * far
+                        or verdict_on_place(cell, s, x, y, row, reach) == NOTHING
+                    ):
                         continue
                 count = roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
                 if count < 0:

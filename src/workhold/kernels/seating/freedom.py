@@ -21,9 +21,15 @@ from workhold.kernels.seating.columns import (
     Obstacles,
     SelfMotions,
 )
-from workhold.kernels.seating.pieces import nearest_piece, on_piece, place_on_part
-from workhold.kernels.seating.roots import gap
-from workhold.kernels.seating.walls import SUPPORTS, beside_wall, off_wall
+from workhold.kernels.seating.obstacles import (
+    SUPPORTS,
+    beside_wall,
+    nearest_piece,
+    off_wall,
+    on_piece,
+    place_on_part,
+)
+from workhold.kernels.seating.two_contact_curves import gap
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -58,7 +64,9 @@ def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array)
 
 
 @inner
-def write_clearances(config: Array, touched: IntArray, known: int, around: Obstacles, seen: Array, out: Array) -> bool:
+def write_clearances(
+    config: Array, touched: IntArray, known: int, around: Obstacles, seen: Array, out: Array
+) -> bool:
     """Writes the clearances of all pegs from a number on, and last of a wall, in a configuration.
 
     Returns whether all leave the part free, and those that have to touch pieces (K,) do. Where one does not,
@@ -121,7 +129,9 @@ def keep_free(motions: SelfMotions, around: Obstacles, seen: Array) -> int:
 
 
 @inner
-def last_free(ends: Array, touched: IntArray, around: Obstacles, trial: Array, seen: Array, clear: Array) -> None:
+def last_free(
+    ends: Array, touched: IntArray, around: Obstacles, trial: Array, seen: Array, clear: Array
+) -> None:
     """Moves the first of two configurations (2, 4), which is free, straight towards the second, which is not.
 
     It ends in the last free one.
@@ -213,7 +223,10 @@ def write_touching(config: Array, clear: Array, touched: IntArray, around: Obsta
     for peg in range(clear.shape[0]):
         if abs(clear[peg]) < TOUCHES:
             known = touched[peg] if peg < touched.shape[0] else -1
-            row[PEG + count], row[PIECE + count] = peg, known if known >= 0 else touched_piece(config, peg, around)
+            row[PEG + count], row[PIECE + count] = (
+                peg,
+                known if known >= 0 else touched_piece(config, peg, around),
+            )
             count += 1
     row[CONTACTS] = count
 
@@ -295,7 +308,19 @@ def write_along(
     at, length = out.begins[number], motions.counts[w]
     end, is_closed = begin + length, motions.closed[w] != 0
     if not is_closed:
-        write_edge(motions.configs, first, first - 1, begin, end, touched, around, work, seen, work[3], out.configs[at])
+        write_edge(
+            motions.configs,
+            first,
+            first - 1,
+            begin,
+            end,
+            touched,
+            around,
+            work,
+            seen,
+            work[3],
+            out.configs[at],
+        )
         at += 1
     for i in range(count):
         for j in range(4):
@@ -303,7 +328,9 @@ def write_along(
         at += 1
     if not is_closed:
         last = first + count - 1
-        write_edge(motions.configs, last, last + 1, begin, end, touched, around, work, seen, work[3], out.configs[at])
+        write_edge(
+            motions.configs, last, last + 1, begin, end, touched, around, work, seen, work[3], out.configs[at]
+        )
         at += 1
     out.begins[number + 1], out.closed[number] = at, 1 if is_closed and count == length else 0
 

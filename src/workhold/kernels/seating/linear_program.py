@@ -57,7 +57,14 @@ def shortest_out(count: int, work: DescentWorkSpace) -> None:
     A dual active-set method: from no step at all, to what is entered deepest, along the others that were met,
     of which one is let go that would pull (D. Goldfarb and A. Idnani, Mathematical Programming 27, 1983).
     """
-    near, basis, triangle, step, way, members = work.near, work.basis, work.triangle, work.step, work.way, work.members
+    near, basis, triangle, step, way, members = (
+        work.near,
+        work.basis,
+        work.triangle,
+        work.step,
+        work.way,
+        work.members,
+    )
     for j in range(4):
         step[j] = 0.0
     size, entered, pressed = 0, -1, 0.0
@@ -129,7 +136,9 @@ def holding_back(work: DescentWorkSpace, size: int, aim: Four) -> int:
     basis, triangle = work.basis, work.triangle
     worst, dropped = -1e-9, -1
     for q in range(size - 1, -1, -1):
-        multiplier = -(aim[0] * basis[q, 0] + aim[1] * basis[q, 1] + aim[2] * basis[q, 2] + aim[3] * basis[q, 3])
+        multiplier = -(
+            aim[0] * basis[q, 0] + aim[1] * basis[q, 1] + aim[2] * basis[q, 2] + aim[3] * basis[q, 3]
+        )
         for p in range(q + 1, size):
             multiplier -= triangle[q, p] * triangle[p, 5]
         triangle[q, 5] = multiplier / triangle[q, q]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from workhold.conventions import END_SLACK
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.curves.columns import FROM, TO
+from workhold.kernels.chord.columns import FROM, TO
 from workhold.kernels.seating.candidates import place_third, write_pair, write_pose
 from workhold.kernels.seating.columns import (
     ANGLE,
@@ -33,7 +33,7 @@ from workhold.kernels.seating.columns import (
     Given,
     JawCells,
 )
-from workhold.kernels.seating.pieces import on_piece
+from workhold.kernels.seating.obstacles import on_piece
 from workhold.kernels.seating.two_contact_curves import TURN, height, is_on_its_pieces, pair_at
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""The least friction at which three of four contacts balance a jaw, see ``seating.sticking_friction``.
+"""The least friction at which three of four contacts balance a jaw, see ``seating.clamping``.
 
 A contact's wrench is a force and its moment, along the normal into the part (straight) and along the tangent
 (across): (4, 3) of each. With signs s of its tangents, three contacts at the edges of their cones balance
@@ -12,8 +12,8 @@ from math import copysign, hypot, inf, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from workhold.kernels.base.arrays import eliminate
 from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.elimination import eliminate
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -34,11 +34,17 @@ MOST_CUTS = 200
 @inner
 def determinant(a: Array, b: Array, c: Array) -> float:
     """The determinant of three rows."""
-    return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
 
 
 @inner
-def cubic_of(straight: Array, across: Array, i: int, j: int, k: int, si: float, sj: float, sk: float) -> Cubic:
+def cubic_of(
+    straight: Array, across: Array, i: int, j: int, k: int, si: float, sj: float, sk: float
+) -> Cubic:
     """The coefficients of the determinant over the friction, the constant first; what is rounding is 0."""
     a, b, c, d, e, f = straight[i], straight[j], straight[k], across[i], across[j], across[k]
     zero, three = determinant(a, b, c), si * sj * sk * determinant(d, e, f)
@@ -203,7 +209,9 @@ def all_push(matrix: Array, inverse: Array) -> bool:
 
 
 @inner
-def balances(straight: Array, across: Array, right: IntArray, friction: float, matrix: Array, inverse: Array) -> bool:
+def balances(
+    straight: Array, across: Array, right: IntArray, friction: float, matrix: Array, inverse: Array
+) -> bool:
     """Whether three of four contacts balance the jaw inside cones of a friction.
 
     Some four of their six edges do then.
@@ -232,7 +240,13 @@ def balances(straight: Array, across: Array, right: IntArray, friction: float, m
 
 @compiled
 def least_friction(
-    points: Array, normals: Array, right: IntArray, straight: Array, across: Array, matrix: Array, inverse: Array
+    points: Array,
+    normals: Array,
+    right: IntArray,
+    straight: Array,
+    across: Array,
+    matrix: Array,
+    inverse: Array,
 ) -> float:
     """The least friction at which three of four contacts, or two, balance a jaw, or infinity.
 

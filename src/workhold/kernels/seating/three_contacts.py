@@ -1,13 +1,18 @@
-"""Three forces in balance: the normal of a third peg, of the other jaw, goes through the instant centre of a pair.
+"""Three forces in balance: the normal of a third peg, of the other jaw, meets a pair's instant centre.
 
 Over a range of orientations the instant centre P moves no faster than the speed V of its cell, and along a
-ray (``kernels.seating.rays``). Both bound the foot of P on a piece, the directions of all three forces and
-the height missed (``roots.MISS``). A range is dropped where the foot is off the piece, the forces cannot all
-press, or the height cannot vanish; before that, whole pieces by the discs around them.
+ray (``two_contact_curves.Ray``). Both bound the foot of P on a piece, the directions of all three forces and
+the height missed (``two_contact_curves.MISS``). A range is dropped where the foot is off the piece, the
+forces cannot all press, or the height cannot vanish; before that, whole pieces by the discs around them.
 
 By an enclosure of P' (``chord.center_speeds``) there is no root where the mean value theorem leaves none.
 There is one at most where the derivative keeps its sign; else the range is halved. What is too narrow to be
 halved is in doubt. Beside a tangency, where V is of no use, three values that hardly differ decide.
+
+The middle of each cell is computed once for all third pegs that may press against its pair. Columns of a
+middle: COSINE and SINE of the orientation, ten numbers from HELD on (``two_contact_curves.PairState``), and
+seven from RAY on (``two_contact_curves.Ray``). The last stand for nothing in a cell of a pocket or beside a
+tangency.
 """
 
 from __future__ import annotations
@@ -20,8 +25,8 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import Interval, idivide, imul
-from workhold.kernels.chord.center_speeds import center_motion
-from workhold.kernels.curves.columns import HEAD, TAIL
+from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.chord.stretches import center_motion
 from workhold.kernels.seating.columns import (
     ANGLE,
     FIRST_PEG,
@@ -34,13 +39,66 @@ from workhold.kernels.seating.columns import (
     VAGUE,
     Given,
 )
-from workhold.kernels.seating.middles import COSINE, SINE, pair_in, ray_in, ray_over
-from workhold.kernels.seating.pieces import Foot, angle_from_middle, foot, length, share_normals
-from workhold.kernels.seating.rays import Ray, foot_is_off
-from workhold.kernels.seating.roots import AT_END, MISS, is_level, root_between
-from workhold.kernels.seating.two_contact_curves import END, PairState, pair_at
+from workhold.kernels.seating.obstacles import Foot, angle_from_middle, foot, length, share_normals
+from workhold.kernels.seating.two_contact_curves import (
+    AT_END,
+    END,
+    MISS,
+    PairState,
+    Ray,
+    foot_is_off,
+    is_level,
+    pair_at,
+    ray_of,
+    root_between,
+)
+
+__all__ = ["COSINE", "MIDDLE_LENGTH", "SINE", "pair_in", "ray_in", "ray_over", "write_middles"]
 
 Array = NDArray[np.float64]
+
+COSINE, SINE, HELD, RAY = 0, 1, 2, 12
+MIDDLE_LENGTH = 19
+
+
+@inner
+def ray_over(pair: Array, given: Given, s: PairState, speed: float, reach: float) -> Ray:
+    """The ray of a pair of two contacts; see ``rays.ray_of``."""
+    k = int(pair[SOURCE])
+    a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
+    return ray_of(given.reals[k], a, b, s, speed, reach)
+
+
+@compiled
+def write_middles(cells: Array, given: Given, out: Array) -> None:
+    """Writes the middles (C, 19) of cells (C, 7)."""
+    for number in range(cells.shape[0]):
+        cell, row = cells[number], out[number]
+        pair = given.pairs[int(cell[PAIR])]
+        psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
+        s, ray = pair_at(pair, given, psi), (0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
+        if pair[KIND] == 0.0 and cell[VAGUE] == 0.0:
+            ray = ray_over(pair, given, s, cell[SPEED], reach)
+        row[COSINE], row[SINE] = cos(psi), sin(psi)
+        for k in range(10):
+            row[HELD + k] = s[k]
+        for k in range(7):
+            row[RAY + k] = ray[k]
+
+
+@inner
+def pair_in(middle: Array) -> PairState:
+    """The pair in the middle of a cell."""
+    h = middle[HELD:RAY]
+    return (h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8], h[9])
+
+
+@inner
+def ray_in(middle: Array) -> Ray:
+    """The ray over a cell."""
+    r = middle[RAY:]
+    return (r[0], r[1], r[2], r[3], r[4], r[5], r[6])
+
 
 # Ranges narrower than this, in radians, are not halved, but where values differ over them that are near 0 and
 # P moves by more than some mm, as beside a tangency; none is that is as narrow as the last.
@@ -90,7 +148,14 @@ def write_off_level(
 
 @inner
 def is_behind(
-    disc: Array, s: PairState, cosine: float, sine: float, speed: float, reach: float, beyond: float, push: float
+    disc: Array,
+    s: PairState,
+    cosine: float,
+    sine: float,
+    speed: float,
+    reach: float,
+    beyond: float,
+    push: float,
 ) -> bool:
     """Whether no point in a disc of the part meets the third peg over a range, above the stop.
 
@@ -181,7 +246,9 @@ def slope_over(
     ex, ey = (f[0] - piece[X]) / piece[RADIUS], (f[1] - piece[Y]) / piece[RADIUS]
     ratio, worst = piece[RADIUS] / f[4], piece[RADIUS] / (f[4] - move)
     slope += side * ratio * (my * ex - mx * ey) * (cosine * ex + sine * ey)
-    doubt = move + far * (turn + reach) + worst * (spread + size * (2.0 * turn + reach)) + size * (worst - ratio)
+    doubt = (
+        move + far * (turn + reach) + worst * (spread + size * (2.0 * turn + reach)) + size * (worst - ratio)
+    )
     return (slope, doubt * (1.0 + 1e-6) + ROUNDING)
 
 
@@ -269,7 +336,9 @@ def roots_of_cell(
 
 
 @inner
-def write_root(out: Array, count: int, pair: float, peg: int, piece: int, side: float, psi: float, doubt: float) -> int:
+def write_root(
+    out: Array, count: int, pair: float, peg: int, piece: int, side: float, psi: float, doubt: float
+) -> int:
     """Writes a root; returns the new count, or -1 where it does not fit."""
     if count >= out.shape[0]:
         return -1
@@ -281,7 +350,14 @@ def write_root(out: Array, count: int, pair: float, peg: int, piece: int, side: 
 
 @compiled
 def three_contacts(
-    cells: Array, middles: Array, given: Given, discs: Array, stop: float, stack: Array, work: Array, out: Array
+    cells: Array,
+    middles: Array,
+    given: Given,
+    discs: Array,
+    stop: float,
+    stack: Array,
+    work: Array,
+    out: Array,
 ) -> int:
     """Writes all orientations at which two pegs of one jaw and one of the other may balance.
 

@@ -20,12 +20,9 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
-from workhold.verification.balls import Point, exact_point
+from workhold.verification.ball_geometry import BallOutline, Point, Side, exact_point
 from workhold.verification.contacts import BallContact, BallPose, standoff
-from workhold.verification.findings import Finding, number, rule
-from workhold.verification.outline import BallOutline
-from workhold.verification.rules.jaws import nearest_row_findings, opening_findings
-from workhold.verification.rules.stroke import (
+from workhold.verification.rules.travel import (
     WAYS,
     Stroke,
     clamp_place,
@@ -33,11 +30,12 @@ from workhold.verification.rules.stroke import (
     directions_of,
     is_along_x,
     line_of,
+    nearest_row_findings,
+    opening_findings,
     travelled,
 )
 from workhold.verification.rules.wall import WallContact, flush_findings, wall_contacts
-from workhold.verification.sides import Side
-from workhold.verification.tolerances import AGREEMENT
+from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 
 __all__ = ["ToolkitRules"]
 
@@ -117,10 +115,14 @@ class ToolkitRules:
             for _ in range(count):
                 seen[carrier.peg] += 1
                 if carrier.is_wall:
-                    out.append(f"the {carrier.noun} at its {'left' if seen[carrier.peg] == 1 else 'right'} end")
+                    out.append(
+                        f"the {carrier.noun} at its {'left' if seen[carrier.peg] == 1 else 'right'} end"
+                    )
                 else:
                     out.append(
-                        f"the {carrier.peg}" if total[carrier.peg] == 1 else f"{carrier.peg} {seen[carrier.peg]}"
+                        f"the {carrier.peg}"
+                        if total[carrier.peg] == 1
+                        else f"{carrier.peg} {seen[carrier.peg]}"
                     )
         return tuple(out)
 
@@ -128,7 +130,9 @@ class ToolkitRules:
     def pegs_wanted(self) -> str:
         """What the pegs of a fixture are to be."""
         words = [
-            f"the two ends of the {one.noun}" if one.is_wall else f"{NUMBERS[count]} {one.peg}{'s' * (count > 1)}"
+            f"the two ends of the {one.noun}"
+            if one.is_wall
+            else f"{NUMBERS[count]} {one.peg}{'s' * (count > 1)}"
             for one, count in self.groups
             if one.on is None
         ]
@@ -147,7 +151,9 @@ class ToolkitRules:
         """What is wrong where the clamping force is none."""
         if self.clamps:
             return "the clamp does not push the part"
-        return f"{'closing' if self.toolkit.clamping > 0 else 'opening'} the {self.toolkit.noun} does not clamp"
+        return (
+            f"{'closing' if self.toolkit.clamping > 0 else 'opening'} the {self.toolkit.noun} does not clamp"
+        )
 
     @property
     def wider_words(self) -> str:
@@ -167,13 +173,19 @@ class ToolkitRules:
         if fixture.pair is not None:
             named = zip(self.names[-2:], fixture.pair.travels, strict=True)
             return {f"place of the tip of {name} on its line": travel for name, travel in named}
-        return {f"place of {self.names[-1]}'s tip on its line" if self.clamps else "opening": fixture.jaw_separation}
+        return {
+            f"place of {self.names[-1]}'s tip on its line"
+            if self.clamps
+            else "opening": fixture.jaw_separation
+        }
 
     def has_its_pegs(self, fixture: Fixture) -> bool:
         """Whether the pegs of a fixture are those of its type and directions, in their order but for jaws."""
         directions, carriers = directions_of(fixture), self.carriers.values()
         pegs = next((one.pegs for one in self.toolkit.arrangements if one.name == fixture.type), ())
-        still = [c.name for c, count in zip(carriers, pegs, strict=False) for _ in range(count) if c.on is None]
+        still = [
+            c.name for c, count in zip(carriers, pegs, strict=False) for _ in range(count) if c.on is None
+        ]
         wanted = [*still, *(f"clamp {direction}" for direction in directions)]
         there, order = [peg.carrier for peg in fixture.pegs], sorted if len(self.lattices) > 1 else list
         return len(directions) == self.clamps and order(there) == order(wanted)
@@ -194,7 +206,9 @@ class ToolkitRules:
             if any(peg.carrier not in self.carriers for peg in fixture.pegs):
                 raise InputError(f"a peg's {self.lattices[0].noun} is not {' or '.join(self.carriers)}")
             return fixture
-        moved = [travelled(peg, self.carriers.get(peg.carrier, self.lattices[0])) for peg in fixture.pegs[-clamps:]]
+        moved = [
+            travelled(peg, self.carriers.get(peg.carrier, self.lattices[0])) for peg in fixture.pegs[-clamps:]
+        ]
         pair = None if fixture.pair is None else evolve(fixture.pair, travels=(moved[0], moved[1]))
         return evolve(fixture, jaw_separation=moved[0], pair=pair)
 
@@ -253,7 +267,9 @@ class ToolkitRules:
                 yield from self.clamp_place_findings(name, peg)
             travel = moved[1] if len(moved) > 1 and k == len(fixture.pegs) - 1 else moved[0]
             noun = "line" if direction_of(peg) else "hole"
-            for axis, written, hole, way in zip("xy", (peg.x, peg.y), self.place(peg), self.way(peg), strict=True):
+            for axis, written, hole, way in zip(
+                "xy", (peg.x, peg.y), self.place(peg), self.way(peg), strict=True
+            ):
                 off = abs(hole + arb(travel) * way - written)
                 if not off < AGREEMENT:
                     words = f"the {axis} of {name} is {number(off)} mm from that of its {noun}"
@@ -265,7 +281,9 @@ class ToolkitRules:
         if not self.has_its_pegs(fixture) and len(self.lattices) > 1:
             first = self.lattices[0]
             count = sum(peg.carrier == first.name for peg in pegs)
-            words = f"{count} of its {len(pegs)} pegs are on the {first.title}, which is not type {fixture.type}"
+            words = (
+                f"{count} of its {len(pegs)} pegs are on the {first.title}, which is not type {fixture.type}"
+            )
             yield Finding(True, words)
         elif not self.has_its_pegs(fixture):
             yield Finding(True, f"its pegs are not {self.pegs_wanted}")

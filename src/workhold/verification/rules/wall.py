@@ -15,12 +15,18 @@ from attrs import frozen
 from flint import arb
 
 from workhold.model.fixture import Peg
-from workhold.verification.balls import Point, exact_point, norm, turned
+from workhold.verification.ball_geometry import (
+    ArcSide,
+    BallOutline,
+    LineSide,
+    Point,
+    Side,
+    exact_point,
+    norm,
+    turned,
+)
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.findings import Finding, number, rule
-from workhold.verification.outline import BallOutline
-from workhold.verification.sides import ArcSide, LineSide, Side
-from workhold.verification.tolerances import AGREEMENT, FLUSH, LEAST_FLUSH
+from workhold.verification.tolerances import AGREEMENT, FLUSH, LEAST_FLUSH, Finding, number, rule
 
 __all__ = ["WallContact", "flush_findings", "wall_contacts"]
 
@@ -89,7 +95,9 @@ class WallContact(BallContact):
 def wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPose) -> list[WallContact]:
     """The two ends of the contact with a wall at a pose, from left to right, each on a side."""
     lows = [
-        (float(y.mid()), float(x.mid()), piece) for piece in pieces(outline, pose) for x, y in (piece.lowest(pose),)
+        (float(y.mid()), float(x.mid()), piece)
+        for piece in pieces(outline, pose)
+        for x, y in (piece.lowest(pose),)
     ]
     lows.sort(key=lambda low: low[0])
     flat = [low for low in lows if abs(low[0]) <= 10 * AGREEMENT] or lows[:2]

@@ -1,0 +1,114 @@
+"""How long tasks take: estimated before, so that the longest come first, and measured afterwards.
+
+The estimate is a power law. A search grows with the number of faces and with the number of steps that the
+lattice offers between two pegs on a part of that size. Constants and exponents come from a fit to measured
+runs (``benchmarks/batch_estimate.py``); docs/benchmarks.md says how near it comes. Only the order and the
+shares count: how fast a machine is shows while it runs.
+
+What tasks took is a file of lines beside the records, which tells nothing about whether a task is done.
+Records are the same bytes wherever and however fast they came to be, so this is kept apart from them. Each
+line is appended at once, so that two runs can write one file; a line cut short by the end of a run is passed
+over.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from math import exp, hypot, log
+from pathlib import Path
+
+from attrs import define, field
+
+from workhold.batch.tasks import Outcome
+from workhold.files.atomic import plain_errors
+from workhold.fixels.toolkit import Toolkit
+from workhold.plain import plain
+
+__all__ = ["Measured", "answering_seconds", "measures", "reading_seconds"]
+
+# Seconds are exp(constant) * faces ** first * steps ** second.
+LAWS: Mapping[str, tuple[float, float, float]] = {
+    "vise": (-9.35, 0.83, 1.33),
+    "plate": (-10.94, 0.93, 1.32),
+    "two clamps": (-19.51, 0.07, 3.86),
+    "fence": (-3.9, 0.39, -0.02),
+}
+# Of a drawing: seconds for the first byte, and for a million of them.
+READING: Mapping[str, tuple[float, float]] = {".step": (2.0, 10.0), ".stp": (2.0, 10.0), ".dxf": (0.02, 4.0)}
+OTHER_READING = (0.005, 1.0)
+
+
+def reading_seconds(ending: str, size: int) -> float:
+    """Seconds to read a drawing of so many bytes."""
+    first, million = READING.get(ending.lower(), OTHER_READING)
+    return first + million * size / 1e6
+
+
+def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[str, float, float]:
+    """The law that holds for a toolkit, and the logarithms of what it grows with: faces and steps.
+
+    Parameters
+    ----------
+    size : width and height of the part in mm.
+    """
+    carrier = toolkit.plates[0]
+    diameter = hypot(*size) + 2.0 * carrier.peg_radius
+    across, along = (
+        diameter / pitch if count is None else min(count - 1.0, diameter / pitch)
+        for pitch, count in zip(carrier.pitch, (carrier.columns, carrier.rows), strict=True)
+    )
+    return toolkit.law, log(faces), log((2.0 * across + 1.0) * (2.0 * along + 1.0))
+
+
+def answering_seconds(faces: int, size: tuple[float, float], toolkit: Toolkit) -> float:
+    """Seconds to find all fixtures of a part in a toolkit."""
+    law, of_faces, of_steps = measures(faces, size, toolkit)
+    constant, first, second = LAWS[law]
+    return exp(constant + first * of_faces + second * of_steps)
+
+
+@define(eq=False)
+class Measured:
+    """Seconds and workers of tasks, by name.
+
+    Parameters
+    ----------
+    path : of the file, in a folder that is there when the first line is added.
+    known : what it held, and what was added.
+    """
+
+    path: Path
+    known: dict[str, tuple[float, str]] = field(factory=dict, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        try:
+            lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
+        except OSError:
+            return
+        for line in lines:
+            name, _, rest = line.partition(",")
+            seconds, comma, worker = rest.partition(",")
+            if comma and worker:
+                try:
+                    self.known[name] = (float(seconds), worker)
+                except ValueError:
+                    continue
+
+    def add(self, outcome: Outcome) -> None:
+        """Write down what a task took.
+
+        Raises
+        ------
+        InputError
+            When the file cannot be written.
+        """
+        worker = plain(outcome.worker) or "-"
+        self.known[outcome.name] = (outcome.seconds, worker)
+        with plain_errors(self.path):
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            descriptor = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
+            try:
+                os.write(descriptor, f"{outcome.name},{outcome.seconds:.6f},{worker}\n".encode())
+            finally:
+                os.close(descriptor)

@@ -1,0 +1,326 @@
+"""The commands that list what there is: ``parts``, ``toolkits`` and ``features``.
+
+They list the built-in parts, the toolkits that come with workhold or all figures of one, and the numbered
+faces of a part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from workhold.cli.commands import option, spread
+from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
+from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.values import length_unit, optional_length, picture_ending
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.cli.tables import Table
+    from workhold.files.part.load import Loaded
+    from workhold.files.toolkit_file import LoadedToolkit
+    from workhold.fixels.table import Form
+    from workhold.model.dowels import Limits
+    from workhold.units import Unit
+
+__all__ = ["features", "parts", "toolkits"]
+
+
+def parts(unit: str | None = SHOWN_UNIT, json_: JsonOption = False) -> None:
+    """List the built-in parts.
+
+    They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any of the
+    names can stand for PART.
+
+    Example: workhold design widget --pitch 8 --columns 1 --peg-radius 3
+    """
+    from workhold.cli.tables import Table, print_tables
+    from workhold.files.part.finding import builtin_parts
+    from workhold.files.part.load import load
+
+    shown = length_unit(unit)
+    if json_:
+        from workhold.presenting.data import part_data
+
+        print_json(
+            parts=[{**part_data(load(one.name)), "description": one.description} for one in builtin_parts()]
+        )
+        return
+    decimals = shown.decimals - 2
+    width, height = f">width {shown.abbreviation}", f">height {shown.abbreviation}"
+    table = Table(("name", width, height, ">faces", "description"))
+    for part in builtin_parts():
+        workpiece = load(part.name)
+        x0, y0, x1, y1 = workpiece.bounds
+        size = shown.number(x1 - x0, decimals), shown.number(y1 - y0, decimals)
+        table.add_row(part.name, *size, str(len(workpiece.faces)), part.description)
+    print_tables(table)
+
+
+def toolkits(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[VISE]", help="Show all figures of this one: a name, or a TOML file of your own."
+        ),
+    ] = None,
+    unit: str | None = SHOWN_UNIT,
+    json_: JsonOption = False,
+) -> None:
+    """List the vises, plates and fences that come with workhold, or show all figures of one.
+
+    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp, two-clamp- with two, fence- with
+    a fence and one locator. The others are vises with such a plate on each jaw; their number of columns is a usual one:
+    your jaws may have more or fewer.
+
+    Example: workhold toolkits plate-one-inch --unit inch
+    """
+    shown = None if unit is None else length_unit(unit)
+    from workhold.cli.tables import print_tables
+    from workhold.files.toolkit_file import load_toolkit, preset_names
+    from workhold.units import MILLIMETRE
+
+    if json_:
+        from workhold.presenting.data import toolkit_data
+
+        print_json(
+            toolkits=[toolkit_data(load_toolkit(one)) for one in (preset_names() if name is None else [name])]
+        )
+        return
+    if name is None:
+        print_tables(toolkits_table(shown or MILLIMETRE))
+        return
+    loaded = load_toolkit(name)
+    print_tables(
+        *(line for line in (loaded.name, loaded.title) if line), figures_table(loaded, shown or loaded.unit)
+    )
+    if loaded.source:
+        print_tables(f"Source: {loaded.source}.")
+
+
+def toolkits_table(unit: Unit) -> Table:
+    """All presets, one line each, with lengths in a unit."""
+    from workhold.cli.tables import Table
+    from workhold.files.toolkit_file import load_toolkit, preset_names
+
+    of = unit.abbreviation
+    table = Table(("name", f">pitch {of}", f">peg Ø {of}", ">columns", f">peg off by {of}", "what it is"))
+    for name in preset_names():
+        loaded = load_toolkit(name)
+        first = loaded.toolkit.carriers[0]
+        table.add_row(
+            name,
+            pitch_words(first.pitch, unit),
+            unit.figure(2 * first.peg_radius),
+            "any" if first.columns is None else str(first.columns),
+            unit.number(loaded.tolerance.peg, unit.decimals + 1),
+            loaded.title,
+        )
+    return table
+
+
+def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
+    """Every figure of a toolkit, one line each."""
+    from workhold.cli.tables import Table
+
+    toolkit, of = loaded.toolkit, unit.abbreviation
+    first, finest = toolkit.carriers[0], unit.decimals + 1
+    each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
+    table = Table(("figure", "value"))
+    table.add_row("distance between holes", f"{pitch_words(first.pitch, unit)} {of}")
+    for words, count in (("columns", first.columns), ("rows", first.rows)):
+        table.add_row(f"{words} {each}", "as many as needed" if count is None else str(count))
+    table.add_row("peg radius", f"{unit.figure(first.peg_radius, finest)} {of}")
+    if first.flat is not None:
+        table.add_row("from a peg's centre to its flat", f"{unit.figure(first.flat.distance, finest)} {of}")
+    for words, value in own_figures(loaded, unit):
+        table.add_row(words, value)
+    if loaded.fit is not None:
+        table.add_row("pin diameter", limits_words(loaded.fit.pin, unit))
+        table.add_row("hole diameter", limits_words(loaded.fit.hole, unit))
+        assumed = " (assumed: no source says)" if loaded.fit.position_assumed else ""
+        table.add_row(
+            "hole off its place by at most", f"{unit.figure(loaded.fit.position, finest)} {of}{assumed}"
+        )
+    assumed = " (assumed: no pin and hole are given)" if loaded.fit is None else ""
+    table.add_row(
+        "peg's surface off by at most", f"{unit.figure(loaded.tolerance.peg, finest)} {of}{assumed}"
+    )
+    table.add_row("part's face off by at most", f"{unit.figure(loaded.tolerance.face, finest)} {of}")
+    return table
+
+
+def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
+    """Yield what only a toolkit of its kind has, and its value in words."""
+    from workhold.fixels.kinds import table_of
+
+    toolkit = loaded.toolkit
+    for row in table_of(loaded.kind).fields:
+        value = getattr(toolkit, row.name)
+        is_usual = value == (toolkit.followed(row) if row.follows else row.default)
+        if row.figure and (row.unset or row.is_always_shown or not is_usual):
+            assumed = " (assumed: no source says)" if row.name in loaded.assumed else ""
+            yield (
+                row.figure,
+                (row.unset if value is None else words_of_value(row.form, value, unit)) + assumed,
+            )
+
+
+def words_of_value(form: Form, value: Any, unit: Unit) -> str:
+    """The value of a field of some form, as it stands among the figures of a toolkit."""
+    if form == "count":
+        return str(value)
+    if form == "holes":
+        return " ".join(holes.name for holes in value)
+    if form == "directions":
+        return " or ".join(one if isinstance(one, str) else " and ".join(one) for one in value)
+    lengths = value if isinstance(value, tuple) else (value,)
+    return f"{' to '.join(unit.figure(one, unit.decimals + 1) for one in lengths)} {unit.abbreviation}"
+
+
+def pitch_words(pitch: tuple[float, float], unit: Unit) -> str:
+    """The pitch as one number, or as two where they differ."""
+    x, y = (unit.figure(length) for length in pitch)
+    return x if pitch[0] == pitch[1] else f"{x} x {y}"
+
+
+def limits_words(limits: Limits, unit: Unit) -> str:
+    """Two limits of a diameter."""
+    return f"{unit.number(limits[0])} to {unit.text(limits[1])}"
+
+
+@spread
+def features(
+    part: PartArgument,
+    *,
+    draw: str | None = option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png."),
+    force: ForceOption = False,
+    peg_radius: str | None = option(
+        None, "LENGTH", "Draw also where the centres of pegs of this radius can be."
+    ),
+    parts: Annotated[
+        bool, typer.Option("--parts", help="List, and draw, the parts of a file that holds several.")
+    ] = False,
+    layers: Annotated[
+        bool, typer.Option("--layers", help="List the layers of a DXF file with what is on them.")
+    ] = False,
+    json_: JsonOption = False,
+    reading: PartWords,
+) -> None:
+    """List the numbered faces of PART, as pictures and result files name them.
+
+    Example: workhold features part.dxf --draw faces.svg
+    """
+    from workhold.files.atomic import write_bytes
+
+    shown_unit = length_unit(reading.unit)
+    radius = optional_length("--peg-radius", peg_radius, shown_unit)
+    if radius is not None and radius < 0:
+        raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more.")
+    picture = None if draw is None else Path(draw)
+    ending = None
+    if picture is not None:
+        ending = picture_ending(picture)
+        refuse_output(picture, (part,), force)
+    if layers:
+        list_layers(part, reading, shown_unit, json_)
+        return
+    loaded = reading.load(part)
+    workpiece = loaded.workpiece
+
+    from workhold.cli.tables import face_table, jumps_sentence, plural, print_tables
+
+    if parts:
+        list_parts(loaded, shown_unit, picture, ending, json_)
+        return
+
+    if not json_:
+        x0, y0, x1, y1 = workpiece.bounds
+        faces = plural(len(workpiece.faces), "face")
+        size = f"{shown_unit.number(x1 - x0)} x {shown_unit.text(y1 - y0)}"
+        table = face_table(workpiece, shown_unit)
+        print_tables(f"{workpiece.name}: {size}, {faces}", table, *jumps_sentence(workpiece))
+    if picture is not None and ending is not None:
+        from workhold.drawing.part_pictures import draw_features
+        from workhold.drawing.render import render
+
+        svg = draw_features(workpiece, peg_radius=radius, unit=shown_unit)
+        write_bytes(picture, render(svg, ending))
+    if json_:
+        from workhold.presenting.data import part_data
+
+        print_json(**part_data(workpiece, loaded.remarks), written=[] if picture is None else [str(picture)])
+    elif picture is not None:
+        print_tables(f"Drawn in {picture}.")
+
+
+def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> None:
+    """Print the layers of a DXF file; sizes in JSON are in mm where the unit is known, else in units of the drawing.
+
+    Raises
+    ------
+    InputError
+        For other files.
+    """
+    from workhold.cli.tables import Table, print_tables
+    from workhold.files.part.survey import drawn_layers
+
+    found, known = drawn_layers(part, reading.drawing_unit, reading.unit)
+    if as_json:
+        names = ("name", "kinds", "hidden", "loops", "size")
+        print_json(layers=[{name: getattr(one, name) for name in names} for one in found], in_mm=known)
+        return
+    table = Table(("layer", f"size {unit.abbreviation if known else 'as drawn'}", ">outlines", "on it"))
+    for layer in found:
+        size = (
+            ""
+            if layer.size is None
+            else " x ".join(f"{length / (unit.millimetres if known else 1):.5g}" for length in layer.size)
+        )
+        kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(layer.kinds.items()))
+        table.add_row(
+            layer.name,
+            size,
+            "?" if layer.loops is None else str(layer.loops),
+            f"{kinds} (hidden: read only when named)" if layer.hidden else kinds,
+        )
+    print_tables(table, "Read only some of them with --layer NAME, which may be repeated.")
+
+
+def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, ending: str | None, as_json: bool) -> None:
+    """Print the parts of a file, and draw them."""
+    from workhold.cli.tables import Table, print_tables
+    from workhold.files.atomic import write_bytes
+
+    table = Table(
+        (">part", f">width {unit.abbreviation}", f">height {unit.abbreviation}", ">holes", "lowest corner")
+    )
+    for one in loaded.parts:
+        x0, y0, x1, y1 = one.bounds
+        corner = f"({unit.number(x0)}, {unit.number(y0)})"
+        table.add_row(
+            str(one.number), unit.number(x1 - x0), unit.number(y1 - y0), str(len(one.loops) - 1), corner
+        )
+    if not as_json:
+        print_tables(table)
+    if picture is not None and ending is not None:
+        from workhold.drawing.part_pictures import draw_parts
+        from workhold.drawing.render import render
+
+        svg = draw_parts(
+            loaded.workpiece.name,
+            [[loop.vertices for loop in one.loops] for one in loaded.parts],
+            loaded.number,
+            unit=unit,
+        )
+        write_bytes(picture, render(svg, ending))
+    if as_json:
+        parts = [
+            {"number": p.number, "bounds": list(p.bounds), "holes": len(p.loops) - 1} for p in loaded.parts
+        ]
+        print_json(parts=parts, chosen=loaded.number, written=[] if picture is None else [str(picture)])
+    elif picture is not None:
+        print_tables(f"Drawn in {picture}.")

@@ -1,0 +1,168 @@
+"""Pictures of a design's best fixtures, one by one and as thumbnails, and reasons where there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.fixels.toolkit import Toolkit
+    from workhold.model.fixture import Fixture
+    from workhold.model.result import Result
+    from workhold.model.search_report import Explanation
+    from workhold.units import Unit
+
+__all__ = ["BEST_DRAWN", "NEAREST_MISS", "draw_best", "draw_one", "explain_none", "picture_names"]
+
+BEST_DRAWN = 12
+ENDINGS = (".svg", ".png")
+THUMBNAILS, NEAREST_MISS = "thumbnails", "nearest-miss"
+
+
+def picture_names() -> list[str]:
+    """The files that a design may draw into a folder."""
+    ranked = (picture_name(rank) for rank in range(1, BEST_DRAWN + 1))
+    return [f"{name}{ending}" for name in (THUMBNAILS, NEAREST_MISS, *ranked) for ending in ENDINGS]
+
+
+def picture_name(place: int) -> str:
+    """The name of the picture of the entry in a place, counted from 1, without its ending."""
+    return f"fixture-{place:02d}"
+
+
+def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
+    """Draw one fixture of a result's part and vise into a folder, as SVG and PNG; returns the files written.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written.
+    """
+    from workhold.drawing.fixture_pictures import draw_fixture
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
+    svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=title, unit=unit)
+    return write_pictures({name: svg}, folder)
+
+
+def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
+    """Write pictures, by name, as SVG and PNG; returns the files written. Where one cannot be written none is left."""
+    from workhold.drawing.render import render
+    from workhold.files.atomic import unfinished, write_bytes
+
+    written = []
+    try:
+        for name, svg in pictures.items():
+            for ending in ENDINGS:
+                path = folder / f"{name}{ending}"
+                write_bytes(path, render(svg, ending))
+                written.append(path)
+                unfinished.add(path)
+    except BaseException:
+        for path in written:
+            path.unlink(missing_ok=True)
+        raise
+    finally:
+        unfinished.difference_update(written)
+    return written
+
+
+def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
+    """Draw the best twelve entries and the thumbnails into a folder, as SVG and PNG; returns the files written.
+
+    The folder is created. Pictures of these names from an earlier design are replaced, or removed where this design has
+    fewer fixtures; nothing else in the folder is touched.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written.
+    """
+    from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
+    from workhold.listing.identity import entries
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for old in picture_names():
+            (folder / old).unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
+    shown = entries(result)
+    indices = shown.index[:BEST_DRAWN].tolist()
+    fixtures = [result[index] for index in indices]
+    if not fixtures:
+        return []
+    pictures = {}
+    for place, (index, fixture) in enumerate(zip(indices, fixtures, strict=True), 1):
+        svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {index + 1}", unit=unit)
+        pictures[picture_name(place)] = svg
+    pictures[THUMBNAILS] = best_at_a_glance(result, shown, unit)
+    return write_pictures(pictures, folder)
+
+
+MOST_HELPS = 6
+
+
+def explain_none(
+    result: Result, threads: int | None, folder: Path | None, unit: Unit, stream: TextIO
+) -> None:
+    """Say what each rule took away, what came nearest, and what would help.
+
+    Parameters
+    ----------
+    folder : where the nearest miss is drawn, if anywhere.
+    """
+    from workhold.search.explaining import explain
+
+    explanation = explain(result.query, threads, unit)
+    print_explanation(explanation, result.query.toolkit, unit, stream)
+    if folder is not None and explanation.nearest is not None:
+        draw_nearest_miss(explanation, result, folder, unit, stream)
+
+
+def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO) -> None:
+    """Write the explanation."""
+    from workhold.cli.tables import Table, fixture_tables, print_tables
+
+    print_tables("", stream=stream)
+    if explanation.contacts == 0:
+        print_tables(f"No {toolkit.wording.four} can touch the part at the same time.", stream=stream)
+    else:
+        table = Table(("rule", ">sets of four contacts", ">removed", ">left"))
+        for removal in explanation.removals:
+            table.add_row(removal.rule, f"{removal.before:,}", f"{removal.removed:,}", f"{removal.after:,}")
+        print_tables(table, f"The last were removed by: {explanation.last_rule}.", stream=stream)
+    if explanation.nearest is not None:
+        _, _, _, pegs = fixture_tables(explanation.nearest.fixture, toolkit, 1, 1, unit)
+        print_tables("", f"Nearest miss: {explanation.nearest.words}", pegs, stream=stream)
+    print_tables("", stream=stream)
+    if not explanation.helps:
+        print_tables("No single change that was tried helps; workhold explore tries others.", stream=stream)
+        return
+    helps = Table(("what would help", ">fixtures"))
+    for item in explanation.helps[:MOST_HELPS]:
+        helps.add_row(item.change, f"{item.fixtures:,}" if item.complete else f"over {item.fixtures:,}")
+    print_tables(helps, stream=stream)
+
+
+def draw_nearest_miss(
+    explanation: Explanation, result: Result, folder: Path, unit: Unit, stream: TextIO
+) -> None:
+    """Draw the nearest miss into a folder, as SVG and PNG.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written.
+    """
+    from workhold.cli.tables import print_tables
+
+    assert explanation.nearest is not None
+    written = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
+    print_tables(f"Drawn: the nearest miss in {written[0]} and {written[-1].name}.", stream=stream)

@@ -1,0 +1,298 @@
+"""Jobs from a file, in the words of the command line, and the parts of a family.
+
+A TOML file has a table ``[[job]]`` for each job, a CSV file has a row for each::
+
+    unit = "mm"                          # what stands here counts for every job
+    toolkit = ["plate-20mm", "own.toml"]
+
+    [[job]]
+    part = "bracket.dxf"                 # or a folder, or a built-in name
+    avoid = [3, 7]
+    load = ["force=200 at=10,5 direction=30..60"]
+
+The words stand in the first line of a CSV file; several entries of a cell stand apart by ``|``. Parts,
+toolkits and files of loads are sought beside the file first. A family takes files, folders and names, and
+files of jobs with rules for each part.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from attrs import evolve, fields_dict, frozen
+
+from workhold.cli.commands import tell
+from workhold.cli.options import PartWords
+from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of
+from workhold.cli.values import length_unit
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.family.family import Asked, LeftOut
+    from workhold.files.part_list import ListedPart
+    from workhold.fixels.toolkit import Toolkit
+    from workhold.model.requirements import Tolerance
+
+__all__ = ["JOB_ENDINGS", "Job", "JobWords", "asked_of", "jobs_of", "read_jobs"]
+
+JOB_ENDINGS = (".csv", ".toml")
+# Bytes; a job takes a hundred.
+LARGEST_FILE = 100_000_000
+PART, TOOLKIT = "part", "toolkit"
+OF_PART, OF_QUERY, OF_SEATING = (tuple(fields_dict(words)) for words in (PartWords, QueryWords, SeatingWords))
+KEYS = (PART, TOOLKIT, *OF_PART, *OF_QUERY, *OF_SEATING)
+# Words that are true or false.
+FLAGS = {"foolproof": {"true": True, "yes": True, "false": False, "no": False}}
+# Words of which there may be several.
+LISTS = (TOOLKIT, "layer", "avoid", "keep_out", "angle", "load")
+FILES = (PART, TOOLKIT, "loads")
+
+
+@frozen
+class JobWords:
+    """A job of a file.
+
+    Parameters
+    ----------
+    place : where it stands, for messages.
+    part : file, folder or built-in name.
+    toolkits : names and files; None where the file gives none.
+    reading, query, seating : what the file says of reading the part, of its fixtures and of their seating, by the names of
+        options.
+    """
+
+    place: str
+    part: str
+    toolkits: tuple[str, ...] | None
+    reading: Mapping[str, Any]
+    query: Mapping[str, Any]
+    seating: Mapping[str, Any]
+
+
+def read_jobs(path: Path) -> list[JobWords]:
+    """The jobs of a file.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read, holds no jobs, or a word that is not known.
+    """
+    from workhold.files.text import read_text
+
+    try:
+        text = read_text(path, LARGEST_FILE, "jobs")
+        entries = list(toml_entries(text) if path.suffix.lower() == ".toml" else csv_entries(text))
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    if not entries:
+        raise InputError(
+            f"{path} has no jobs: write a table [[job]], or a row below the names of columns, for each."
+        )
+    return [job_of(entry, f"{path}: job {number}", path.parent) for number, entry in enumerate(entries, 1)]
+
+
+def toml_entries(text: str) -> Iterator[dict[str, Any]]:
+    """The entries of each job of a TOML file.
+
+    Raises
+    ------
+    InputError
+        When it is none, or its jobs are no tables.
+    """
+    from workhold.files.text import toml_table
+
+    content = toml_table(text)
+    jobs = content.pop("job", [])
+    if not isinstance(jobs, list) or not all(isinstance(job, dict) for job in jobs):
+        raise InputError("its jobs are no tables: write [[job]] above each.")
+    for job in jobs:
+        yield content | job
+
+
+def csv_entries(text: str) -> Iterator[dict[str, Any]]:
+    """The cells of each row of a CSV file, without the empty ones.
+
+    Raises
+    ------
+    InputError
+        For a row with more cells than there are columns.
+    """
+    first = text.partition("\n")[0]
+    delimiter = ";" if first.count(";") > first.count(",") else ","
+    for number, row in enumerate(csv.DictReader(StringIO(text), delimiter=delimiter), 1):
+        if None in row:
+            raise InputError(
+                f"row {number} has more cells than there are columns: put cells with commas in quotes."
+            )
+        entry = {key.strip().lower(): cell.strip() for key, cell in row.items() if cell and cell.strip()}
+        if entry:
+            yield {key: cell.split("|") if named(key) in LISTS else cell for key, cell in entry.items()}
+
+
+def named(key: str) -> str:
+    """The name of a word, however it is written: ``jaw-force`` is ``jaw_force``."""
+    return key.strip().lower().replace("-", "_").replace(" ", "_").replace("toolkits", TOOLKIT)
+
+
+def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
+    """A job from its entries.
+
+    Raises
+    ------
+    InputError
+        For a word that is not known, and a value that is none.
+    """
+    words: dict[str, Any] = {}
+    for key, value in entry.items():
+        name = named(key)
+        if name not in KEYS:
+            raise InputError(
+                f"{place} has an unknown word {key[:40]!r}: give {', '.join(KEYS[:-1])} or {KEYS[-1]}."
+            )
+        if name in FLAGS:
+            words[name] = flag_of(value, FLAGS[name], f"{place}: {key}")
+            continue
+        values = [
+            text_of(item, f"{place}: {key}") for item in (value if isinstance(value, list) else [value])
+        ]
+        if name in FILES:
+            values = [beside(folder, item) for item in values]
+        words[name] = values if name in LISTS else ",".join(values)
+    if PART not in words:
+        raise InputError(f"{place} has no part: name a file, a folder or a built-in part.")
+    told = ({name: words[name] for name in of if name in words} for of in (OF_PART, OF_QUERY, OF_SEATING))
+    toolkits = tuple(words[TOOLKIT]) if TOOLKIT in words else None
+    return JobWords(place, words[PART], toolkits, *told)
+
+
+def flag_of(value: Any, known: Mapping[str, bool], place: str) -> bool:
+    """A value that is true or false, or one of the words for that.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    flag = value if isinstance(value, bool) else known.get(str(value).lower())
+    if flag is None:
+        raise InputError(f"{place} is neither true nor false: write one of {', '.join(known)}.")
+    return flag
+
+
+def text_of(value: Any, place: str) -> str:
+    """A value as it would be typed.
+
+    Raises
+    ------
+    InputError
+        For what nobody can type.
+    """
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise InputError(f"{place} is neither text nor a number: write it as on the command line, in quotes.")
+    return value if isinstance(value, str) else f"{value!r}" if isinstance(value, float) else str(value)
+
+
+def beside(folder: Path, name: str) -> str:
+    """A file beside the file of jobs, if there is one of a name; else the name."""
+    try:
+        return str(folder / name) if name and (folder / name).exists() else name
+    except (OSError, ValueError):
+        return name
+
+
+@frozen
+class Job:
+    """A part of the family before it is read: what it is called, and what is asked of it."""
+
+    name: str
+    listed: ListedPart
+    words: QueryWords
+    reading: PartWords
+
+
+def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[Job]:
+    """The parts of the command line and of files of jobs, no two called alike.
+
+    Raises
+    ------
+    InputError
+        For parts that do not exist, and jobs that mean nothing or name a toolkit of their own.
+    """
+    from workhold.files.part_list import part_list
+
+    plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
+    found = [(one, words, reading) for one in part_list(plain)] if plain else []
+    for name in parts:
+        for job in [] if name in plain else read_jobs(Path(name)):
+            if job.toolkits is not None:
+                raise InputError(
+                    f"{job.place} names a toolkit: the parts of a family share that of the command line."
+                )
+            own_words, own_reading = evolve(words, **job.query), evolve(reading, **job.reading)
+            try:
+                own_words.asked(length_unit(own_reading.unit))
+                found += [(one, own_words, own_reading) for one in part_list([job.part])]
+            except InputError as error:
+                raise InputError(f"{job.place}: {error}") from error
+    called = [called_by(one.name, [other.name for other, _, _ in found]) for one, _, _ in found]
+    times, jobs = Counter[str](), []
+    for name, (one, own_words, own_reading) in zip(called, found, strict=True):
+        times[name] += 1
+        jobs.append(Job(name if times[name] == 1 else f"{name} ({times[name]})", one, own_words, own_reading))
+    return jobs
+
+
+def called_by(name: str, names: list[str]) -> str:
+    """What a part is called: by its file alone, where no other of the names ends in the same.
+
+    >>> called_by("a/x.dxf", ["a/x.dxf", "b/y.dxf"]), called_by("a/x.dxf", ["a/x.dxf", "b/x.dxf"])
+    ('x.dxf', 'a/x.dxf')
+    """
+    short = Path(name).name
+    return name if any(Path(other).name == short for other in names if other != name) else short
+
+
+def asked_of(
+    jobs: list[Job], toolkit: Toolkit, tolerance: Tolerance | None, types: str | None, zero: str | None
+) -> tuple[list[Asked], list[LeftOut]]:
+    """What is asked for each part that can be read, and the parts that cannot.
+
+    Raises
+    ------
+    InputError
+        For a zero that a part does not have, and a query that cannot be.
+    """
+    from hashlib import sha256
+
+    from workhold.family.family import Asked, LeftOut
+    from workhold.family.members import RANKINGS
+    from workhold.files.part_list import read_listed
+    from workhold.model.query import Query
+    from workhold.model.setup import part_zero
+
+    usual = RANKINGS[toolkit.travels]
+    members, left_out = [], []
+    for job in jobs:
+        read, path = read_listed(job.listed, **job.reading.options()), job.listed.path
+        if read.loaded is None:
+            left_out.append(LeftOut(job.name, str(path), read.refusal.rstrip(".")))
+            continue
+        for remark in read.loaded.remarks:
+            tell(f"{job.name}: {remark}")
+        unit = length_unit(job.reading.unit)
+        asked = job.words.asked(unit)
+        asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
+        asked["ranking"] = asked["ranking"] or usual
+        workpiece = read.loaded.workpiece
+        digest = sha256(Path(path).read_bytes()).hexdigest() if Path(path).is_file() else ""
+        try:
+            at = part_zero(workpiece, zero, unit)
+        except InputError as error:
+            raise InputError(f"{job.name}: {error}") from error
+        members.append(Asked(job.name, Query(workpiece, toolkit, types, **asked), str(path), digest, at))
+    return members, left_out

@@ -1,0 +1,166 @@
+"""The commands on a whole result file: ``convert`` and ``verify``.
+
+The first writes the result in another form; the second proves or refutes every fixture of it.
+"""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.options import ResultArgument
+from workhold.cli.outputs import (
+    FORMAT,
+    STANDARD_OUTPUT,
+    ForceOption,
+    JsonOption,
+    output_form,
+    print_json,
+    print_written,
+    refuse_both,
+    refuse_output,
+    write_output,
+)
+from workhold.cli.progress import progress_bar, search_progress
+from workhold.cli.values import optional_count, whole_number
+
+if TYPE_CHECKING:
+    from workhold.verification import Verification
+    from workhold.verification.listing import Listing
+
+__all__ = ["convert", "verify"]
+
+
+def convert(
+    result_file: ResultArgument,
+    out: Annotated[str, typer.Argument(metavar="FILE", help="The file to write; - is the terminal.")],
+    format_: str | None = FORMAT,
+    force: ForceOption = False,
+    json_: JsonOption = False,
+) -> None:
+    """Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a spreadsheet.
+
+    From JSON to columns and back the same bytes come out.
+
+    Example: workhold convert part.npz part.json
+    """
+    form = output_form(out, format_)
+    refuse_both(json_, out)
+    if out != STANDARD_OUTPUT:
+        refuse_output(out, (result_file,), force)
+
+    from workhold.cli.tables import plural
+    from workhold.files.result.reader import read_result
+
+    result = read_result(result_file)
+    write_output(result, out, form)
+    if out != STANDARD_OUTPUT:
+        print_written(json_, f"{plural(len(result), 'fixture')} written to {out}.", out)
+
+
+REFUTED = 2
+
+
+def verify(
+    result_file: ResultArgument,
+    list_: Annotated[
+        str,
+        typer.Option(
+            "--list", metavar="N", help="How many fixtures that are not proven to list on the terminal."
+        ),
+    ] = "5",
+    complete: Annotated[
+        bool,
+        typer.Option(
+            "--complete", help="Also search again, and compare: which fixtures, how many, and the account."
+        ),
+    ] = False,
+    threads: Annotated[
+        str | None,
+        typer.Option(metavar="N", help="Threads of that search; as many as processors if not given."),
+    ] = None,
+    json_: JsonOption = False,
+) -> None:
+    """Prove or refute every fixture of a result, and every number written with it.
+
+    Each fixture is derived again from workpiece, toolkit, pegs and faces alone, in arithmetic whose rounding errors are
+    bounded, with nothing of the search. Coincidences such as an opening of just the smallest gap are decided: the
+    edge of every rule stands 1e-9 mm off them. What lies exactly on such an edge is undecided. What a file alone cannot
+    show, such as fixtures left out, --complete does, by the search of the file's own query. The exit code is 0 when nothing
+    is refuted and 2 otherwise.
+
+    Example: workhold verify part.json
+    """
+    listed = whole_number("--list", list_)
+    workers = optional_count("--threads", threads)
+
+    from workhold.cli.tables import print_tables
+    from workhold.verification.listing import read_listing
+    from workhold.verification.verify import verify_listing
+
+    start = perf_counter()
+    listing = read_listing(result_file)
+    with progress_bar("Verifying", "not proven") as progress:
+        outcome = verify_listing(listing, progress)
+    if complete:
+        outcome = compared(outcome, listing, workers)
+    seconds = perf_counter() - start
+    if json_:
+        from workhold.presenting.data import verification_data
+
+        print_json(**verification_data(outcome))
+    else:
+        sentences = unproven_sentences(outcome, listed)
+        print_tables(*sentences, f"{summary(outcome)}; {seconds:.1f} s", *scope(outcome, complete, listing))
+    if complete and not outcome.is_compared:
+        raise typer.Exit(INTERRUPTED)
+    if not outcome.holds:
+        raise typer.Exit(REFUTED)
+
+
+def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
+    """The verification with what a search of the same query finds."""
+    from workhold.completeness import completed
+    from workhold.kernels.base.compiling import is_first_run
+
+    with ask_to_stop("nothing is compared") as cancel:
+        if is_first_run():
+            from workhold.cli.warming import compile_kernels
+
+            compile_kernels(cancel)
+        with search_progress() as progress:
+            return completed(outcome, listing, threads=workers, progress=progress, cancel=cancel)
+
+
+def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
+    """What is shown beyond the fixtures, or what is not."""
+    from workhold.verification.verify import not_shown
+
+    if outcome.is_compared:
+        return ["A search of the same query was compared with the file."]
+    if asked:
+        return ["The search was interrupted, so nothing was compared."]
+    points = not_shown(listing.query.toolkit, listing.query.seating is not None)
+    return ["What a file alone cannot show, and --complete does:", *(f"  - {point}" for point in points)]
+
+
+def summary(outcome: Verification) -> str:
+    """How many fixtures are proven, refuted and undecided."""
+    from workhold.cli.tables import plural
+
+    return (
+        f"{plural(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
+        f"{outcome.undecided} undecided at {outcome.bits} bits"
+    )
+
+
+def unproven_sentences(outcome: Verification, count: int) -> list[str]:
+    """What is wrong with the file, and with the first fixtures that are not proven, the refuted ones first."""
+    sentences = [f"The file: {fault}." for fault in outcome.faults]
+    unproven = sorted(outcome.unproven, key=lambda fixture: fixture.verdict != "refuted")
+    for fixture in unproven[: max(count, 0)]:
+        sentences.append(f"Fixture {fixture.index + 1} is {fixture.verdict}: {fixture.reason}.")
+    return sentences

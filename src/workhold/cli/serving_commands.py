@@ -1,0 +1,281 @@
+"""The commands that serve a browser, an agent or a shell: ``serve``, ``mcp`` and ``completion``.
+
+The page is served on this machine or for others; an agent has tools over the Model Context Protocol, on
+standard input and output.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from base64 import b64encode
+from functools import partial
+from ipaddress import ip_address
+from pathlib import Path
+from secrets import token_urlsafe
+from tempfile import TemporaryDirectory
+from threading import Event
+from typing import Annotated, Any
+
+import typer
+import typer.completion
+
+from workhold.cli.values import choice, positive_number, whole_number
+from workhold.errors import InputError
+from workhold.limits import lacks_memory
+from workhold.version import __version__
+
+__all__ = ["completion", "mcp", "outcome", "serve"]
+
+LIMITS = "Limits"
+HIGHEST_PORT = 65_535
+TOKEN_BYTES = 16
+OPEN_TO_ALL = (
+    "workhold: everybody who reaches this machine can use the page, read what others search for if told its name, and keep "
+    "the processors busy; --ask-token lets in only who has the address."
+)
+# Processes that search: each takes a hundred megabytes before it begins.
+MOST_SEARCHES = 256
+FIRST_RUN = "workhold: compiling for this machine, which takes half a minute or so the first time."
+
+
+def limit(metavar: str, variable: str, help: str) -> typer.models.OptionInfo:
+    """An option that is a limit and can come from the environment."""
+    option: typer.models.OptionInfo = typer.Option(
+        metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
+    )
+    return option
+
+
+def serve(
+    host: Annotated[
+        str, typer.Option(metavar="ADDRESS", help="Where to listen; 0.0.0.0 lets other machines in.")
+    ] = "127.0.0.1",
+    port: Annotated[
+        str, typer.Option(metavar="PORT", help="Port to listen at; 0 takes a free one.")
+    ] = "8000",
+    open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Another name that the server may be called by. May be repeated."),
+    ] = None,
+    trust_proxy: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ADDRESS", help="A reverse proxy that says for whom it asks. May be repeated."),
+    ] = None,
+    ask_token: Annotated[
+        bool, typer.Option("--ask-token", help="Let in only who has the address that is printed.")
+    ] = False,
+    upload_size: Annotated[str, limit("MB", "UPLOAD_SIZE", "Largest file with a part.")] = "20",
+    searches: Annotated[str, limit("N", "SEARCHES", "Searches at the same time.")] = "2",
+    seconds: Annotated[
+        str, limit("S", "SECONDS", "Longest search; what was found by then is shown.")
+    ] = "120",
+    memory: Annotated[
+        str | None, limit("MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine.")
+    ] = None,
+    fixtures: Annotated[
+        str, limit("N", "FIXTURES", "Most fixtures kept of a search, the best ones.")
+    ] = "300000",
+    life: Annotated[str, limit("MINUTES", "LIFE", "How long a search is kept after its last use.")] = "60",
+) -> None:
+    """Serve the page: from a drawing to a setup sheet in the browser.
+
+    It can be used from this machine only, unless --host says otherwise. The same is there for programs: see
+    /api/openapi.json. Ctrl-C stops it.
+
+    Example: workhold serve --open
+    """
+    at = whole_number("--port", port)
+    if not 0 <= at <= HIGHEST_PORT:
+        raise InputError(f"--port {port} is no port: give a number from 0 to {HIGHEST_PORT}.")
+    figures: dict[str, Any] = {
+        "upload_bytes": int(1e6 * limit_value("--upload-size", upload_size)),
+        "searches": int(limit_value("--searches", searches)),
+        "seconds": limit_value("--seconds", seconds),
+        "fixtures": int(limit_value("--fixtures", fixtures)),
+        "life_seconds": 60 * limit_value("--life", life),
+    }
+    if figures["searches"] < 1 or figures["fixtures"] < 1:
+        raise InputError("--searches and --fixtures are counts: give 1 or more.")
+    if figures["searches"] > MOST_SEARCHES:
+        raise InputError(
+            f"--searches {figures['searches']:,} is beyond {MOST_SEARCHES}: one for each processor is best."
+        )
+    for proxy in trust_proxy or ():
+        refuse_no_address(proxy)
+    from workhold.web.guard import Limits, usual_memory
+    from workhold.web.serve import is_for_others, run_server
+
+    most = usual_memory(figures["searches"]) if memory is None else int(limit_value("--memory", memory)) << 20
+
+    def listening(address: str) -> None:
+        typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
+        if is_for_others(host) and not ask_token:
+            typer.echo(OPEN_TO_ALL, err=True)
+        if open_:
+            import webbrowser
+
+            webbrowser.open(address)
+
+    token = token_urlsafe(TOKEN_BYTES) if ask_token else None
+    limits = Limits(memory_bytes=most, **figures)
+    run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare)
+
+
+def refuse_no_address(text: str) -> None:
+    """Refuse what is not the numeric address of a proxy.
+
+    Raises
+    ------
+    InputError
+        Naming it.
+    """
+    try:
+        ip_address(text)
+    except ValueError:
+        raise InputError(f"--trust-proxy {text!r} is no address: give a number such as 10.0.0.2.") from None
+
+
+def limit_value(option: str, text: str) -> float:
+    """A positive number.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    value = positive_number(option, text)
+    if not value:
+        raise InputError(f"{option} {text!r} leaves nothing: give a positive number.")
+    return value
+
+
+def prepare() -> None:
+    """Compile the kernels on a first run, before workers would do so one after the other."""
+    from workhold.cli.warming import compile_kernels, compile_seating, is_seating_compiled
+    from workhold.kernels.base.compiling import is_first_run
+
+    first_run = is_first_run()
+    if first_run or not is_seating_compiled():
+        typer.echo(FIRST_RUN, err=True)
+    if first_run:
+        compile_kernels(Event())
+    compile_seating(Event())
+
+
+# What the extra asks for.
+REQUIREMENT = "mcp>=2"
+# Of a picture, in pixels.
+WIDTH = 1000
+INSTRUCTIONS = (
+    "workhold finds every way to hold a flat part with round pegs: in a vise whose jaws carry a lattice of holes, on a "
+    "plate with locators and a clamp or two, or on a fence. load a part to see the numbers of its faces, design to find all "
+    "fixtures (avoid the faces that will be machined), show one of them, write its sheet; explain where there is none. "
+    "Lengths are in mm, angles in degrees, forces in N."
+)
+
+
+def mcp() -> None:
+    """Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol.
+
+    The agent's program starts this command and speaks with it on standard input and output; it is no command for people. It
+    reads and writes the files that the agent names, with the rights of whoever starts it.
+
+    Example: workhold mcp
+    """
+    try:
+        from mcp.server.stdio import stdio_server
+    except ImportError as error:
+        raise InputError(
+            f"this needs a library that is not installed: pip install '{REQUIREMENT}'."
+        ) from error
+    import anyio
+
+    async def serve(folder: Path) -> None:
+        server = tool_server(folder)
+        async with stdio_server() as (incoming, outgoing):
+            await server.run(incoming, outgoing, server.create_initialization_options())
+
+    with TemporaryDirectory(prefix="workhold-") as folder:
+        anyio.run(serve, Path(folder))
+
+
+def tool_server(folder: Path) -> Any:
+    """The server of the tools; results that nobody names a file for are in a folder."""
+    import mcp_types as types
+    from anyio import get_cancelled_exc_class
+    from anyio.to_thread import run_sync
+    from mcp.server import Server
+
+    from workhold.cli.agent_tools import TOOLS
+
+    async def list_tools(context: Any, asked: Any) -> types.ListToolsResult:
+        return types.ListToolsResult(
+            tools=[
+                types.Tool(name=name, description=tool.words, input_schema=tool.arguments.model_json_schema())
+                for name, tool in TOOLS.items()
+            ]
+        )
+
+    async def call_tool(context: Any, asked: types.CallToolRequestParams) -> types.CallToolResult:
+        cancel = Event()
+        try:
+            work = partial(outcome, asked.name, asked.arguments, folder, cancel)
+            data, picture, failed = await run_sync(work, abandon_on_cancel=True)
+        except get_cancelled_exc_class():
+            cancel.set()
+            raise
+        if isinstance(data, str):
+            return types.CallToolResult(content=[types.TextContent(type="text", text=data)], is_error=failed)
+        content: list[Any] = [types.TextContent(type="text", text=json.dumps(data, allow_nan=False))]
+        if picture is not None:
+            content.append(types.ImageContent(type="image", data=picture, mime_type="image/png"))
+        return types.CallToolResult(content=content, structured_content=data)
+
+    tools = {"on_list_tools": list_tools, "on_call_tool": call_tool}
+    return Server("workhold", version=__version__, instructions=INSTRUCTIONS, **tools)
+
+
+def outcome(
+    name: str, arguments: dict[str, Any] | None, folder: Path, cancel: Event
+) -> tuple[dict[str, Any] | str, str | None, bool]:
+    """What a tool says, its picture as PNG in base 64 where there is one, and whether it failed: then it is a sentence."""
+    from workhold.cli.agent_tools import TOOLS, checked_arguments
+
+    try:
+        if name not in TOOLS:
+            raise InputError(f"there is no tool {name[:40]!r}: the tools are {', '.join(TOOLS)}.")
+        tool = TOOLS[name]
+        answer = tool.run(checked_arguments(tool.arguments, arguments), folder, cancel)
+        if answer.picture is None:
+            return answer.data, None, False
+        from workhold.drawing.render import svg_to_png
+
+        return answer.data, b64encode(svg_to_png(answer.picture, WIDTH)).decode("ascii"), False
+    except InputError as error:
+        return str(error), None, True
+    except Exception as error:
+        if lacks_memory(error):
+            return "This needs more memory than there is: ask for the best few only.", None, True
+        what = " ".join(f"{type(error).__name__}: {error}".split())[:300].rstrip(".")
+        return f"This is a mistake of workhold, not of yours ({what}); please report it.", None, True
+
+
+SHELLS = ("bash", "zsh", "fish")
+# What the shell sets when it asks for words; see Workhold in ``cli.main``.
+VARIABLE = "_WORKHOLD_COMPLETE"
+
+
+def completion(shell: Annotated[str, typer.Argument(metavar="SHELL", help="bash, zsh or fish.")]) -> None:
+    """Print the script that lets a shell complete the commands and options of workhold.
+
+    In ~/.bashrc: eval "$(workhold completion bash)"; in ~/.zshrc, after compinit: eval "$(workhold completion zsh)"; for
+    fish write it to ~/.config/fish/completions/workhold.fish.
+
+    Example: workhold completion bash
+    """
+    name = choice("the shell", shell, SHELLS)
+    script = typer.completion.get_completion_script(prog_name="workhold", complete_var=VARIABLE, shell=name)  # type: ignore[attr-defined]
+    sys.stdout.write(script + "\n")
+    sys.stdout.flush()

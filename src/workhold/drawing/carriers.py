@@ -1,0 +1,198 @@
+"""The carriers of a toolkit drawn: plates with their holes, walls, and clamps that are bolted to a plate.
+
+All is drawn from the description of what shows (``model.shown``). Of a clamp there are its body, bolt and line, and an arrow
+in the direction in which it pushes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, cos, inf, pi, sin
+
+from workhold.drawing.annotation import LabelPlacer
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
+from workhold.geometry.segment import Point
+from workhold.geometry.symmetry import rotated
+from workhold.model.clamps import ShownClamp
+from workhold.model.shown import Shown, ShownCarrier, Side
+
+__all__ = [
+    "SLIDING",
+    "avoid_clamp",
+    "block_arrow",
+    "draw_clamp",
+    "draw_holes",
+    "draw_plate",
+    "draw_push",
+    "draw_sign",
+    "draw_wall",
+    "labelled",
+    "most_holes",
+]
+
+# Fill and edge of a plate that stands still, and of one that slides.
+FENCE = "#cfd6dd", "#3d4a58"
+STILL, SLIDING = ("#dbe4ee", "#7c8da1"), ("#f1e7d6", "#a8946f")
+
+# With holes closer than this on the page, in page units, only those near the pegs are drawn.
+CLOSEST_HOLES = 5.0
+
+
+def most_holes(view: View, shown: Shown) -> float:
+    """More holes than this are drawn near the pegs only: none of a lattice too fine for the page, else all."""
+    return 0 if shown.pitch * view.scale < CLOSEST_HOLES else inf
+
+
+def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0) -> None:
+    """Draw a plate; broken sides are zigzags with teeth of ``tooth`` page units."""
+    box = view.box(shown.plate)
+    corners = [(box.x0, box.y1), (box.x1, box.y1), (box.x1, box.y0), (box.x0, box.y0)]
+    sides: list[Side] = ["bottom", "right", "top", "left"]
+    runs = [
+        zigzag(corners[k], corners[(k + 1) % 4], tooth)
+        if side in shown.broken
+        else [corners[k], corners[(k + 1) % 4]]
+        for k, side in enumerate(sides)
+    ]
+    fill, edge = STILL if shown.clamping is None else SLIDING
+    scene.polygon([point for run in runs for point in run[:-1]], fill)
+    for side, run in zip(sides, runs, strict=True):
+        scene.line(run, edge, 0.8 if side in shown.broken else 2.0, stroke_linecap="round")
+
+
+def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0) -> None:
+    """Draw a wall, a bar in mm: hatched below the line that the part lies on."""
+    box = view.box(bar)
+    scene.rectangle(box, FENCE[0])
+    high, step = box.height, max(box.height * 0.8, 6.0 * weight)
+    for k in range(1, int((box.width + high) / step) + 1):
+        # Strokes at 45 degrees, cut off at the bar's ends.
+        foot = box.x0 - high + k * step
+        low, top = max(foot, box.x0), min(foot + high, box.x1)
+        if low < top:
+            ends = [(low, box.y1 - (low - foot)), (top, box.y1 - (top - foot))]
+            scene.line(ends, FENCE[1], 0.9 * weight, **{"class": "hatching"})
+    scene.line([(box.x0, box.y0), (box.x1, box.y0)], FENCE[1], 2.6 * weight, **{"class": "fence"})
+
+
+def zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
+    """A break line between two page points along an axis."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    length = abs(dx) + abs(dy)
+    count = max(2, round(length / (2 * tooth)))
+    points = [start]
+    for k in range(count):
+        out = tooth * 0.6 if k % 2 else -tooth * 0.6
+        share = (k + 0.5) / count
+        points.append((start[0] + share * dx - out * dy / length, start[1] + share * dy + out * dx / length))
+    return [*points, end]
+
+
+def draw_holes(scene: Scene, shown: ShownCarrier, view: View, most: float) -> None:
+    """Draw the holes that show; of more than ``most`` those near the pegs."""
+    radius = max(view.scale * shown.hole_radius, 0.4)
+    for hole in shown.holes(most):
+        scene.circle(view(hole.center), radius, "#ffffff", GREY, min(0.9, 0.3 * radius + 0.1))
+
+
+def labelled(
+    names: Sequence[tuple[int, float]], pegs: set[int], spacing: float
+) -> list[tuple[int, float, bool]]:
+    """Which columns or rows to label so that labels stand at least ``spacing`` page units apart.
+
+    Those of the pegs come first (their flag is True), then as many of the rest as there is room for, evenly.
+
+    Parameters
+    ----------
+    names : index and page coordinate of every column or row.
+    """
+    chosen: list[tuple[int, float, bool]] = []
+    for index, at in names:
+        if index in pegs and all(abs(at - other) >= 0.8 * spacing for _, other, _ in chosen):
+            chosen.append((index, at, True))
+    step = 1
+    if len(names) > 1:
+        distance = abs(names[1][1] - names[0][1])
+        step = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if k * distance >= spacing)
+    for index, at in names:
+        wanted = (index + 1) % step == 0 if step > 1 else True
+        if wanted and index not in pegs and all(abs(at - other) >= spacing for _, other, _ in chosen):
+            chosen.append((index, at, False))
+    return sorted(chosen)
+
+
+BOLT = "#c3c9d1"
+# An arrow to the left about its middle, its length and its width, page units.
+ARROW = [(-29.0, 0.0), (-11.0, -11.0), (-11.0, -5.0), (29.0, -5.0), (29.0, 5.0), (-11.0, 5.0), (-11.0, 11.0)]
+LENGTH, WIDTH = 58.0, 22.0
+# Of the pitch behind the body, how much the arrow may take, and how far it stays off the body.
+SHARE, OFF = 0.95, 2.0
+# A body thinner than this, page units, is drawn this thick.
+THINNEST = 7.0
+
+
+def block_arrow(
+    scene: Scene, middle: Point, direction: Point, size: float = 1.0, weight: float = 1.0
+) -> None:
+    """Draw an outlined arrow about a page point in a direction of the plan, whose y runs up."""
+    turn = atan2(direction[1], -direction[0])
+    corners = [rotated(size * x, size * y, turn) for x, y in ARROW]
+    scene.polygon([(middle[0] + dx, middle[1] + dy) for dx, dy in corners], "#ffffff", BLACK, 1.4 * weight)
+
+
+def clamp_arrow(clamp: ShownClamp, view: View, weight: float = 1.0) -> tuple[Point, float]:
+    """Middle of the arrow behind a clamp on the page, and its size beside that of a plate that slides."""
+    start = max(clamp.carrier.peg_radius * view.scale, THINNEST * weight / 2) + OFF * weight
+    length = min(LENGTH * weight, max(SHARE * clamp.pitch * view.scale - start, 0.3 * LENGTH * weight))
+    return view(clamp.behind((start + length / 2) / view.scale)), length / LENGTH
+
+
+def avoid_clamp(placer: LabelPlacer, clamp: ShownClamp, view: View) -> None:
+    """Tell where a clamp is drawn, so that labels keep off."""
+    (x, y), size = clamp_arrow(clamp, view)
+    along, across = size * LENGTH / 2, size * WIDTH / 2
+    half_x, half_y = (across, along) if clamp.is_upright else (along, across)
+    placer.avoid_box(Box(x - half_x, y - half_y, x + half_x, y + half_y))
+    placer.avoid_box(view.box(clamp.extent))
+
+
+def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View, weight: float) -> None:
+    """Draw a clamp: its body with the bolt, or where the hole is not known the line of holes its tip is on."""
+    group = scene.group("clamp")
+    tip = view((clamp.tip.x, clamp.tip.y))
+    if clamp.hole is None:
+        box = view.box(plate.plate)
+        ends = (
+            [(tip[0], box.y1), (tip[0], box.y0)] if clamp.is_upright else [(box.x0, tip[1]), (box.x1, tip[1])]
+        )
+        group.line(ends, BLACK, 1.0 * weight, stroke_dasharray="7 4", **{"class": "clamp-line"})
+    else:
+        hole, width = view(clamp.hole), max(2 * clamp.carrier.peg_radius * view.scale, THINNEST * weight)
+        fill, edge = SLIDING
+        group.line([hole, tip], edge, width, stroke_linecap="round", **{"class": "clamp-body"})
+        group.line([hole, tip], fill, max(width - 3.0 * weight, 0.6 * width), stroke_linecap="round")
+        draw_bolt(group, hole, min(view.scale * plate.hole_radius, 0.8 * width / 2), weight)
+
+
+def draw_push(scene: Scene, clamp: ShownClamp, view: View, weight: float) -> None:
+    """Draw the arrow behind a clamp that tells which way it pushes; over the part, as it may stand in a hole of it."""
+    middle, size = clamp_arrow(clamp, view, weight)
+    block_arrow(scene.group("clamp-push"), middle, clamp.clamping, size, weight)
+
+
+def draw_bolt(scene: Scene, at: Point, radius: float, weight: float = 1.0) -> None:
+    """Draw the head of a bolt with its hexagonal socket about a page point."""
+    scene.circle(at, radius, BOLT, BLACK, 1.1 * weight, **{"class": "bolt"})
+    corners = [
+        (at[0] + 0.55 * radius * cos(k * pi / 3), at[1] + 0.55 * radius * sin(k * pi / 3)) for k in range(6)
+    ]
+    scene.polygon(corners, "#ffffff", GREY, 0.8 * weight)
+
+
+def draw_sign(scene: Scene, at: Point) -> None:
+    """Draw the sign of a clamp for a legend about a page point."""
+    fill, edge = SLIDING
+    ends = [(at[0] + 9, at[1]), (at[0] - 9, at[1])]
+    scene.line(ends, edge, 14, stroke_linecap="round")
+    scene.line(ends, fill, 11, stroke_linecap="round")
+    draw_bolt(scene, ends[0], 4.5)

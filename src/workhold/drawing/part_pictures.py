@@ -1,0 +1,265 @@
+"""Pictures to choose by number from: the part with its faces numbered, and the parts of a file with their numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, hypot, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.contact.features import contact_features
+from workhold.drawing.annotation import Label, LabelPlacer, around, dimension, joined, leader_end, scale_bar
+from workhold.drawing.bench import ARROW, PART_FILL, outline_path, sampled, sampled_loop, segment_path
+from workhold.drawing.panel import plural
+from workhold.drawing.scene import (
+    BLACK,
+    GREY,
+    LANDSCAPE,
+    PORTRAIT,
+    Box,
+    LengthUnit,
+    Scene,
+    View,
+    shortened,
+    text_width,
+)
+from workhold.geometry.loop import Face, loop_segments
+from workhold.geometry.segment import Arc, Segment, bounding_box
+from workhold.model.workpiece import Workpiece
+from workhold.units import MILLIMETRE, Unit
+
+__all__ = ["draw_features", "draw_parts"]
+
+EDGE = 32.0
+HEADER = 62.0
+FOOTER = 30.0
+# Room around the part for numbers, and beyond it for dimensions.
+NUMBERS, MORE_NUMBERS = 54.0, 84.0
+MANY_FACES, VERY_MANY_FACES = 30, 80
+DIMENSIONS = 36.0
+LEADER = "#6b4a00"
+
+
+def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit: Unit = MILLIMETRE) -> str:
+    """Draw the part with numbered faces, its overall size and a scale, on A4, or on A3 or A2 for more than 80 faces.
+
+    Parameters
+    ----------
+    peg_radius : draw the contact features for pegs of this radius in mm as well.
+    unit : of the lengths written.
+
+    Returns
+    -------
+    str
+        SVG text; the group of class ``part`` carries the map from mm to the page, as in :func:`draw_fixture`.
+    """
+    bounds = Box(*workpiece.bounds)
+    lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
+    page = sheet(len(workpiece.faces), LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT)
+    numbers = MORE_NUMBERS if len(workpiece.faces) > MANY_FACES else NUMBERS
+    margin = numbers + DIMENSIONS
+    drawing = Box(EDGE, EDGE + HEADER, page[0] - EDGE, page[1] - EDGE - FOOTER)
+    room = Box(drawing.x0 + margin, drawing.y0 + numbers, drawing.x1 - numbers, drawing.y1 - margin)
+    view = View.fitting(bounds, room)
+    scene = Scene.page(page, f"{workpiece.name}: faces")
+    draw_header(scene, workpiece, bounds, peg_radius, lengths)
+    draw_outline(scene, workpiece, view)
+    if peg_radius is not None:
+        draw_contact_features(scene, workpiece, view, peg_radius)
+    draw_numbers(scene, workpiece, view, view.box(bounds).grown(numbers - 6), peg_radius)
+    draw_overall(scene, bounds, view, numbers, lengths)
+    scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
+    return scene.svg()
+
+
+def sheet(faces: int, page: tuple[float, float]) -> tuple[float, float]:
+    """An A4 page, or A3 or A2 for parts with so many faces that their numbers need the room."""
+    larger = 1.0 if faces <= VERY_MANY_FACES else 2**0.5 if faces <= 2 * VERY_MANY_FACES else 2.0
+    return round(larger * page[0]), round(larger * page[1])
+
+
+def draw_header(
+    scene: Scene, workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit
+) -> None:
+    """Write what the part is."""
+    group = scene.group("header")
+    width = float(scene.element.attrib["viewBox"].split()[2]) - 2 * EDGE
+    group.text((EDGE, EDGE + 12), shortened(workpiece.name, 26, width, bold=True), 26, bold=True)
+    faces, holes = len(workpiece.faces), len(workpiece.loops) - 1
+    words = [plural(faces, "face"), plural(holes, "hole") if holes else "no holes"]
+    words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
+    if peg_radius is not None:
+        size = lengths.short(2 * peg_radius)
+        words.append(f"dashed: where the centre of a peg of Ø {size} lies when it touches a face")
+    if len(workpiece.segments) > faces:
+        words.append("a face drawn in pieces has the number of the first")
+    line = " · ".join(words)
+    group.text((EDGE, EDGE + 40), shortened(line, 14, width), 14, fill=GREY)
+
+
+def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
+    """Draw the part with a tick across every joint of two segments."""
+    part = scene.group("part", view)
+    d = outline_path(workpiece.loop_segments, view)
+    part.path(d, BLACK, 2.2, PART_FILL, fill_rule="evenodd", **{"class": "outline"})
+    ticks = scene.group("joints")
+    for loop in workpiece.loop_segments:
+        for k, segment in enumerate(loop):
+            ax, ay = segment.normal(first_parameter(segment))
+            bx, by = loop[k - 1].normal(-first_parameter(loop[k - 1]))
+            nx, ny = ax + bx, ay + by
+            length = hypot(nx, ny)
+            if length < 1e-6:
+                nx, ny, length = ax, ay, 1.0
+            x, y = view(segment.start)
+            dx, dy = 5.5 * nx / length, -5.5 * ny / length
+            ticks.line([(x - dx, y - dy), (x + dx, y + dy)], BLACK, 1.2)
+
+
+def first_parameter(segment: Segment) -> float:
+    """Parameter at which a segment is entered; it is left at minus that."""
+    return -segment.sign * segment.half_sweep if isinstance(segment, Arc) else -segment.half_extent
+
+
+def draw_contact_features(scene: Scene, workpiece: Workpiece, view: View, peg_radius: float) -> None:
+    """Draw the contact features, dashed."""
+    group = scene.group("contact-features", view)
+    for feature in contact_features(workpiece, peg_radius):
+        group.path(segment_path(feature.segment, view), ARROW, 1.4, stroke_dasharray="7 4")
+
+
+def draw_numbers(
+    scene: Scene, workpiece: Workpiece, view: View, bounds: Box, peg_radius: float | None
+) -> None:
+    """Write the numbers of all faces on the side away from the material, each with a leader."""
+    count = len(workpiece.faces)
+    size = 15.0 if count <= MANY_FACES else 12.0
+    shares = (0.0, 0.3, -0.3, 0.6, -0.6) if count <= VERY_MANY_FACES else (0.0,)
+    placer = LabelPlacer(bounds)
+    for loop in workpiece.loop_segments:
+        outline = sampled_loop(loop, view, 3.0)
+        placer.avoid_ink(outline, 5.0)
+        placer.avoid_walls(sampled_loop(loop, view, 12.0))
+    if peg_radius is not None:
+        features = [feature.segment for feature in contact_features(workpiece, peg_radius)]
+        placer.avoid_ink(sampled(features, view, 3.0), 0.6)
+    outer = len(workpiece.loop_segments[0])
+    places = placer.place(
+        [number_label(face, view, size, shares, face.number < outer) for face in workpiece.faces]
+    )
+    group = scene.group("face-numbers")
+    for place in places:
+        group.line([place.anchor, leader_end(place.anchor, place.box)], LEADER, 0.9)
+        group.circle(place.anchor, 1.7, LEADER)
+    for face, place in zip(workpiece.faces, places, strict=True):
+        group.rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
+        group.text(place.box.center, str(face.number), size, "middle", bold=True)
+
+
+def number_label(face: Face, view: View, size: float, shares: Sequence[float], outer: bool) -> Label:
+    """Candidates for the number of a face: along its normal at shares of its half extent, then turned and further off.
+
+    Inside the material is a last resort, and meant for holes too small to hold a number.
+    """
+    height = size + 6
+    width = max(height, text_width(str(face.number), size, bold=True) + 10)
+    turns = [0.0, *(sign * k * pi / 12 for k in range(1, 6) for sign in (1, -1))]
+    distances = [size * k for k in (0.7, 1.1, 1.7, 2.4, 3.2, 4.2)]
+    labels = []
+    for share in shares:
+        parameter = share * face.segment.half_extent
+        nx, ny = face.segment.normal(parameter)
+        anchor = view(face.segment.at(parameter))
+        extra, inward = 12.0 * abs(share), 90.0 if outer else 25.0
+        labels.append(around(anchor, atan2(-ny, nx), (width, height), distances, turns, extra))
+        labels.append(
+            around(anchor, atan2(ny, -nx), (width, height), distances[:4], turns[:7], extra + inward)
+        )
+    return joined(labels)
+
+
+def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths: LengthUnit) -> None:
+    """Dimension the overall width below the part and its height at the left."""
+    group = scene.group("overall")
+    box = view.box(bounds)
+    y = box.y1 + numbers + 22
+    for x in (box.x0, box.x1):
+        group.line([(x, box.y1 + 10), (x, y + 4)], GREY, 0.6)
+    dimension(group, (box.x0, y), (box.x1, y), lengths.words(bounds.width))
+    x = box.x0 - numbers - 8
+    for y in (box.y0, box.y1):
+        group.line([(box.x0 - 10, y), (x - 4, y)], GREY, 0.6)
+    dimension(group, (x, box.y1), (x, box.y0), lengths.words(bounds.height))
+
+
+PARTS_EDGE, PARTS_HEADER, PARTS_FOOTER = 32.0, 62.0, 30.0
+OTHER_FILL, PARTS_LEADER = "#eef0f3", "#6b4a00"
+# Parts by decreasing area; specks beyond these are drawn without a number.
+MOST_NUMBERS = 60
+
+
+def draw_parts(
+    name: str, parts: Sequence[Sequence[NDArray[np.float64]]], chosen: int, *, unit: Unit = MILLIMETRE
+) -> str:
+    """Draw the parts of a file where they lie, each with its number, on A4.
+
+    Parameters
+    ----------
+    name : what to call the file.
+    parts : for each part its loops, (N, 3) vertices in mm; part k + 1 is called by that number.
+    chosen : the number of the part that is used, which has another colour.
+    unit : of the lengths written.
+
+    Returns
+    -------
+    str
+        SVG text.
+    """
+    loops = [[loop_segments(vertices) for vertices in part] for part in parts]
+    boxes = [bounding_box(segment) for part in loops for loop in part for segment in loop]
+    bounds = Box(
+        *(min(box[k] for box in boxes) for k in (0, 1)), *(max(box[k] for box in boxes) for k in (2, 3))
+    )
+    lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
+    page = LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT
+    drawing = Box(
+        PARTS_EDGE + 30,
+        PARTS_EDGE + PARTS_HEADER + 30,
+        page[0] - PARTS_EDGE - 30,
+        page[1] - PARTS_EDGE - PARTS_FOOTER - 30,
+    )
+    view = View.fitting(bounds, drawing)
+    scene = Scene.page(page, f"{name}: parts")
+    group = scene.group("header")
+    width = page[0] - 2 * PARTS_EDGE
+    group.text((PARTS_EDGE, PARTS_EDGE + 12), shortened(name, 26, width, bold=True), 26, bold=True)
+    words = (
+        f"{plural(len(parts), 'part')}, numbered by decreasing area · part {chosen} is the one that is used"
+    )
+    group.text((PARTS_EDGE, PARTS_EDGE + 40), shortened(words, 14, width), 14, fill=GREY)
+    for number, part in reversed(list(enumerate(loops, start=1))):
+        fill = PART_FILL if number == chosen else OTHER_FILL
+        scene.group(f"part-{number}", view).path(
+            outline_path(part, view), BLACK, 1.4, fill, fill_rule="evenodd"
+        )
+    placer = LabelPlacer(drawing.grown(28))
+    for part in loops:
+        for loop in part:
+            placer.avoid_ink(sampled_loop(loop, view, 4.0), 2.0)
+    labels = []
+    for number, part in enumerate(loops[:MOST_NUMBERS], start=1):
+        size = (max(22.0, text_width(str(number), 15.0, bold=True) + 12), 22.0)
+        # A place within the material beside the outline's first segment, or else about there.
+        segment = part[0][0]
+        x, y = view(segment.at(0.0))
+        turns = [k * pi / 6 for k in range(12)]
+        labels.append(around((x, y), 0.0, size, [4.0, 14.0, 26.0, 40.0], turns, turn_cost=0.0))
+    group = scene.group("part-numbers")
+    for number, place in enumerate(placer.place(labels), start=1):
+        group.line([place.anchor, leader_end(place.anchor, place.box)], PARTS_LEADER, 0.9)
+        group.circle(place.anchor, 1.7, PARTS_LEADER)
+        group.rectangle(place.box, "#ffffff", PARTS_LEADER, 0.9, place.box.height / 2)
+        group.text(place.box.center, str(number), 15.0, "middle", bold=True)
+    scale_bar(scene, (PARTS_EDGE, page[1] - PARTS_EDGE), view.scale, lengths)
+    return scene.svg()

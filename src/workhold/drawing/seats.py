@@ -1,0 +1,232 @@
+"""How a part can come to rest on a fixture's pegs, drawn and told on a setup sheet: its own seat and the wrong ones.
+
+The seats stand side by side, to know them by sight. The blocks of the sheet tell whether the part ends up where it should,
+and how it looks where it does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, outline_path
+from workhold.drawing.fixture_pictures import CAPTION, EDGE, MOST_THUMBNAILS, grid
+from workhold.drawing.panel import Column
+from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View, shortened, text_width
+from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Segment
+from workhold.model.fixture import Fixture
+from workhold.model.seating import Seat
+from workhold.model.workpiece import Workpiece
+from workhold.seating.clamping import WHY, Gauge
+from workhold.units import MILLIMETRE, Unit
+
+__all__ = ["ALIKE", "RIGHT", "Placed", "draw_lying", "draw_seats", "write_seating", "write_wrong_seats"]
+
+# The right seat, and one that no reading tells from it.
+RIGHT, ALIKE = "#2e7d32", "#8a6d00"
+# The far side of a part that is turned over.
+OVER_FILL = "#dfe6ee"
+# How thick a fence is drawn, in mm, and its colour.
+WALL, WALL_FILL = 4.0, "#b9bec4"
+
+
+def draw_seats(
+    seats: Sequence[Seat],
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    *,
+    title: str = "Fixture",
+    unit: Unit = MILLIMETRE,
+) -> str:
+    """Draw up to twelve seats of a fixture's pegs on one A4 sheet, all to the same scale, with what is read in each.
+
+    Parameters
+    ----------
+    seats : in the order in which they are numbered.
+    title : what to call the fixture.
+    unit : of the lengths written.
+
+    Returns
+    -------
+    str
+        SVG text.
+    """
+    shown = seats[:MOST_THUMBNAILS]
+    scene = Scene.page(LANDSCAPE, f"{workpiece.name}: seats")
+    width = LANDSCAPE[0]
+    more = len(seats) - len(shown)
+    words = "all to the same scale" if not more else f"{more} more not drawn; all to the same scale"
+    room = width - 2 * EDGE - text_width(words, 14) - 20
+    scene.text(
+        (EDGE, EDGE + 10),
+        shortened(f"{workpiece.name}: {title} and its seats", 24, room, bold=True),
+        24,
+        bold=True,
+    )
+    scene.text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)
+    cells = grid(len(shown))
+    rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
+    placed = [Placed.of(seat, fixture, workpiece, toolkit) for seat in shown]
+    scale = min(View.fitting(one.extent, box).scale for one, box in zip(placed, rooms, strict=True))
+    for k, (one, cell, box) in enumerate(zip(placed, cells, rooms, strict=True)):
+        draw_seat(scene.group("seat"), one, k + 1, cell, View.fitting(one.extent, box, scale), unit)
+    return scene.svg()
+
+
+class Placed:
+    """A seat with its part and pegs where they are, in mm in the vise frame.
+
+    Parameters
+    ----------
+    seat : which.
+    loops : of the part.
+    pegs : places, radii, and whether each touches.
+    reading : what is read there, and in the fixture's own pose.
+    extent : of all of it.
+    walls : how many straight walls there are, along x at y = 0.
+    touching : how the part lies in the fixture, in two words.
+    """
+
+    def __init__(
+        self,
+        seat: Seat,
+        loops: list[list[Segment]],
+        pegs: list[tuple[tuple[float, float], float, bool]],
+        reading: tuple[float, float],
+        extent: Box,
+        walls: int,
+        touching: str,
+    ) -> None:
+        self.seat, self.loops, self.pegs, self.reading, self.extent = seat, loops, pegs, reading, extent
+        self.walls, self.touching = walls, touching
+
+    @classmethod
+    def of(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
+        """A seat of a fixture's pegs."""
+        part = workpiece.turned_over if seat.mirrored else workpiece
+        lying = part.placed(seat.pose)
+        touching, gauge = {contact.peg for contact in seat.contacts}, Gauge(fixture, toolkit)
+        pegs = [
+            ((peg.x, peg.y), toolkit.carrier(peg.carrier).peg_radius, k in touching)
+            for k, peg in enumerate(gauge.pegs(seat.jaw_separation))
+            if toolkit.carrier(peg.carrier).contact.is_placed
+        ]
+        reading = gauge.at(seat.jaw_separation), gauge.setting.length
+        x0, y0, x1, y1 = lying.bounds
+        boxes = [(x0, y0, x1, y1), *((x - r, y - r, x + r, y + r) for (x, y), r, _ in pegs)]
+        walls = len(toolkit.ends_on_walls)
+        boxes += [(x0, -WALL, x1, 0.0)] * walls
+        lows, highs = zip(*((box[:2], box[2:]) for box in boxes), strict=True)
+        extent = Box(
+            *(min(ends) for ends in zip(*lows, strict=True)),
+            *(max(ends) for ends in zip(*highs, strict=True)),
+        )
+        loops = [list(loop) for loop in lying.loop_segments]
+        return cls(seat, loops, pegs, reading, extent, walls, toolkit.setup_words.touching)
+
+
+def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) -> None:
+    """Draw the part as it lies and the pegs, those that touch filled; ``weight`` is the width of lines in page units."""
+    for _ in range(placed.walls):
+        x0, x1 = placed.extent.x0, placed.extent.x1
+        scene.polygon([view(at) for at in ((x0, 0.0), (x1, 0.0), (x1, -WALL), (x0, -WALL))], WALL_FILL)
+    fill = OVER_FILL if placed.seat.mirrored else PART_FILL
+    scene.path(outline_path(placed.loops, view), BLACK, weight, fill, fill_rule="evenodd")
+    for place, radius, touches in placed.pegs:
+        scene.circle(
+            view(place), max(radius * view.scale, 2.0), PEG_FILL if touches else "#ffffff", PEG_FILL, weight
+        )
+
+
+def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
+    """Draw one seat with its number, what is read, and how that differs."""
+    seat, (reading, own) = placed.seat, placed.reading
+    colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
+    scene.rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)
+    draw_lying(scene, placed, view)
+    side = ", turned over" if seat.mirrored else ""
+    words = "right" if seat.is_own else "same place" if seat.same_place else "wrong"
+    scene.text((cell.x0 + 10, cell.y1 - 30), f"{number}  {words}", 15, bold=True, fill=colour)
+    scene.text((cell.x1 - 10, cell.y1 - 30), f"reads {unit.text(reading)}", 13, "end", fill=ARROW)
+    kind = seat.kind if seat.kind != "fixture" else placed.touching
+    scene.text((cell.x0 + 10, cell.y1 - 12), f"{kind}{side}", 12, fill=GREY)
+    if not seat.is_own:
+        more = "more" if reading >= own else "less"
+        scene.text(
+            (cell.x1 - 10, cell.y1 - 12), f"{unit.text(abs(reading - own))} {more}", 12, "end", fill=GREY
+        )
+
+
+# Pictures in a row, and at most; the first is the right seat.
+ACROSS, MOST = 3, 6
+# Room between pictures, height of a picture by its width, and height and sizes of the lines below one, page units.
+GAP, TALL = 8.0, 0.95
+LINE, READING, SMALL = 12.5, 11.0, 9.5
+
+
+def write_seating(column: Column, sheet: Sheet) -> None:
+    """Write how far to open, how near to put the part, and what to read; or how to put it into two clamps."""
+    heading(column, "Will it end up there?")
+    put_in, steps = sheet.details.by_hand, list[str]()
+    if sheet.seating is not None:
+        steps = sheet.seating.steps(sheet.workpiece)
+    elif put_in is not None:
+        column.paragraph(WHY, BODY)
+        # The order of tightening has a block of its own.
+        steps = put_in.steps(sheet.lengths.words, with_order=False)
+    else:
+        column.paragraph(sheet.details.not_seated, BODY)
+    for number, step in enumerate(steps, 1):
+        column.scene.text((column.x, column.y + 0.75 * BODY), f"{number}.", BODY, bold=True, middle=False)
+        column.paragraph(step, BODY, indent=18)
+        column.y += 2
+
+
+def write_wrong_seats(column: Column, sheet: Sheet) -> None:
+    """Draw the right seat and the wrong ones that read most like it, each with its reading."""
+    words = sheet.seating
+    assert words is not None
+    heading(column, "What it looks like")
+    for sentence in words.wrong_words():
+        column.paragraph(sentence, BODY)
+    shown = [words.own, *words.wrong[: MOST - 1]]
+    width = (column.width - (ACROSS - 1) * GAP) / ACROSS
+    captions = [caption(words, seat) for seat in shown]
+    below = LINE * max(map(len, captions)) + GAP
+    cells = []
+    for k in range(len(shown)):
+        x, y = (
+            column.x + k % ACROSS * (width + GAP),
+            column.y + 6 + k // ACROSS * (TALL * width + below + GAP),
+        )
+        cells.append(Box(x, y, x + width, y + TALL * width))
+    placed = [Placed.of(seat, sheet.fixture, sheet.workpiece, sheet.toolkit) for seat in shown]
+    rooms = [cell.grown(-5.0) for cell in cells]
+    scale = min(View.fitting(one.extent, room).scale for one, room in zip(placed, rooms, strict=True))
+    group = column.scene.group("seats")
+    for one, lines, cell, room in zip(placed, captions, cells, rooms, strict=True):
+        seat = one.seat
+        group.rectangle(cell, "#ffffff", RIGHT if seat.is_own else GREY, 2.0 if seat.is_own else 0.8, 4)
+        draw_lying(group, one, View.fitting(one.extent, room, scale), 0.9)
+        for k, line in enumerate(lines):
+            size, colour = (READING if k == 0 else SMALL), RIGHT if seat.is_own and k == 1 else BLACK
+            size = min(size, size * (width - 2) / text_width(line, size, bold=k == 0))
+            group.text(
+                (cell.x0 + 2, cell.y1 + 11 + LINE * k), line, size, bold=k == 0, fill=colour, middle=False
+            )
+    column.y = cells[-1].y1 + below
+    rest = len(words.wrong) - (len(shown) - 1)
+    if rest:
+        which = "one more is" if rest == 1 else f"{rest} more are"
+        column.paragraph(f"Drawn are the nearest readings; {which} off by more.", NOTE)
+
+
+def caption(words: SeatingWords, seat: Seat) -> list[str]:
+    """The lines below the picture of a seat: what is read, how that differs, and what else is to be said."""
+    told = ["turned over"] * seat.mirrored + ["not located"] * (seat.kind == "loose")
+    told += ["not settled"] * (seat.kind == "unsettled")
+    lines = [words.reads(words.reading(seat)), "right" if seat.is_own else words.difference(seat)]
+    return [*lines, ", ".join(told)] if told else lines

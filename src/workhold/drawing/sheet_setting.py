@@ -1,0 +1,352 @@
+"""The blocks of a setup sheet for what is set: pegs, and the jaws or clamps that move, with how holes are counted.
+
+Of pegs a sheet says where each stands, which face it touches, and the first thing to do with them. Two jaws have their
+opening and how to measure it; a plate with locators and clamps has blocks in place of these. Counted holes tell as well how
+far the whole set-up may be moved along them.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from math import ceil
+
+from workhold.drawing.panel import NUMBERS, Column, diameter_words, holes_words, offset_words
+from workhold.drawing.sheet_facts import caliper_check
+from workhold.drawing.sheet_writing import (
+    BODY,
+    NOTE,
+    MovingBlocks,
+    Sheet,
+    Writer,
+    fact_or_field,
+    heading,
+    inside_words,
+    lies_words,
+    peg_rows,
+    write_dowel,
+    write_flats,
+)
+from workhold.fixels.carrier import Carrier, column_letters, hole_name
+from workhold.fixels.contacts import WALL_END
+from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words, second_over_first
+from workhold.model.setup import Setting
+from workhold.model.shown import shown
+from workhold.plain import listed
+
+__all__ = ["CLAMPS", "OPENING", "put_words", "touch_words", "write_counting", "write_pegs"]
+
+
+def write_pegs(column: Column, sheet: Sheet) -> None:
+    """Write where the pegs stand, and the tips of clamps."""
+    toolkit, plates = sheet.toolkit, sheet.toolkit.plates
+    first, noun = plates[0], toolkit.moving.noun
+    heading(column, f"{toolkit.setup_words.standing} {peg_size(sheet, first)}")
+    header, rows, per = peg_rows(sheet)
+    table = [header, *rows]
+    if len(plates) > 1:
+        stands_on = [first.noun, *(peg.carrier for peg in sheet.fixture.pegs)]
+        table = [[row[0], word, *row[1:]] for row, word in zip(table, stands_on, strict=True)]
+    column.table(table[0], table[1:], BODY)
+    of_tips = f" or of {'the' if sheet.is_closed_at_once else 'a'} {noun}'s tip" if toolkit.tips else ""
+    of_plate = f" of the fixed {first.noun}" if len(plates) > 1 else ""
+    column.paragraph(
+        f"x, y: centre of the {first.peg}{of_tips}, from {sheet.datum.point}{of_plate}"
+        f"{'' if sheet.origin_shown else ', which lies beside the plan'}.",
+        NOTE,
+    )
+    for wall in (carrier for carrier in toolkit.carriers if carrier.contact is WALL_END):
+        write_flush(column, sheet, wall)
+    added = "" if sheet.is_closed_at_once else f", both {noun}s added up, in the ratio told below"
+    column.paragraph(f"{per} of {noun} force{added}, without friction.", NOTE)
+    write_flats(column, sheet)
+    write_dowel(column, sheet)
+
+
+def peg_size(sheet: Sheet, carrier: Carrier) -> str:
+    """The size of a carrier's pegs, behind a word."""
+    if not carrier.peg_radius:
+        return "(points, no diameter)"
+    lengths = sheet.lengths
+    body = (
+        f", body Ø {lengths.short(2 * carrier.body_radius)}"
+        if carrier.body_radius > carrier.peg_radius
+        else ""
+    )
+    return f"Ø {lengths.short(2 * carrier.peg_radius)}{body}"
+
+
+def write_flush(column: Column, sheet: Sheet, wall: Carrier) -> None:
+    """Write where the part lies flush on a wall, and how far the plate is from it."""
+    plate, edge = sheet.toolkit.plates[0], sheet.datum.edge
+    ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.carrier == wall.name))
+    lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
+    row = (
+        ""
+        if edge is None
+        else f" Row 1 of the {plate.noun} is {sheet.lengths.words(edge)} from the {wall.noun}."
+    )
+    column.paragraph(f"The part lies flush on the {wall.noun} {lies}.{row}", NOTE)
+
+
+def put_words(sheet: Sheet) -> str:
+    """Where to put the pegs, a sentence."""
+    plates, holes = sheet.toolkit.plates, list[str]()
+    for plate in plates:
+        there = listed([peg.hole for peg in sheet.fixture.pegs if peg.carrier == plate.name])
+        stands = "fixed" if plate.travel is None else "sliding"
+        holes.append(f"{there} of the {stands} {plate.title}" if len(plates) > 1 else there)
+    first, edge = plates[0], sheet.datum.edge
+    return sheet.toolkit.setup_words.put.format(
+        peg=first.peg,
+        plate=first.noun,
+        holes=listed(holes),
+        edge="" if edge is None else sheet.lengths.words(edge),
+    )
+
+
+def touch_words(sheet: Sheet) -> str:
+    """What each peg touches, and how to see that it does: the end of a sentence, and another one."""
+    touch = listed([f"{peg.touching} at {peg.hole}" for peg in sheet.fixture.pegs])
+    return f"{touch}. A strip of paper at each must not pull out."
+
+
+def opening_writers(sheet: Sheet) -> list[Writer]:
+    """The block about the opening."""
+    return [write_opening]
+
+
+def write_opening(column: Column, sheet: Sheet) -> None:
+    """Write the opening and how to measure it."""
+    fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
+    first, moving = toolkit.plates[0], toolkit.moving
+    heading(column, f"Opening S of the {moving.noun}s")
+    column.words(lengths.words(fixture.jaw_separation), 28, bold=True, gap=0.4)
+    if first == moving:
+        column.paragraph(f"From {sheet.datum.y} to the centres of row 1 of the {moving.title}.", NOTE)
+        return
+    check = caliper_check(fixture, toolkit)
+    one, other = (column_letters(hole[0]) for hole in (check.left, check.right))
+    column.paragraph(
+        f"x from the centres of column {one} of the {first.title} to those of column {other} of the {moving.title}.",
+        NOTE,
+    )
+    left, right = hole_name(first.name, *check.left), hole_name(moving.name, *check.right)
+    diameter = 2 * first.peg_radius
+    spare = {2: "", 1: " (one of them a spare)", 0: " (both spare)"}[check.placed]
+    column.y += 3
+    column.paragraph(f"Calipers on pegs in {left} and {right}{spare}:", BODY)
+    if diameter == 0:
+        column.fact("centre to centre", lengths.words(check.distance), bold=True)
+        return
+    if check.distance > diameter:
+        column.fact("inside, between the pegs", lengths.words(check.distance - diameter), bold=True)
+    column.fact("outside, over both pegs", lengths.words(check.distance + diameter), bold=True)
+
+
+def opening_steps(sheet: Sheet) -> list[str]:
+    """What to do, one or two sentences each."""
+    fixture, lengths, moving, force = (
+        sheet.fixture,
+        sheet.lengths,
+        sheet.toolkit.moving,
+        sheet.details.jaw_force,
+    )
+    words = sheet.toolkit.setup_words
+    there, more, back = (
+        ("Open", "wider", "Close") if sheet.toolkit.clamping > 0 else ("Close", "narrower", "Open")
+    )
+    with_force = "" if force is None else f" with {lengths.unit.force_words(force)}"
+    against = f", {words.against}" if words.against else ""
+    count = len(fixture.placed)
+    pegs = "both" if count == 2 else f"all {NUMBERS[count]}"
+    return [
+        put_words(sheet),
+        f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.jaw_separation)} and lay the part in "
+        f"as drawn, {lies_words(sheet)}{against}.{inside_words(sheet)}",
+        f"{back} the {moving.title} until {pegs} pegs touch. The opening is then S; if not, the part lies another way.",
+        f"Clamp{with_force}. The pegs touch: {touch_words(sheet)}",
+    ]
+
+
+OPENING = MovingBlocks(opening_writers, opening_steps)
+
+
+def clamp_writers(sheet: Sheet) -> list[Writer]:
+    """The blocks about the clamp, or about each of two and the order in which they are tightened."""
+    shares = clamp_shares(sheet.fixture)
+    each: list[Writer] = [
+        partial(write_clamp, setting=one, share=share)
+        for one, share in zip(sheet.settings, shares, strict=True)
+    ]
+    return each if sheet.is_closed_at_once else [*each, write_order]
+
+
+def write_clamp(column: Column, sheet: Sheet, setting: Setting, share: float) -> None:
+    """Write where a clamp is bolted, which way it pushes, how far its tip is out and with what share of the force."""
+    clamp, lengths = setting.carrier, sheet.lengths
+    heading(column, f"{setting.label} {setting.place}")
+    column.words(lengths.words(setting.length), 28 if sheet.is_closed_at_once else 22, bold=True, gap=0.4)
+    how = setting.mounting.how.format(place=setting.place, title=setting.caption)
+    column.paragraph(f"{how}, once it touches.", NOTE)
+    column.y += 3
+    direction = clamp.direction.replace("-", "−")
+    column.fact("pushes", f"{clamp.towards}, {direction}", bold=True)
+    column.fact("round tip", diameter_words(clamp, lengths), bold=True)
+    if clamp.travel is not None and clamp.travel.most is not None:
+        least, most = sorted((abs(clamp.travel.least), abs(clamp.travel.most)))
+        column.fact("stroke it has", f"{lengths.short_number(least)} to {lengths.short(most)}")
+    force, unit = sheet.details.jaw_force, lengths.unit
+    fact_or_field(column, f"{clamp.noun} force", None if force is None else unit.force_words(share * force))
+    if sheet.details.loads:
+        needed = share * needed_force(sheet)
+        column.fact("the loads need at least", f"{unit.force_above(needed)} {unit.force}", bold=True)
+    fact_or_field(column, "torque of its screw", None)
+
+
+def needed_force(sheet: Sheet) -> float:
+    """The clamp force, of two clamps added up, that the loads need, in N."""
+    return max(case.needed.value for case in sheet.details.loads)
+
+
+def write_order(column: Column, sheet: Sheet) -> None:
+    """Write in which order two clamps are tightened, and in which ratio."""
+    fixture, (first, second) = sheet.fixture, clamp_names(sheet.fixture)
+    heading(column, "Order of tightening")
+    column.paragraph(order_words(fixture), BODY, bold=True)
+    ratio = second_over_first(fixture)
+    freedom = fixture.quality["clamp_freedom"]
+    column.fact("clamp freedom, of 90°", f"{freedom:.1f}°", bold=True)
+    column.paragraph(
+        f"{freedom_words(freedom).capitalize()}. Forces here are told for {second} with {ratio:.2f} times the force of "
+        f"{first}, the middle of what holds.",
+        NOTE,
+    )
+
+
+def clamp_steps(sheet: Sheet) -> list[str]:
+    """What to do, one or two sentences each."""
+    toolkit, lengths, alone = sheet.toolkit, sheet.lengths, sheet.is_closed_at_once
+    plate, noun = toolkit.plates[0], toolkit.moving.noun
+    bolts, ups = [], []
+    for setting, tip in zip(sheet.settings, sheet.fixture.pegs[-len(sheet.settings) :], strict=True):
+        put = setting.mounting.put.format(clamp=f"{'the' if alone else 'a'} {noun}", place=setting.place)
+        bolts.append(f"{put}, pushing {setting.carrier.towards}, and draw it back.")
+        one = f"the {noun}" if alone else tip.hole
+        what = setting.mounting.then.format(name=setting.name, title=setting.title)
+        ups.append(
+            f"Bring {one} up until its tip touches face {tip.face}. {what} is then {lengths.words(setting.length)}"
+            f"{'; if not, the part lies another way.' if alone else '.'}"
+        )
+    if not alone:
+        ups.append("If a length is not as told, the part lies another way.")
+    count = sum(peg.carrier == plate.name for peg in sheet.fixture.pegs)
+    against = toolkit.setup_words.against.format(count=NUMBERS[count], peg=plate.peg)
+    return [
+        f"{put_words(sheet)} {' '.join(bolts)}",
+        f"Lay the part in as drawn, {lies_words(sheet)}, {against}.{inside_words(sheet)}",
+        " ".join(ups),
+        f"{clamping_words(sheet)} They touch: {touch_words(sheet)}",
+    ]
+
+
+def clamping_words(sheet: Sheet) -> str:
+    """How to clamp, and with what force where that is known."""
+    fixture, force, unit = sheet.fixture, sheet.details.jaw_force, sheet.lengths.unit
+    if sheet.is_closed_at_once:
+        return f"Clamp{'' if force is None else f' with {unit.force_words(force)}'}."
+    if force is None:
+        return order_words(fixture)
+    shares = zip(clamp_names(fixture), clamp_shares(fixture), strict=True)
+    each = [f"{unit.force_words(share * force)} at {name}" for name, share in shares]
+    return f"{order_words(fixture)} {listed(each)} make the {unit.force_words(force)} given."
+
+
+CLAMPS = MovingBlocks(clamp_writers, clamp_steps)
+
+
+def write_counting(column: Column, sheet: Sheet) -> None:
+    """Write how holes are counted."""
+    heading(column, "Counting holes")
+    several = len(sheet.toolkit.plates) > 1
+    (write_jaws if several else write_plate)(column, sheet)
+
+
+def write_jaws(column: Column, sheet: Sheet) -> None:
+    """Write how the holes of two plates are counted."""
+    lengths, first, moving = sheet.lengths, sheet.toolkit.plates[0], sheet.toolkit.moving
+    pitch_x, pitch_y = (lengths.short(pitch) for pitch in first.pitch)
+    peg = sheet.fixture.pegs[0]
+    size, where = f"one column of holes, {pitch_y} apart", f"A on both {first.noun}s"
+    if first.column_count > 1:
+        size = f"{first.column_count} columns of holes, {pitch_x} apart; the rows are {pitch_y} apart"
+        where = f"A to {column_letters(first.column_count - 1)} from left to right, on each {first.noun}"
+    example = f"{peg.hole} is the {first.title}'s column {column_letters(peg.column)}, row {peg.row + 1}"
+    column.paragraph(f"{example}. Each {first.noun} has {size}.", BODY)
+    rows = f"Row 1 is the lowest; any row of the vise will do, the same for both {first.noun}s."
+    if first.rows is not None:
+        rows = f"Row 1 is the lowest of {first.rows}."
+    column.paragraph(f"Columns: {where}. {rows}", BODY)
+    if offset := offset_words(sheet.toolkit, lengths):
+        column.paragraph(f"Row 1 of the {moving.title} lies {offset} that of the {first.name}.", BODY)
+
+
+def write_plate(column: Column, sheet: Sheet) -> None:
+    """Write how the holes of the only plate are counted, and how far the whole set-up may be moved."""
+    plate, lengths = sheet.toolkit.plates[0], sheet.lengths
+    peg = next(peg for peg in sheet.fixture.pegs if peg.carrier == plate.name)
+    pitch_x, pitch_y = plate.pitch
+    apart = (
+        f"{lengths.short(pitch_x)} apart both ways"
+        if pitch_x == pitch_y
+        else f"{lengths.short(pitch_x)} apart along the rows and {lengths.short(pitch_y)} along the columns"
+    )
+    named = f"{peg.hole} is column {column_letters(peg.column)}, row {peg.row + 1}"
+    column.paragraph(f"{named}: columns from left to right, rows from {sheet.datum.rows_from}.", BODY)
+    size = "" if plate.columns is None and plate.rows is None else f", {holes_words(plate)}"
+    column.paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
+    column.paragraph(moving_words(sheet), BODY)
+    for side, way, count, noun in beyond_plate(sheet):
+        by = f"{count} {noun}{'' if count == 1 else 's'}"
+        column.paragraph(
+            f"As named, the part reaches beyond the {side} of the {plate.noun}; {by} {way} it does not.", BODY
+        )
+
+
+def moving_words(sheet: Sheet) -> str:
+    """How far all of the set-up may be moved along the holes of the plate."""
+    ways = []
+    known = zip(spare_holes(sheet), ("column", "row"), ("further right", "further up"), strict=True)
+    for spare, noun, way in list(known)[: 1 if sheet.datum.fixes_rows else 2]:
+        if spare is None:
+            ways.append(f"any {noun}s {way}")
+        elif spare:
+            ways.append(f"up to {spare} {noun}{'' if spare == 1 else 's'} {way}")
+    if not ways:
+        return f"The set-up fits the {sheet.toolkit.noun} in this place only."
+    return f"All of it may stand {' and '.join(ways)}; places are then told from {sheet.datum.substitute}."
+
+
+def spare_holes(sheet: Sheet) -> tuple[int | None, int | None]:
+    """How many columns and rows the set-up may be moved right and up; None where the plate has no end."""
+    plate, toolkit = sheet.toolkit.plates[0], sheet.toolkit
+    counted = [(peg, toolkit.carrier(peg.carrier).counted) for peg in sheet.fixture.pegs]
+    columns = max(peg.column for peg, (in_column, _) in counted if in_column)
+    rows = max(peg.row for peg, (_, in_row) in counted if in_row)
+    return (
+        None if plate.columns is None else plate.columns - 1 - columns,
+        None if plate.rows is None else plate.rows - 1 - rows,
+    )
+
+
+def beyond_plate(sheet: Sheet) -> list[tuple[str, str, int, str]]:
+    """The lower sides of a plate that the part reaches beyond as holes are named, and by how many columns or rows the set-up
+    has to be moved, and can be, so that it no longer does.
+    """
+    plate, part = sheet.toolkit.plates[0], shown(sheet.fixture, sheet.toolkit, sheet.workpiece).part
+    sides = (("left side", "further right", part.x0, "column"), ("lower side", "further up", part.y0, "row"))
+    found = []
+    for (side, way, low, noun), pitch, spare in zip(sides, plate.pitch, spare_holes(sheet), strict=True):
+        needed = 0 if noun == "row" and sheet.datum.fixes_rows else ceil(-low / pitch - 0.5)
+        if spare is not None and 0 < needed <= spare:
+            found.append((side, way, needed, noun))
+    return found

@@ -1,0 +1,382 @@
+"""The pages of a family: its curve drawn, and the sheets of a plan, a page for each set-up.
+
+On the curve the number of set-ups grows to the right and the worst loss upward. On the page of a set-up stands at the left
+its plan, the pegs with their holes, holding its first part; at the right every part as it lies, to one scale, and below
+them a table of what is set and programmed for each. Parts beyond ``MOST_BESIDE`` have their own pages.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from datetime import date
+from itertools import pairwise
+from math import ceil, floor, isfinite, log10
+
+from attrs import frozen
+
+from workhold.drawing.annotation import scale_bar
+from workhold.drawing.bench import Bench, bench_of, draw_bench, draw_zero
+from workhold.drawing.panel import plural
+from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
+from workhold.drawing.scene import (
+    BLACK,
+    GREY,
+    LANDSCAPE,
+    Box,
+    LengthUnit,
+    Scene,
+    View,
+    shortened,
+    text_width,
+    wrapped,
+)
+from workhold.family.curve import Point
+from workhold.family.family import Family
+from workhold.family.members import loss_text
+from workhold.family.plan import Holding, Plan, SetUp
+from workhold.model.quality import Figure
+from workhold.model.setup import settings_of
+from workhold.units import MILLIMETRE, Unit
+from workhold.version import __version__
+
+__all__ = ["MOST_BESIDE", "draw_curve", "draw_setups"]
+
+CURVE_EDGE, CURVE_HEADER = 32.0, 84.0
+CURVE_LINE, CHOSEN, GRID = "#0b3a82", "#b3122a", "#d5d9de"
+# Room for numbers and words at the axes, page units.
+AT_LEFT, BELOW = 84.0, 70.0
+# Losses that have a line, as far as the curve reaches.
+MOST_LINES = 9
+
+
+def draw_curve(family: Family, chosen: Point | None = None) -> str:
+    """Draw the curve of a family on A4, as SVG text.
+
+    Parameters
+    ----------
+    chosen : the point whose plan was picked, which is marked.
+    """
+    held = f"{plural(len(family.members), 'part')} {family.toolkit.wording.inside}"
+    scene = Scene.page(LANDSCAPE, f"{held}: set-ups and loss")
+    width, height = LANDSCAPE
+    group = scene.group("heading")
+    group.text((CURVE_EDGE, CURVE_EDGE + 12), held, 26, bold=True)
+    words = f"The loss is the {family.figure.words} over the best that each part has; at each point that of the worst part."
+    group.text((CURVE_EDGE, CURVE_EDGE + 44), words, 15, fill=GREY)
+    room = Box(
+        CURVE_EDGE + AT_LEFT, CURVE_EDGE + CURVE_HEADER, width - CURVE_EDGE - 30, height - CURVE_EDGE - BELOW
+    )
+    points = [point for point in family.points if isfinite(point.loss)]
+    if not points:
+        group.text(room.center, "No number of set-ups has a loss that is finite.", 16, "middle")
+        return scene.svg()
+    draw_axes_and_points(scene, room, points, chosen)
+    return scene.svg()
+
+
+def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: Point | None) -> None:
+    """Draw the axes with their numbers, and the points with theirs."""
+    last, most = points[-1].setups, points[0].loss
+    step = nice_step(max(most - 1.0, 0.02) / MOST_LINES)
+    top = 1.0 + step * max(ceil((most - 1.0) / step - 1e-9), 1)
+    first = points[0].setups
+
+    def at(setups: float, loss: float) -> tuple[float, float]:
+        across = (setups - first + 0.5) / (last - first + 1)
+        return room.x0 + across * room.width, room.y1 - (loss - 1.0) / (top - 1.0) * (room.height - 30)
+
+    axes = scene.group("axes")
+    decimals = max(0, -floor(log10(step) + 1e-9))
+    for k in range(round((top - 1.0) / step) + 1):
+        y = at(first, 1.0 + k * step)[1]
+        axes.line([(room.x0, y), (room.x1, y)], GRID if k else BLACK, 1.0)
+        axes.text((room.x0 - 10, y), f"{1.0 + k * step:.{max(decimals, 1)}f}", 14, "end")
+    every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 1000) if room.width / (last - first + 1) * k >= 26)
+    for setups in range(first, last + 1):
+        if (setups - first) % every == 0 or setups == last:
+            x = at(setups, 1.0)[0]
+            axes.line([(x, room.y1), (x, room.y1 + 6)], BLACK, 1.0)
+            axes.text((x, room.y1 + 20), str(setups), 14, "middle")
+    axes.text((room.center[0], room.y1 + 48), "set-ups", 15, "middle", bold=True)
+    axes.text((room.x0 - 62, room.center[1]), "worst loss", 15, "middle", bold=True, turned=90)
+    curve = scene.group("curve")
+    for one, other in pairwise(points):
+        # Numbers of set-ups in between lose as much as the smaller one.
+        corner = at(other.setups, one.loss)
+        curve.line([at(one.setups, one.loss), corner], CURVE_LINE, 2.0)
+        curve.line([corner, at(other.setups, other.loss)], CURVE_LINE, 1.2, stroke_dasharray="3 4")
+    taken: list[Box] = []
+    for point in points:
+        here, is_chosen = at(point.setups, point.loss), point == chosen
+        proven = point.is_least and point.at_least == point.setups
+        curve.circle(
+            here,
+            8.0 if is_chosen else 5.5,
+            CHOSEN if is_chosen else CURVE_LINE if proven else "#ffffff",
+            CURVE_LINE,
+            1.6,
+        )
+        words = loss_text(point.loss) + ("" if proven else " or less")
+        box = Box(
+            here[0] + 6, here[1] - 24, here[0] + 10 + text_width(words, 13, bold=is_chosen), here[1] - 8
+        )
+        if is_chosen or all(box.overlap(other) == 0 for other in taken):
+            taken.append(box)
+            curve.text((box.x0, here[1] - 16), words, 13, bold=is_chosen, halo=2.5)
+
+
+def nice_step(least: float) -> float:
+    """The smallest of 1, 2 or 5 times a power of ten that is not below ``least``.
+
+    >>> nice_step(0.07), nice_step(0.2), nice_step(3)
+    (0.1, 0.2, 5.0)
+    """
+    power = 10.0 ** floor(log10(least))
+    return float(next(round(k * power, 12) for k in (1, 2, 5, 10) if k * power >= least * (1 - 1e-9)))
+
+
+MOST_BESIDE, MOST_ALONE = 12, 18
+EDGE, HEADER, FOOTER, GAP = 32.0, 92.0, 34.0, 12.0
+# Of the page, the share of the plan.
+PLAN = 0.42
+# Sizes of words, heights of a line, of a row of the table and of the name under a part, page units.
+NAME, WORDS, SMALL = 13.0, 12.0, 11.0
+LINE, ROW, CAPTION = 15.0, 17.0, 22.0
+RULE = "#dfe3e8"
+
+
+@frozen
+class Titles:
+    """What stands on every page of a plan."""
+
+    count: int
+    figure: Figure
+    lengths: LengthUnit
+    day: date
+
+
+def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) -> tuple[str, ...]:
+    """Draw the sheets of a plan, as SVG text of every page.
+
+    Parameters
+    ----------
+    figure : of which losses are told.
+    day : the date written on the sheets.
+    unit : of the lengths written.
+    """
+    first = plan.setups[0].holdings[0].member.query.toolkit.carriers[0]
+    titles = Titles(len(plan.setups), figure, LengthUnit.suiting(unit, min(first.pitch)), day)
+    pages: list[Scene] = []
+    before: SetUp | None = None
+    for number, setup in enumerate(plan.setups, 1):
+        pages += setup_pages(setup, before, number, titles)
+        before = setup
+    for place, page in enumerate(pages, 1):
+        draw_foot(page, titles, f"page {place} of {len(pages)}")
+    return tuple(page.svg() for page in pages)
+
+
+def setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Iterator[Scene]:
+    """The pages of a set-up without their feet."""
+    benches = [
+        (one, bench_of(one.fixture, one.member.query.workpiece, one.member.query.toolkit))
+        for one in setup.holdings
+    ]
+    beside, rest = benches[:MOST_BESIDE], benches[MOST_BESIDE:]
+    width, height = LANDSCAPE
+    whole = Box(EDGE, EDGE + HEADER, width - EDGE, height - EDGE - FOOTER)
+    split = whole.x0 + PLAN * whole.width
+    scene = new_page(setup, before, number, titles)
+    draw_pegs_plan(scene, setup, Box(whole.x0, whole.y0, split - 2 * GAP, whole.y1), titles.lengths)
+    draw_parts(scene, beside, Box(split, whole.y0, whole.x1, whole.y1), titles)
+    yield scene
+    for some in (rest[k : k + MOST_ALONE] for k in range(0, len(rest), MOST_ALONE)):
+        scene = new_page(setup, before, number, titles)
+        draw_parts(scene, some, whole, titles)
+        yield scene
+
+
+def new_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Scene:
+    """A page with its heading: which set-up, where its pegs stand, and what is moved for it."""
+    heading = f"Set-up {number} of {titles.count}: {plural(len(setup.holdings), 'part')}"
+    scene = Scene.page(LANDSCAPE, heading)
+    group = scene.group("heading")
+    group.text((EDGE, EDGE + 12), heading, 26, bold=True)
+    lines = [f"Pegs in {', '.join(holes_of(setup))}.", *moves_words(setup, before)]
+    for k, line in enumerate(lines):
+        group.text((EDGE, EDGE + 42 + 20 * k), shortened(line, LINE, LANDSCAPE[0] - 2 * EDGE), LINE)
+    return scene
+
+
+def holes_of(setup: SetUp) -> list[str]:
+    """The names of the holes of a set-up, and of the lines of its clamps."""
+    return [peg.hole for peg in setup.standing.fixture.placed]
+
+
+def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
+    """What is moved for a set-up after another one."""
+    if before is None:
+        return
+    here, there = Counter(holes_of(setup)), Counter(holes_of(before))
+    placed, taken = sorted((here - there).elements()), sorted((there - here).elements())
+    if placed:
+        yield f"After the set-up before: take out {', '.join(taken)}, place {', '.join(placed)}; the rest stays."
+    else:
+        yield "After the set-up before: all pegs stay."
+
+
+def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -> None:
+    """Draw the plan of a set-up with the names of its holes, holding the first part that stands in them."""
+    one = setup.standing
+    workpiece, toolkit = one.member.query.workpiece, one.member.query.toolkit
+    bench = bench_of(one.fixture, workpiece, toolkit)
+    inner = Box(room.x0 + LEFT, room.y0 + TOP, room.x1 - RIGHT, room.y1 - BOTTOM)
+    view = View.fitting(bench.extent, inner)
+    draw_plan(scene, bench, view, workpiece, room, lengths)
+    words = f"The plan shows {one.member.name}."
+    scene.text((room.x0, room.y1 - 4), shortened(words, 12, room.width), 12, fill=GREY)
+
+
+def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box, titles: Titles) -> None:
+    """Draw parts as they lie, all to the same scale, each in a cell with its name, and below them their table."""
+    rows = [table_row(one, titles) for one, _ in benches]
+    notes = [
+        line for note in notes_of([one for one, _ in benches]) for line in wrapped(note, SMALL, room.width)
+    ]
+    high = ROW * (len(rows) + 2) + LINE * len(notes) + GAP
+    draw_table(
+        scene,
+        Box(room.x0, room.y1 - high + GAP / 2, room.x1, room.y1),
+        table_head(benches[0][0], titles),
+        rows,
+        notes,
+    )
+    cells = grid(len(benches), Box(room.x0, room.y0, room.x1, room.y1 - high - FOOTER))
+    rooms = [Box(cell.x0 + 6, cell.y0 + 6, cell.x1 - 6, cell.y1 - CAPTION) for cell in cells]
+    scale = min(
+        View.fitting(bench.extent, inner).scale for (_, bench), inner in zip(benches, rooms, strict=True)
+    )
+    for (one, bench), cell, inner in zip(benches, cells, rooms, strict=True):
+        group = scene.group("part-cell")
+        group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
+        view = View.fitting(bench.extent, inner, scale)
+        draw_bench(group, bench, view, weight=0.55, longest=24.0, axes=False)
+        zero = view(bench.fixture.pose.apply(*one.member.zero.point))
+        if inner.grown(4).contains(Box(*zero, *zero)):
+            draw_zero(group, zero, 4.0)
+        name = shortened(one.member.name, NAME, cell.width - 12, bold=True)
+        group.text((cell.x0 + 6, cell.y1 - CAPTION / 2), name, NAME, bold=True)
+    bottom = room.y1 - high - FOOTER + 20
+    scale_bar(
+        scene, (room.x0, bottom), scale, titles.lengths, more=", all parts to this scale; the disc is X0 Y0"
+    )
+
+
+def grid(count: int, room: Box) -> list[Box]:
+    """Equal cells for so many parts in a room, row by row, as nearly square as there can be."""
+    ways = [(across, -(-count // across)) for across in range(1, count + 1)]
+
+    def size(way: tuple[int, int]) -> float:
+        return min(room.width / way[0], 1.2 * room.height / way[1])
+
+    across, down = max(ways, key=lambda way: (size(way), -way[0]))
+    width, height = (room.width - (across - 1) * GAP) / across, (room.height - (down - 1) * GAP) / down
+    corners = [
+        (room.x0 + (k % across) * (width + GAP), room.y0 + (k // across) * (height + GAP))
+        for k in range(count)
+    ]
+    return [Box(x, y, x + width, y + height) for x, y in corners]
+
+
+def table_head(one: Holding, titles: Titles) -> list[str]:
+    """The headings of the table of parts."""
+    sign, of = titles.lengths.sign, titles.figure.unit
+    settings = settings_of(one.fixture, one.member.query.toolkit)
+    unit = sign if of == "mm" else of
+    lengths = [
+        f"{name} {sign}"
+        for name in (*(f"{one.place} {one.sign}".strip() for one in settings), "X0 at x", "Y0 at y")
+    ]
+    return ["part", *lengths, "turned θ", f"{titles.figure.words} {unit}".strip(), "loss", "fixture"]
+
+
+def table_row(one: Holding, titles: Titles) -> list[str]:
+    """What is set and programmed for a part."""
+    fixture, number = one.fixture, titles.lengths.number
+    x, y = fixture.pose.apply(*one.member.zero.point)
+    return [
+        one.member.name,
+        *(number(setting.length) for setting in settings_of(fixture, one.member.query.toolkit)),
+        number(x),
+        number(y),
+        f"{fixture.pose.theta_deg:.4f}°",
+        number(one.figure) if titles.figure.unit == "mm" else f"{one.figure:.{titles.figure.decimals}f}",
+        loss_text(one.loss),
+        f"{one.number:,}{'′' if one.turned else ''}{'' if one.in_place else '*'}",
+    ]
+
+
+def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
+    """What stands below the table: what signs mean, what is a part's zero, and whose pegs stand in other columns."""
+    zeros = {one.member.zero.words for one in holdings}
+    toolkit = holdings[0].member.query.toolkit
+    first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
+    yield (
+        f"X0 Y0 is {first}, x and y from {toolkit.datum.start}, θ counter-clockwise. Fixture: its number in the part's "
+        "list."
+    )
+    if any(one.turned for one in holdings):
+        swapped = f", which swaps the {toolkit.moving.noun}s" if len(toolkit.plates) > 1 else ""
+        yield f"′: that fixture after half a turn of everything{swapped}."
+    for one in holdings:
+        if not one.in_place:
+            yield f"* {one.member.name}: the same pegs in {', '.join(peg.hole for peg in one.fixture.pegs)}."
+
+
+def draw_table(scene: Scene, room: Box, head: list[str], rows: list[list[str]], notes: list[str]) -> None:
+    """Draw the table of parts, numbers on the right of their columns, and the notes below it."""
+    heads = [in_two(words) for words in head]
+    widths = [
+        max(
+            *(text_width(words, WORDS, bold=True) for words in heads[k]),
+            *(text_width(row[k], WORDS) for row in rows),
+        )
+        + 14
+        for k in range(len(head))
+    ]
+    # What is left goes to the names, and they give way where there is too little.
+    widths[0] = max(room.width - sum(widths[1:]), 60.0)
+    ends = [room.x0 + sum(widths[: k + 1]) for k in range(len(widths))]
+    group = scene.group("table")
+    lines = [[pair[k] for pair in heads] for k in (0, 1)]
+    for place, row in enumerate([*lines, *rows]):
+        y, bold = room.y0 + ROW * (place + 0.5), place < len(lines)
+        group.text((room.x0, y), shortened(row[0], WORDS, widths[0] - 8, bold=True), WORDS, bold=True)
+        for end, word in zip(ends[1:], row[1:], strict=True):
+            group.text((end, y), word, WORDS, "end", bold=bold)
+        if not bold:
+            group.line([(room.x0, y + ROW / 2), (room.x1, y + ROW / 2)], RULE, 0.6)
+    y = room.y0 + ROW * len(lines)
+    group.line([(room.x0, y), (room.x1, y)], GREY, 0.8)
+    y = room.y0 + ROW * (len(lines) + len(rows)) + 4
+    for k, note in enumerate(notes):
+        group.text((room.x0, y + LINE * (k + 0.5)), note, SMALL, fill=GREY)
+
+
+def in_two(words: str) -> tuple[str, str]:
+    """A heading in two lines as short as they can be, the first of them empty where there is one word.
+
+    >>> in_two("part"), in_two("location error mm")
+    (('', 'part'), ('location', 'error mm'))
+    """
+    some = words.split()
+    ways = [(" ".join(some[:k]), " ".join(some[k:])) for k in range(len(some))]
+    return min(ways, key=lambda way: max(map(len, way)))
+
+
+def draw_foot(scene: Scene, titles: Titles, page: str) -> None:
+    """Write date, program and page at the foot."""
+    width, height = LANDSCAPE
+    words = f"{titles.day.isoformat()} · workhold {__version__} · {page}"
+    scene.text((width - EDGE, height - EDGE - 4), words, 11, "end", fill=GREY)

@@ -1,0 +1,371 @@
+"""DXF drawings that are written: a set-up for a CAM system, and the jaw plates to drill.
+
+A set-up shows the part in its pose, pegs, holes and plates on layers of their own. The geometry is exact, in
+millimetres in the vise frame, whose origin is the left jaw's hole L-A1, or hole A1 of a plate. Lines and arcs
+of the part are closed LWPOLYLINEs with bulges; whole circles, pegs and holes are CIRCLEs.
+
+Jaw plates stand side by side, each with its outline, holes and bolts. The first plate's hole A1 is at (0, 0);
+each other stands at the right of the one before it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from io import StringIO
+from math import tan
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ezdxf import options, units  # type: ignore[attr-defined]
+from ezdxf.enums import TextEntityAlignment
+from ezdxf.filemanagement import new
+
+from workhold.files.atomic import write_bytes
+from workhold.fixels.carrier import Carrier, column_letters, peg_outline
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Arc, Point, Segment
+from workhold.model.dowels import JawPlate
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.setup import PartZero, part_zero
+from workhold.model.shown import MOST_HOLES, Shown, shown
+from workhold.model.workpiece import Workpiece
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+    from ezdxf.layouts.layout import Modelspace
+
+__all__ = [
+    "CLEARANCE",
+    "PLATE_LAYERS",
+    "beside",
+    "content_of",
+    "fixed_stamps",
+    "layers_of",
+    "plates_dxf",
+    "setup_dxf",
+    "write_plates_dxf",
+    "write_setup_dxf",
+]
+
+# Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT, PLATE or CLAMP, the pegs
+# have one, PEGS or LOCATORS, and so has what is set, OPENING or CLAMP_SETTING.
+PART, HOLES, OTHERS = {"PART": 7}, {"KEEP_OUT": 30, "HOLES": 8, "HOLES_USED": 1}, {"PART_ZERO": 2, "TEXT": 7}
+PEGS, SETTING = 1, 6
+STILL, SLIDING = 5, 3
+# mm. How far the cutter is to keep off the pegs where nobody says.
+CLEARANCE = 1.0
+VERSION = "R2010"
+# Sizes as shares of the smaller pitch: height of text, and length of the axes at the part's zero.
+TEXT_HEIGHT, AXIS = 0.3, 1.0
+# The head of the arrow behind a clamp: its length and half its width, as shares of the pitch.
+ARROW_HEAD, HALF_HEAD = 0.3, 0.12
+# Radius of a hole whose pegs are points, as a share of the pitch.
+POINT_HOLE = 1 / 7
+
+
+def write_setup_dxf(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    path: str | Path,
+    *,
+    zero: PartZero | None = None,
+    clearance: float = CLEARANCE,
+) -> None:
+    """Writes a set-up as a DXF drawing; the same set-up gives the same bytes.
+
+    Parameters
+    ----------
+    zero : part zero; that of :func:`part_zero` without a wish if None.
+    clearance : how far the cutter is to keep off the pegs' bodies, in mm.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    write_bytes(path, setup_dxf(fixture, workpiece, toolkit, zero, clearance))
+
+
+def setup_dxf(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    zero: PartZero | None = None,
+    clearance: float = CLEARANCE,
+) -> bytes:
+    """The bytes of a set-up's DXF drawing, see :func:`write_setup_dxf`."""
+    with fixed_stamps():
+        document = new(VERSION)
+        document.units = units.MM
+        document.header["$MEASUREMENT"] = 1
+        document.header["$LASTSAVEDBY"] = "workhold"
+        for name, color in layers_of(toolkit).items():
+            document.layers.add(name, color=color)
+        space, seen = document.modelspace(), shown(fixture, toolkit, workpiece)
+        add_carriers(space, seen)
+        add_walls(space, seen)
+        add_part(space, workpiece.placed(fixture.pose))
+        add_pegs(space, seen, clearance)
+        add_clamps(space, seen, clearance)
+        add_travel(space, seen)
+        add_zero(space, fixture.pose, (zero or part_zero(workpiece)).point, AXIS * seen.pitch)
+        return content_of(document)
+
+
+def content_of(document: Drawing) -> bytes:
+    """The bytes of a drawing, whose classes the library would add in an order that differs from process to process."""
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
+    stream = StringIO()
+    document.write(stream)
+    return document.encode(stream.getvalue())
+
+
+def layer_of(carrier: Carrier) -> str:
+    """The layer that a carrier's plate is on.
+
+    >>> from workhold import Vise
+    >>> [layer_of(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
+    ['JAW_LEFT', 'JAW_RIGHT']
+    """
+    if not (carrier.has_lattice and carrier.letter):
+        return carrier.noun.upper()
+    return f"{carrier.noun}_{carrier.name}".upper()
+
+
+def peg_layer(carrier: Carrier) -> str:
+    """The layer that a carrier's pegs are on: of a clamp that of its body."""
+    return f"{carrier.peg}s".upper() if carrier.has_lattice else layer_of(carrier)
+
+
+def setting_layer(mover: Carrier) -> str:
+    """The layer of the length to set on what moves."""
+    return "OPENING" if mover.has_lattice else f"{layer_of(mover)}_SETTING"
+
+
+def layers_of(toolkit: Toolkit) -> dict[str, int]:
+    """The layers of a toolkit's set-ups, and their colours.
+
+    >>> from workhold import Plate
+    >>> [*layers_of(Plate(pitch=20, peg_radius=5))]
+    ['PART', 'LOCATORS', 'CLAMP', 'KEEP_OUT', 'HOLES', 'HOLES_USED', 'CLAMP_SETTING', 'PART_ZERO', 'TEXT', 'PLATE']
+    """
+    moving = [carrier for carrier in toolkit.carriers if carrier.travel is not None]
+    return {
+        **PART,
+        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers if carrier.contact.is_placed},
+        **HOLES,
+        **{setting_layer(carrier): SETTING for carrier in moving},
+        **OTHERS,
+        **{layer_of(carrier): SLIDING if carrier in moving else STILL for carrier in toolkit.carriers},
+    }
+
+
+@contextmanager
+def fixed_stamps() -> Iterator[None]:
+    """Makes ezdxf write no time and no random numbers while the block runs."""
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
+
+
+def add_part(space: Modelspace, part: Workpiece) -> None:
+    """Adds the loops of the part in its pose."""
+    number = 0
+    for loop in part.loops:
+        face = next(face for face in part.faces if number in face.segments)
+        number += len(loop)
+        if isinstance(face.segment, Arc) and face.segment.is_full:
+            space.add_circle(face.segment.center, face.segment.radius, {"layer": "PART"})
+        else:
+            space.add_lwpolyline(loop.tolist(), format="xyb", close=True, dxfattribs={"layer": "PART"})
+
+
+def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
+    """Adds the pegs, as points if they have no size, the names of their holes, and where the cutter is not to go."""
+    for each in seen.carriers:
+        for peg in each.pegs:
+            if each.carrier.peg_radius > 0:
+                outline = peg_outline(
+                    (peg.x, peg.y), each.carrier.peg_radius, each.carrier.flat, peg.flat_deg
+                )
+                add_outline(space, outline, peg_layer(each.carrier))
+            else:
+                space.add_point((peg.x, peg.y), {"layer": peg_layer(each.carrier)})
+            out = each.carrier.body_radius + clearance
+            if out > 0:
+                space.add_circle((peg.x, peg.y), out, {"layer": "KEEP_OUT"})
+            add_text(space, peg.hole, (peg.x, peg.y), seen)
+
+
+def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
+    """Adds the clamps: each tip, its body from the hole, what to keep out of, and an arrow along its push."""
+    for clamp in seen.clamps:
+        layer, radius, tip = (
+            {"layer": layer_of(clamp.carrier)},
+            clamp.carrier.peg_radius,
+            (clamp.tip.x, clamp.tip.y),
+        )
+        if radius > 0:
+            space.add_circle(tip, radius, layer)
+        else:
+            space.add_point(tip, layer)
+        if clamp.hole is not None and radius > 0:
+            add_outline(space, clamp.outline(), layer_of(clamp.carrier))
+        if radius + clearance > 0:
+            add_outline(space, clamp.outline(clearance), "KEEP_OUT")
+        head, half = radius + ARROW_HEAD * clamp.pitch, HALF_HEAD * clamp.pitch
+        for away, aside in ((radius + clamp.pitch, 0.0), (head, half), (head, -half)):
+            space.add_line(clamp.behind(radius), clamp.behind(away, aside), layer)
+        add_text(space, clamp.tip.hole, clamp.back, seen)
+
+
+def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> None:
+    """Adds a closed outline: a circle, or a polyline whose arcs are shorter than whole circles."""
+    first = outline[0]
+    if isinstance(first, Arc) and first.is_full:
+        space.add_circle(first.center, first.radius, {"layer": layer})
+        return
+    bulges = [piece.sign * tan(piece.half_sweep / 2) if isinstance(piece, Arc) else 0.0 for piece in outline]
+    points = [(*piece.start, bulge) for piece, bulge in zip(outline, bulges, strict=True)]
+    space.add_lwpolyline(points, format="xyb", close=True, dxfattribs={"layer": layer})
+
+
+def add_text(space: Modelspace, words: str, at: Point, seen: Shown) -> None:
+    """Adds a line of text about a point."""
+    text = space.add_text(words, height=TEXT_HEIGHT * seen.pitch, dxfattribs={"layer": "TEXT"})
+    text.set_placement(at, align=TextEntityAlignment.MIDDLE_CENTER)
+
+
+def add_carriers(space: Modelspace, seen: Shown) -> None:
+    """Adds the plates with their holes, column letters below them and row numbers beside them."""
+    for each in seen.carriers:
+        carrier, plate = each.carrier, each.plate
+        corners = [(plate.x0, plate.y0), (plate.x1, plate.y0), (plate.x1, plate.y1), (plate.x0, plate.y1)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(carrier)})
+        half_x, half_y = carrier.pitch[0] / 2, carrier.pitch[1] / 2
+        holes = each.holes(MOST_HOLES)
+        for hole in holes:
+            radius = carrier.peg_radius or POINT_HOLE * min(carrier.pitch)
+            space.add_circle(hole.center, radius, {"layer": "HOLES_USED" if hole.used else "HOLES"})
+        beside = plate.x0 - half_x if each.names_at == "left" else plate.x1 + half_x
+        below = plate.y1 + half_y if "bottom" in each.facing else plate.y0 - half_y
+        columns, rows = {hole.column for hole in holes}, {hole.row for hole in holes}
+        for column, x in each.named_columns:
+            if column in columns:
+                add_text(space, column_letters(column), (x, below), seen)
+        for row, y in each.named_rows:
+            if row in rows:
+                add_text(space, str(row + 1), (beside, y), seen)
+
+
+def add_walls(space: Modelspace, seen: Shown) -> None:
+    """Add the walls that the part lies on as bars."""
+    for wall in seen.walls:
+        bar = wall.bar
+        corners = [(bar.x0, bar.y0), (bar.x1, bar.y0), (bar.x1, bar.y1), (bar.x0, bar.y1)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(wall.carrier)})
+
+
+def add_travel(space: Modelspace, seen: Shown) -> None:
+    """Adds the axes that each length to set is measured between, and the length itself beyond the plates, of two along the
+    same way the second farther out."""
+    for number, measured in enumerate(seen.measured):
+        setting, layer = measured.setting, {"layer": setting_layer(measured.setting.carrier)}
+        farther = 1 + sum(one.is_upright == measured.is_upright for one in seen.measured[:number])
+        (x0, y0), (x1, y1) = (high for _, high in measured.axes)
+        pitch_x, pitch_y = setting.carrier.pitch
+        if measured.is_upright:
+            out = max(x0, x1) + farther * pitch_x
+            start, end, name_at = (out, y0), (out, y1), (out + pitch_x / 2, (y0 + y1) / 2)
+        else:
+            out = max(y0, y1) + farther * pitch_y
+            start, end, name_at = (x0, out), (x1, out), ((x0 + x1) / 2, out + pitch_y / 2)
+        for (low, _), high in zip(measured.axes, (start, end), strict=True):
+            space.add_line(low, high, layer)
+        space.add_line(start, end, layer)
+        add_text(space, f"{setting.sign} = {setting.length:.6g} mm", name_at, seen)
+
+
+def add_zero(space: Modelspace, pose: Pose, zero: Point, length: float) -> None:
+    """Adds the part's zero point with its x axis, of the length given, and a y axis half as long."""
+    layer, (x, y) = {"layer": "PART_ZERO"}, zero
+    space.add_point(pose.apply(x, y), layer)
+    for end in (pose.apply(x + length, y), pose.apply(x, y + length / 2)):
+        space.add_line(pose.apply(x, y), end, layer)
+
+
+PLATE_LAYERS = {"PLATE": 7, "DOWEL_HOLES": 1, "BOLT_HOLES": 5, "TEXT": 8}
+# Between two plates, in mm.
+GAP = 20.0
+# Heights of text: of the names of holes as a share of the holes, and of the titles, in mm.
+NAME_HEIGHT, TITLE_HEIGHT = 0.3, 5.0
+
+
+def beside(plates: Sequence[JawPlate]) -> list[float]:
+    """How far to the right each plate's hole A1 stands in a drawing of all of them, in mm."""
+    places, right = [], 0.0
+    for number, plate in enumerate(plates):
+        places.append(right + GAP - plate.outline.x0 if number else 0.0)
+        right = places[-1] + plate.outline.x1
+    return places
+
+
+def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
+    """The bytes of the drawing; the same plates give the same bytes."""
+    with fixed_stamps():
+        document = new(VERSION)
+        document.units = units.MM
+        document.header["$MEASUREMENT"] = 1
+        document.header["$LASTSAVEDBY"] = "workhold"
+        for name, color in PLATE_LAYERS.items():
+            document.layers.add(name, color=color)
+        space = document.modelspace()
+
+        def write(words: str, height: float, at: Point, align: TextEntityAlignment) -> None:
+            space.add_text(words, height=height, dxfattribs={"layer": "TEXT"}).set_placement(at, align=align)
+
+        for plate, right in zip(plates, beside(plates), strict=True):
+            box = plate.outline
+            corners = [(box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1)]
+            space.add_lwpolyline(
+                [(x + right, y) for x, y in corners], close=True, dxfattribs={"layer": "PLATE"}
+            )
+            for name, (x, y) in plate.holes:
+                space.add_circle((x + right, y), plate.hole_diameter / 2, {"layer": "DOWEL_HOLES"})
+                write(
+                    name, NAME_HEIGHT * plate.hole_diameter, (x + right, y), TextEntityAlignment.MIDDLE_CENTER
+                )
+            for x, y in plate.bolts.places if plate.bolts else ():
+                space.add_circle(
+                    (x + right, y), plate.bolts.diameter / 2 if plate.bolts else 0.0, {"layer": "BOLT_HOLES"}
+                )
+            bolts = (
+                ""
+                if plate.bolts is None
+                else f", {len(plate.bolts.places)} bolt holes %%c{plate.bolts.diameter:.6g} mm"
+            )
+            words = f"{plate.title}: {len(plate.holes)} dowel holes %%c{plate.hole_diameter:.6g} mm{bolts}"
+            write(
+                words,
+                TITLE_HEIGHT / 2,
+                (box.x0 + right, box.y1 + TITLE_HEIGHT),
+                TextEntityAlignment.BOTTOM_LEFT,
+            )
+        return content_of(document)
+
+
+def write_plates_dxf(plates: Sequence[JawPlate], path: str | Path) -> None:
+    """Writes jaw plates as a DXF drawing.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    write_bytes(path, plates_dxf(plates))

@@ -1,0 +1,263 @@
+"""The shapes of files that users write, toolkits, workpieces and loads, as forms of pydantic.
+
+They are a module of their own because pydantic takes long to import. What a loads file means is read by
+``files.loads_file``; its form serves its JSON Schema. Forms of toolkits are made from the tables of
+``fixels.fields``, one for each table, and told apart by the toolkit's kind.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Mapping
+from difflib import get_close_matches
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    FiniteFloat,
+    Tag,
+    ValidationError,
+    create_model,
+)
+
+from workhold.errors import InputError
+from workhold.fixels.fields import OPTIONS
+from workhold.fixels.kinds import TABLES, USUAL, kind_of, table_of
+from workhold.fixels.table import Form, ToolkitField
+
+__all__ = ["TAGS", "LoadsFile", "checked_toolkit", "checked_workpiece", "forms_by_noun", "one_of", "optional"]
+
+BY_NOUN = {table.noun: table for table in TABLES.values()}
+# What tells the forms apart in a place of pydantic's; they are no keys of a file.
+TAGS = tuple(f"<{noun}>" for noun in BY_NOUN)
+
+
+def forms_by_noun(
+    base: type[BaseModel],
+    name: str,
+    entry: Callable[[ToolkitField], Any],
+    kind: Callable[[tuple[str, ...]], Any] | None = None,
+    summary: str = "{}.",
+) -> Mapping[str, Any]:
+    """Make a form for each table, by the table's noun.
+
+    Parameters
+    ----------
+    base : what all of them have in common.
+    name : of the forms; "{}" in it stands for the table's noun.
+    entry : type and default of a field, as pydantic's ``create_model`` takes them.
+    kind : type and default of the key ``kind`` for the kinds of a table; None where no form has one of its own.
+    summary : of the forms, in which "{}" stands for what the table describes.
+    """
+    forms: dict[str, Any] = {}
+    for noun, table in BY_NOUN.items():
+        kinds = tuple(one for one, other in TABLES.items() if other is table)
+        fields = {} if kind is None else {"kind": kind(kinds)}
+        forms[noun] = create_model(
+            name.format(re.sub(r"\W", "", noun.title())),
+            __base__=base,
+            __module__=base.__module__,
+            __doc__=summary.format(table.summary),
+            **fields,
+            **{row.name: entry(row) for row in table.fields},
+        )
+        # Another process finds a form that it is handed by module and name.
+        setattr(sys.modules[base.__module__], forms[noun].__name__, forms[noun])
+    return forms
+
+
+def optional(kind: Any, row: ToolkitField) -> tuple[Any, Any]:
+    """Type and default of a field of which None means that it is left out, unless it has another default."""
+    if row.is_required:
+        return kind, ...
+    default = list(row.default) if isinstance(row.default, tuple) else row.default
+    return (kind | None if default is None else kind), default
+
+
+def one_of(forms: Mapping[str, Any]) -> Any:
+    """The type of a value that has one of the forms, by its kind."""
+    several = [Annotated[form, Tag(f"<{noun}>")] for noun, form in forms.items()]
+    return Annotated[reduce(or_, several), Discriminator(tag_of)]
+
+
+def tag_of(value: Any) -> str:
+    """Which form a toolkit's keys have."""
+    return (
+        f"<{table_of(value.get('kind') if isinstance(value, dict) else getattr(value, 'kind', None)).noun}>"
+    )
+
+
+TwoNumbers = Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
+Ways = Annotated[list[str], Field(min_length=2, max_length=2)]
+# What a file gives for each form of field.
+TYPES: Mapping[Form, Any] = {
+    "count": int,
+    "length": FiniteFloat,
+    "pitch": FiniteFloat | TwoNumbers,
+    "span": TwoNumbers,
+    "flat": FiniteFloat | TwoNumbers,
+    "holes": list[str],
+    "directions": list[str] | list[Ways],
+}
+
+
+class ToolkitForm(BaseModel):
+    """What the file of any toolkit may say; what the numbers mean is checked by the toolkit and the dowel."""
+
+    model_config = ConfigDict(strict=True, extra="forbid")
+
+    unit: str
+    kind: str | None = None
+    title: str | None = None
+    source: str | None = None
+    assumed: list[str] | None = None
+    dowel: str | None = None
+    pin_diameter: TwoNumbers | None = None
+    hole_diameter: TwoNumbers | None = None
+    hole_position: FiniteFloat | None = None
+    peg_tolerance: FiniteFloat | None = None
+    face_tolerance: FiniteFloat | None = None
+
+
+def entry_of(row: ToolkitField) -> tuple[Any, Any]:
+    """Type and default of a field in a file, in which what is left out keeps its default."""
+    return (TYPES[row.form], ...) if row.is_required else (TYPES[row.form] | None, None)
+
+
+# By the noun of their tables.
+FORMS = forms_by_noun(ToolkitForm, "{}Form", entry_of, summary="{}, as its file describes it.")
+
+WANTED = {
+    "unit": 'write unit = "mm" or unit = "inch"',
+    "assumed": 'write a list of the entries that no source gives, such as ["travel"]',
+    "pin_diameter": "write the smallest and the largest diameter, such as [5.982, 6.0]",
+    "hole_diameter": "write the smallest and the largest diameter, such as [6.0, 6.012]",
+} | {row.name: row.entry for row in OPTIONS if row.entry}
+
+
+def checked_toolkit(content: Mapping[str, Any]) -> dict[str, Any]:
+    """The entries of a toolkit's file that are given, each of the type it should have.
+
+    Raises
+    ------
+    InputError
+        Naming the first entry that is not of this shape.
+    """
+    kind = content.get("kind", USUAL)
+    noun = table_of(kind_of(kind)[0] if isinstance(kind, str) else None).noun
+    try:
+        given: dict[str, Any] = FORMS[noun].model_validate(content).model_dump(exclude_none=True)
+    except ValidationError as error:
+        raise InputError(toolkit_fault(error, FORMS[noun], noun)) from error
+    return given
+
+
+def toolkit_fault(error: ValidationError, form: type[ToolkitForm], noun: str) -> str:
+    """The first thing wrong with the shape, as one sentence."""
+    first = error.errors(include_url=False, include_context=False)[0]
+    name, kind = str(first["loc"][0]), first["type"]
+    if kind == "extra_forbidden":
+        known = get_close_matches(name, form.model_fields, n=1)
+        # The fields of the toolkit stand right after what it is.
+        first_ones = [
+            "unit",
+            "kind",
+            *(field for field in form.model_fields if field not in ToolkitForm.model_fields),
+        ]
+        entries = dict.fromkeys([*first_ones, *form.model_fields])
+        meant = f"did you mean {known[0]}?" if known else f"the entries are {', '.join(entries)}."
+        return f'"{name[:40]}" is no entry of a {noun}: {meant}'
+    if kind == "missing":
+        return f"{name} is missing: {WANTED[name]}."
+    field = form.model_fields[name].annotation
+    usual = "write text in quotes" if field == str | None else "write a finite number"
+    if field == int | None:
+        usual = "write a whole number"
+    return f"{name} is not what it should be: {WANTED.get(name, usual)}."
+
+
+COLUMNS = ("x", "y", "bulge")
+
+
+class WorkpieceForm(BaseModel):
+    """The shape of the file; what the loops mean is checked by the workpiece."""
+
+    model_config = ConfigDict(strict=True)
+
+    name: str | None = None
+    units: str
+    departure: FiniteFloat | None = Field(default=None, ge=0)
+    loops: list[list[Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]]] = Field(min_length=1)
+
+
+def checked_workpiece(content: dict[str, Any]) -> dict[str, Any]:
+    """Name (None when there is none), units and loops of a workpiece, each of the type it should have.
+
+    Raises
+    ------
+    InputError
+        Naming the place of the first thing that is not of this shape.
+    """
+    try:
+        return WorkpieceForm.model_validate(content).model_dump()
+    except ValidationError as error:
+        raise InputError(workpiece_fault(error)) from error
+
+
+def workpiece_fault(error: ValidationError) -> str:
+    """The first thing wrong with the shape, as one sentence."""
+    first = error.errors(include_url=False, include_context=False)[0]
+    place, kind = list(first["loc"]), first["type"]
+    if place == ["units"]:
+        return 'The workpiece gives no units: write "units": "mm" or "units": "inch".'
+    if place == ["loops"]:
+        return 'The workpiece has no loops: write "loops": [[[x, y, bulge], ...], ...], the outer loop first.'
+    if place == ["departure"]:
+        return 'The workpiece\'s "departure" must be a length, 0 or more.'
+    if place == ["name"]:
+        return 'The workpiece\'s "name" must be text.'
+    # Numbers in messages are those of the file: loops and vertices count from 0.
+    words = f"Loop {place[1]}" if len(place) > 1 else "The workpiece"
+    if len(place) > 2:
+        words += f", vertex {place[2]}"
+    if kind in ("too_short", "too_long") or len(place) == 3:
+        return f"{words} must be three numbers [x, y, bulge]."
+    if len(place) > 3:
+        return f"{words} has a {COLUMNS[int(place[3])]} that is not a finite number: correct it."
+    return f"{words} must be a list of vertices [x, y, bulge]."
+
+
+Point = Annotated[list[float | str], Field(min_length=2, max_length=2)] | str
+Angles = Annotated[list[float | str], Field(min_length=2, max_length=2)]
+
+
+class LoadTable(BaseModel):
+    """One load: a force at a point or along a path, a moment, or both."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str = ""
+    force: float | str = Field(default=0.0, description="in N, or with a unit: 0.2 kN, 45 lbf")
+    at: Point | None = Field(default=None, description="where the force acts; or path")
+    path: Annotated[list[Point], Field(min_length=2)] | str | None = Field(
+        default=None, description="the points it runs along"
+    )
+    direction: float | str | Angles = Field(
+        default="any", description="degrees in the part's frame: 30, 30..60, [30, 60] or any"
+    )
+    moment: float | str = Field(default=0.0, description="in N mm, or with a unit: 5 N.m, 40 lbf.in")
+
+
+class LoadsFile(BaseModel):
+    """What a cutter, a drill or a hand does to the part."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    unit: str | None = Field(default=None, description="of at and path: mm, cm, m or inch")
+    load: list[LoadTable] = Field(min_length=1)

@@ -1,0 +1,178 @@
+"""Parts given as data instead of as drawings: in JSON, or as other libraries hold them in memory.
+
+JSON is ``{"name": ..., "units": "mm" | "inch", "loops": [[[x, y, bulge], ...], ...]}``. A result file is read
+too: its ``workpiece`` has the same form.
+
+Objects of shapely, ezdxf, build123d and CadQuery are known by what they can do; none of these is imported to
+find out. A shapely geometry has ``__geo_interface__`` and ``geom_type``, a document of ezdxf has
+``modelspace`` and ``header``. build123d and CadQuery wrap shapes of Open CASCADE as ``wrapped``, or hold what
+does: ``part`` or ``sketch`` of a builder, ``vals()`` of a work plane, ``_faces`` of CadQuery's sketch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import Chain, Drawing
+from workhold.files.questions import DRAWING_UNIT, refuse_axis, refuse_layers
+from workhold.files.text import json_value
+from workhold.units import unit_named
+
+__all__ = ["JsonWorkpiece", "ObjectPart", "drawing_of_object", "read_json"]
+
+
+@frozen
+class JsonWorkpiece:
+    """Name (None when the file gives none), loops as rows x, y (mm) and bulge, how far these depart from a drawing in mm."""
+
+    name: str | None
+    loops: list[list[tuple[float, float, float]]]
+    departure: float = 0.0
+
+
+def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
+    """Read a workpiece, or the workpiece of a result file.
+
+    Parameters
+    ----------
+    text : the JSON.
+    own : whether it is a file of workhold's own, whose shape needs no check.
+
+    Raises
+    ------
+    InputError
+        For text that is not JSON, or not of this shape, naming the place.
+    """
+    content = json_value(text)
+    if isinstance(content, dict) and str(content.get("format", "")).startswith("workhold-result"):
+        content = content.get("workpiece")
+    if not isinstance(content, dict):
+        raise InputError(
+            'The file holds no workpiece: it must be {"name": ..., "units": "mm", "loops": [...]}.'
+        )
+    if not own:
+        from workhold.files.input_forms import checked_workpiece
+
+        content = checked_workpiece(content)
+    units: str = content["units"]
+    if units not in ("mm", "inch"):
+        raise InputError(f'The units "{units[:40]}" are not known: write "mm" or "inch".')
+    scale = unit_named(units).millimetres
+    loops = [[(x * scale, y * scale, bulge) for x, y, bulge in loop] for loop in content["loops"]]
+    return JsonWorkpiece(content.get("name"), loops, scale * (content.get("departure") or 0.0))
+
+
+WANTED = (
+    "give the path of a file, a built-in name, or a polygon of shapely, a document of ezdxf, or a sketch, face or solid of "
+    "build123d or CadQuery"
+)
+# What an object of a library that wraps Open CASCADE may hold its shape under, and what a builder may.
+HELD = ("_obj", "part", "sketch", "_faces")
+
+
+@frozen
+class ObjectPart:
+    """What an object holds.
+
+    Parameters
+    ----------
+    drawing : in mm.
+    name : what to call the part where nobody says.
+    part_number : of the part to take of the drawing; None where it is taken already, or the largest is meant.
+    layered : whether its layers can be chosen.
+    """
+
+    drawing: Drawing
+    name: str
+    part_number: int | None
+    layered: bool = False
+
+
+def drawing_of_object(
+    part: Any,
+    *,
+    unit: str | None,
+    usual_unit: str | None,
+    layers: Sequence[str] | None,
+    part_number: int | None,
+    fit: float | None,
+    axis: str | None,
+    section: float | None,
+) -> ObjectPart:
+    """What an object of another library holds.
+
+    The arguments are those of :func:`workhold.load`. A geometry of shapely has no unit and is in mm unless one is given.
+
+    Raises
+    ------
+    InputError
+        For an object that is none of these, and choices that do not apply to it.
+    """
+    if hasattr(part, "__geo_interface__") and hasattr(part, "geom_type"):
+        refuse_axis(axis, section)
+        refuse_layers(layers)
+        scale = unit_named(unit or usual_unit or "mm").millimetres
+        return ObjectPart(Drawing(tuple(geometry_chains(part, scale))), "polygon", part_number)
+    if hasattr(part, "modelspace") and hasattr(part, "header"):
+        from workhold.files.dxf.reader import read_document
+
+        refuse_axis(axis, section)
+        code = int(part.header.get("$INSUNITS", 0))
+        drawing = read_document(part, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
+        return ObjectPart(
+            drawing, Path(getattr(part, "filename", None) or "drawing").stem, part_number, layered=True
+        )
+    shapes = list(wrapped_shapes(part))
+    if not shapes:
+        raise InputError(f"a part cannot be read from it: {WANTED}.")
+    from workhold.files.step.reader import read_shapes
+
+    refuse_layers(layers)
+    if unit is not None:
+        raise InputError(f"shapes of Open CASCADE are in mm: leave {DRAWING_UNIT} out.")
+    drawing, rest = read_shapes(shapes, axis=axis, section_height=section, part_number=part_number, fit=fit)
+    return ObjectPart(drawing, str(getattr(part, "label", "") or "shape"), rest)
+
+
+def geometry_chains(geometry: Any, scale: float) -> Iterator[Chain]:
+    """The rings and lines of a geometry of shapely as chains in mm.
+
+    Raises
+    ------
+    InputError
+        For points, which have no outline.
+    """
+    kind = geometry.geom_type
+    if hasattr(geometry, "geoms"):
+        for one in geometry.geoms:
+            yield from geometry_chains(one, scale)
+    elif kind == "Polygon":
+        for ring in (geometry.exterior, *geometry.interiors):
+            yield from geometry_chains(ring, scale)
+    elif kind in ("LinearRing", "LineString"):
+        corners = [(scale * float(x), scale * float(y)) for x, y, *_ in geometry.coords]
+        if len(corners) > 1:
+            labels = tuple(f"corner {k} of a {kind}" for k in range(len(corners) - 1))
+            yield Chain(tuple(corners), (0.0,) * (len(corners) - 1), labels)
+    else:
+        raise InputError(f"a {kind} has no outline: give a polygon.")
+
+
+def wrapped_shapes(part: Any) -> Iterator[Any]:
+    """The shapes of Open CASCADE that an object wraps, or that what it holds wraps; none of other objects."""
+    if type(part).__module__.partition(".")[0] == "OCP":
+        yield part
+    elif getattr(part, "wrapped", None) is not None:
+        yield from wrapped_shapes(part.wrapped)
+    elif callable(getattr(part, "vals", None)) and not hasattr(part, "_faces"):
+        for one in part.vals():
+            yield from wrapped_shapes(one)
+    else:
+        held = next((getattr(part, name) for name in HELD if getattr(part, name, None) is not None), None)
+        if held is not None and held is not part:
+            yield from wrapped_shapes(held)

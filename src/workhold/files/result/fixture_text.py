@@ -1,0 +1,390 @@
+"""The fixtures of a result as text: lines of JSON (MODEL, "Result file"), and CSV for a spreadsheet.
+
+A line of JSON is a template that follows from the toolkit's carriers. It gives of each contact the place
+where it stands, as its carrier is written, and the force on it, per unit of the force of each thing that
+moves. The templates are filled with columns of numbers, because a result may have a million fixtures.
+
+The CSV table has one row per fixture and a line of column names. The pins of one fixture are a table of their
+own: which hole, which dowel, and what each touches.
+
+Glossary
+--------
+block : the fixtures that are turned into Python objects at the same time.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from math import isnan, nan
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.files.atomic import text_file
+from workhold.fixels.carrier import Carrier, column_letters
+from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.clamps import ratios
+from workhold.model.fixture import Fixture
+from workhold.model.quality import FIGURES, SEATING_FIGURES, Figure
+from workhold.model.result import FixtureTable, Result, flat_angles, peg_places
+from workhold.model.seating import DECIMALS
+from workhold.model.workpiece import Workpiece
+from workhold.plain import plain
+from workhold.units import Unit
+
+__all__ = [
+    "ANGLE_STEPS",
+    "HEADER",
+    "LENGTH_STEPS",
+    "as_told",
+    "column_names",
+    "fixture_lines",
+    "fixture_rows",
+    "known_figures",
+    "pin_list",
+    "result_csv_text",
+    "rounded",
+    "rounded_degrees",
+    "seating_values",
+    "significant",
+    "write_result_csv",
+    "write_result_csv_to",
+]
+
+LENGTH_STEPS = 1e9
+ANGLE_STEPS = 1e10
+# Digits of forces and figures of quality; what lies nearer than this to the middle between two such numbers is rounded
+# one by one, because a product in doubles may fall on its other side.
+DIGITS, DOUBTFUL = 12, 1e-3
+
+
+def known_figures(table: FixtureTable) -> list[Figure]:
+    """The figures of quality that all fixtures of a table have."""
+    return [figure for number, figure in enumerate(FIGURES) if np.isfinite(table.quality[:, number]).all()]
+
+
+def rounded(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:
+    """The nearest floats to the multiples of 1/steps nearest to the values, without negative zeros."""
+    return np.rint(values.astype(np.float64) * steps) / steps + 0.0
+
+
+def rounded_degrees(degrees: Any) -> NDArray[np.float64]:
+    """Angles in degrees, a number or an array, as they are written, in [0, 360)."""
+    out = rounded(np.asarray(degrees) % 360.0, ANGLE_STEPS)
+    return np.where(out >= 360.0, 0.0, out)
+
+
+def as_told(table: FixtureTable) -> tuple[NDArray[np.float64], FixtureTable]:
+    """Orientations (N,) in degrees as they are written, and the table with poses and travels as they are then read: where
+    pegs stand follows from these, so that it is the same for the reader."""
+    theta = rounded_degrees(np.degrees(table.theta))
+    position, travel = (rounded(values, LENGTH_STEPS) for values in (table.position, table.jaw_separation))
+    return theta, evolve(table, theta=np.radians(theta), position=position, jaw_separation=travel)
+
+
+def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The floats nearest to values as they are with twelve significant digits; NaN for what is not finite, which JSON does
+    not know either.
+
+    A whole number below 1e12 times or over an exact power of ten is rounded once, as reading the digits is.
+    """
+    values = np.where(np.isfinite(values), values, np.nan)
+    size = np.abs(values)
+    known = size > 0.0
+    exponent = np.floor(np.log10(np.where(known, size, 1.0))).astype(np.int64)
+    shift = DIGITS - 1 - exponent
+    exact = known & (np.abs(shift) <= 22)
+    power = 10.0 ** np.where(exact, np.abs(shift), 0)
+    scaled = np.where(shift >= 0, values * power, values / power)
+    digits = np.rint(scaled)
+    out = np.where(exact, np.where(shift >= 0, digits / power, digits * power), values)
+    doubtful = known & ~(exact & (np.abs(scaled - np.floor(scaled) - 0.5) > DOUBTFUL))
+    out[doubtful] = [float(f"{value:.{DIGITS}g}") for value in values[doubtful].tolist()]
+    return np.asarray(out)
+
+
+BLOCK = 4096
+
+# The form of a force and of a figure, by how many things move. Of two the forces are those at either one's force, rounded
+# before their ratio is told, so that reading and writing changes nothing.
+FORCE: Mapping[int, str] = {1: "%.12g", 2: "[%r, %r]"}
+FIGURE: Mapping[int, str] = {1: "%.12g", 2: "%r"}
+# What is told of the directions in which clamps push, by how many there are, before the pegs.
+PUSHED: Mapping[int, str] = {0: "", 1: '"direction": {0}, ', 2: '"directions": [{0}, {1}], '}
+RATIO: Mapping[int, str] = {0: "", 1: "", 2: '"ratio": [%r, %s], '}
+# What is told of a travel behind the pose, by how many clamps there are; that of a clamp follows from its place.
+TRAVELLED: Mapping[int, str] = {0: '"jaw_separation": %r, ', 1: "", 2: '"pairs": %d, '}
+POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, '
+# A number that is not written.
+LEFT_OUT = "%.0s"
+
+
+def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure]) -> str:
+    """The line of a fixture with its numbers left open, in the order of :meth:`Told.line_columns`."""
+    tips, travels = toolkit.tips, toolkit.travels
+    carriers = [toolkit.carriers[number] for number in arrangement.carriers]
+    pegs = ", ".join(f"{{{peg_template(one, travels)}}}" for one in carriers if one.contact.is_placed)
+    quality = ", ".join(f'"{figure.key}": {FIGURE[travels]}' for figure in figures)
+    pushed = PUSHED[tips].format(*map(json.dumps, arrangement.directions))
+    ends = f'"from": [%r, %r], "to": [%r, %r], "segments": [%d, %d], "forces": [{FORCE[travels]}, {FORCE[travels]}]'
+    wall = f'"wall": {{{ends}}}, ' * len(toolkit.ends_on_walls)
+    flats = ', "flats": %s' * (FLAT_PIN in toolkit.contacts)
+    return (
+        f'{{"type": "{arrangement.name}", {pushed}{wall}{RATIO[tips]}"pegs": [{pegs}], {POSE}{TRAVELLED[tips]}'
+        f'"quality": {{{quality}}}{flats}}}'
+    )
+
+
+def peg_template(carrier: Carrier, travels: int) -> str:
+    """What is written of a peg of a carrier, with its numbers left open; those of the place of a clamp come twice."""
+    key, name = carrier.written_as
+    contact = f'"x": %r, "y": %r, "segment": %d, "force": {FORCE[travels]}'
+    if carrier.contact is not CLAMP_TIP:
+        return f'"{key}": "{name}", "column": %d, "row": %d, {contact}'
+    direction = f'"direction": "{carrier.direction}", ' * (travels > 1)
+    hole = "[%d, %d]" if carrier.measure == "stroke" else f"null{LEFT_OUT}{LEFT_OUT}"
+    line = f'{LEFT_OUT}"row": %d' if carrier.line == "row" else f'"column": %d{LEFT_OUT}'
+    return f'"{key}": "{name}", {direction}"hole": {hole}, {line}, {contact}'
+
+
+def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
+    """The lines of a list of fixtures, block by block."""
+    figures = known_figures(table)
+    templates = [fixture_template(one, toolkit, figures) for one in toolkit.arrangements]
+    for told in blocks(table, toolkit, workpiece):
+        rows = zip(*told.line_columns(), strict=True)
+        yield [templates[k] % row for k, row in zip(told.table.arrangement.tolist(), rows, strict=True)]
+
+
+def fixture_rows(
+    table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
+) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
+    """Blocks of fixtures as plain numbers, rounded as they are written.
+
+    Yields
+    ------
+    The indices of the arrangements, and for every fixture a tuple of numbers: for each peg column, row, x, y, face, force
+    (of two clamps at their working ratio); then theta in degrees, x and y of the pose, jaw separation or the travel of each
+    clamp; and after them the figures of :func:`known_figures`. Where pegs have flats, last a list: which way the flat of
+    each looks that stands in a hole.
+    """
+    for told in blocks(table, toolkit, workpiece):
+        yield told.table.arrangement.tolist(), zip(*told.row_columns(), strict=True)
+
+
+def blocks(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[Told]:
+    """The fixtures of a table, rounded as they are written, block by block."""
+    known = [FIGURES.index(figure) for figure in known_figures(table)]
+    for start in range(0, len(table), BLOCK):
+        block = table.take(slice(start, start + BLOCK))
+        theta, told = as_told(block)
+        x, y = (rounded(places, LENGTH_STEPS) for places in peg_places(told, toolkit, workpiece))
+        yield Told(told, toolkit, workpiece, theta, x, y, known)
+
+
+@frozen(eq=False)
+class Told:
+    """A block of N fixtures with their places as they are written.
+
+    Parameters
+    ----------
+    table : of them, their poses and travels rounded.
+    theta : (N,) orientations in degrees.
+    x, y : (N, P) places of the contacts in mm.
+    known : the numbers of the figures that are written.
+    """
+
+    table: FixtureTable
+    toolkit: Toolkit
+    workpiece: Workpiece
+    theta: NDArray[np.float64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    known: Sequence[int]
+
+    @property
+    def contacts(self) -> range:
+        """The numbers of the contacts."""
+        return range(self.toolkit.peg_count)
+
+    @property
+    def placed(self) -> list[int]:
+        """The numbers of the contacts that are no ends of walls."""
+        on_walls = [k for ends in self.toolkit.ends_on_walls for k in self.contacts[ends]]
+        return [k for k in self.contacts if k not in on_walls]
+
+    @property
+    def pose(self) -> list[list[Any]]:
+        """The columns of the poses."""
+        return [array.tolist() for array in (self.theta, *self.table.position.T)]
+
+    @property
+    def flats(self) -> list[list[list[float | None]]]:
+        """A column of the flats' angles in degrees, of all pegs in places of their own, where there are any."""
+        if FLAT_PIN not in self.toolkit.contacts:
+            return []
+        angles, placed = flat_angles(self.table, self.toolkit, self.workpiece), self.placed
+        return [[[row[k] for k in placed] for row in angles]]
+
+    def row_columns(self) -> list[list[Any]]:
+        """The columns of :func:`fixture_rows`."""
+        table, columns = self.table, list[list[Any]]()
+        for k in self.contacts:
+            numbers = (table.column, table.row, self.x, self.y, table.face, table.working_force)
+            columns += [array[:, k].tolist() for array in numbers]
+        figures = [table.quality[:, number] for number in self.known]
+        moved = [array.tolist() for array in (*np.atleast_2d(table.jaw_separation.T), *figures)]
+        return [*columns, *self.pose, *moved, *self.flats]
+
+    def line_columns(self) -> list[list[Any]]:
+        """The columns of numbers in the order in which a line has them."""
+        table, toolkit, tips = self.table, self.toolkit, self.toolkit.tips
+        force, quality, ratio = table.force[:, :, None], table.quality, list[list[Any]]()
+        if toolkit.travels > 1:
+            force, quality = significant(table.force) + 0.0, significant(quality) + 0.0
+            low, high = (significant(ends).tolist() for ends in ratios(force))
+            ratio = [low, ["null" if isnan(end) else repr(end) for end in high]]
+        walls, pegs = list[NDArray[Any]](), list[NDArray[Any]]()
+        for ends in toolkit.ends_on_walls:
+            several = self.contacts[ends]
+            walls += [array[:, k] for k in several for array in (self.x, self.y)]
+            walls += [table.face[:, k] for k in several]
+            walls += [part for k in several for part in force[:, k].T]
+        for k in self.placed:
+            times = 2 if k >= len(self.contacts) - tips else 1
+            pegs += [
+                *[table.column[:, k], table.row[:, k]] * times,
+                self.x[:, k],
+                self.y[:, k],
+                table.face[:, k],
+            ]
+            pegs += [*force[:, k].T]
+        travelled: dict[int, list[NDArray[Any]]] = {0: [table.jaw_separation], 1: [], 2: [table.pairs]}
+        behind = [*travelled[tips], *(quality[:, number] for number in self.known)]
+        before, middle, after = ([array.tolist() for array in several] for several in (walls, pegs, behind))
+        flats = [[json.dumps(angles) for angles in column] for column in self.flats]
+        return [*before, *ratio, *middle, *self.pose, *after, *flats]
+
+
+PEG_COLUMNS = ("hole", "jaw", "column", "row", "x", "y", "face", "force")
+POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y")
+# How far what moves has travelled, of a fixture with one thing that moves and with two.
+TRAVEL_COLUMNS = {1: ("jaw_separation",), 2: ("travel_1", "travel_2")}
+
+
+def write_result_csv(result: Result, path: str | Path) -> None:
+    """Write the fixtures of a result as comma-separated values, numbered by rank from 1.
+
+    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the pictures.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be written.
+    """
+    with text_file(path) as stream:
+        write_result_csv_to(result, stream)
+
+
+def write_result_csv_to(result: Result, stream: IO[str]) -> None:
+    """Write the comma-separated values to an open text stream."""
+    for text in result_csv_text(result):
+        stream.write(text)
+
+
+def column_names(result: Result) -> list[str]:
+    """The names of the columns."""
+    toolkit = result.toolkit
+    pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
+    moved = TRAVEL_COLUMNS[toolkit.travels]
+    placed = sum(toolkit.carriers[k].contact.is_placed for k in toolkit.arrangements[0].carriers)
+    flats = [f"flat{number}_deg" for number in range(1, 1 + placed * (FLAT_PIN in toolkit.contacts))]
+    seating = [figure.key for figure in SEATING_FIGURES] if result.seating else []
+    return [
+        *POSE_COLUMNS,
+        *moved,
+        *(figure.key for figure in known_figures(result.table)),
+        *pegs,
+        *flats,
+        *seating,
+    ]
+
+
+def seating_values(result: Result) -> list[list[float]]:
+    """The figures of the seating of all fixtures of a result in which it is told: infinite where there is no end, NaN where
+    it was not worked out."""
+    told = [list(one.figures.values()) for one in result.seating]
+    return told + [[nan] * len(SEATING_FIGURES)] * (len(result) - len(told))
+
+
+def result_csv_text(result: Result) -> Iterator[str]:
+    """The comma-separated values, piece by piece."""
+    toolkit, carriers = result.toolkit, result.toolkit.carriers
+    yield ",".join(column_names(result)) + "\n"
+    moved, flats = 3 + toolkit.travels, FLAT_PIN in toolkit.contacts
+    arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
+    number, seated = 0, seating_values(result) if result.seating else []
+    for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
+        lines = []
+        for kind, row in zip(kinds, rows, strict=True):
+            number += 1
+            name, jaws = arrangements[kind]
+            row, looks = (row[:-1], row[-1]) if flats else (row, [])
+            pose, quality = row[6 * len(jaws) :][:moved], row[6 * len(jaws) + moved :]
+            fields = [str(number), name, *map(repr, pose), *(f"{value:.12g}" for value in quality)]
+            for peg, jaw in enumerate(jaws):
+                column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
+                hole = jaw.place_name(column, hole_row)
+                fields += [
+                    hole,
+                    jaw.name,
+                    str(column),
+                    str(hole_row),
+                    repr(peg_x),
+                    repr(peg_y),
+                    str(face),
+                    f"{force:.12g}",
+                ]
+            fields += ["" if angle is None else repr(angle) for angle in looks]
+            if seated:
+                fields += [
+                    "" if isnan(value) else repr(round(value, DECIMALS)) for value in seated[number - 1]
+                ]
+            lines.append(",".join(fields) + "\n")
+        yield "".join(lines)
+
+
+HEADER = ("hole", "carrier", "column", "row", "x", "y", "diameter", "length", "unit", "dowel", "face")
+
+
+def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, length: float | None) -> str:
+    """A row for each pin, in the fixture's order; a clamp is none.
+
+    Parameters
+    ----------
+    unit : of the lengths: x and y of the hole's centre from the first carrier's hole A1, diameter and length of the pin.
+    dowel : what the pins are and how they fit, in words; the cell is empty where it is not known.
+    length : of the pins, in mm; the same.
+    """
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    flats = FLAT_PIN in toolkit.contacts
+    writer.writerow((*HEADER, *["flat_deg"] * flats))
+    carriers = {carrier.name: carrier for carrier in toolkit.carriers}
+    for peg in fixture.pegs:
+        carrier = carriers[peg.carrier]
+        if not carrier.has_lattice:
+            continue
+        sizes = (unit.number(peg.x), unit.number(peg.y), unit.figure(2 * carrier.peg_radius))
+        long = "" if length is None else unit.figure(length)
+        place = (peg.hole, plain(carrier.title), column_letters(peg.column), peg.row + 1)
+        looks = ["" if peg.flat_deg is None else f"{peg.flat_deg:.4f}"] * flats
+        writer.writerow((*place, *sizes, long, unit.abbreviation, plain(dowel or ""), peg.face, *looks))
+    return stream.getvalue()

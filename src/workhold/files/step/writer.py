@@ -1,0 +1,350 @@
+"""STEP assemblies that are written: a set-up, and the jaw plates to drill.
+
+A set-up is the part in its pose, the pegs, the clamps with their bolts, and the plates with their holes. The
+frame is the vise's: millimetres, x to the right, the origin at the left jaw's hole L-A1, or at hole A1 of a
+plate. z is 0 on top of the plates. The part lies there, and the pegs stand through the plates up to the
+part's upper side, where nothing else is asked for.
+
+Jaw plates are solids with their dowel holes and bolt holes through them, their upper sides at z = 0. They
+stand side by side as in the DXF drawing of the same plates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from io import BytesIO
+from math import cos, isfinite, pi, sin
+from pathlib import Path
+from typing import Any
+
+from workhold.errors import InputError
+from workhold.files.atomic import write_bytes
+from workhold.files.dxf.writer import beside
+from workhold.files.step.library import load_step_library
+from workhold.fixels.carrier import hole_name, peg_outline
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Arc, Box, Line, Point, Segment
+from workhold.model.dowels import JawPlate
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.setup import PartZero, part_zero
+from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
+from workhold.model.workpiece import Workpiece
+from workhold.plain import plain, shortened
+
+__all__ = ["plates_step", "setup_step", "write_plates_step", "write_setup_step"]
+
+# The header's time stamp, so that the same set-up gives the same bytes.
+TIME_STAMP = "1970-01-01T00:00:00"
+LONGEST_NAME = 120
+# Of the part and of the plates, in mm, where nobody says.
+THICKNESS = 10.0
+
+
+def write_setup_step(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    path: str | Path,
+    *,
+    thickness: float | None = None,
+    plate_thickness: float | None = None,
+    peg_length: float | None = None,
+    peg_height: float | None = None,
+    zero: PartZero | None = None,
+) -> None:
+    """Write a set-up as a STEP assembly; the same set-up gives the same bytes.
+
+    Parameters
+    ----------
+    fixture, workpiece, toolkit : the set-up.
+    path : the file.
+    thickness : height of the part in mm; 10 if None, as of the plates.
+    plate_thickness : of all plates, in mm; their holes go through.
+    peg_height : how far the pegs stand out of the plates, in mm; as far as the part if None.
+    peg_length : in mm; down to the plates' lower sides if None.
+    zero : part zero; that of :func:`part_zero` without a wish if None.
+
+    Raises
+    ------
+    InputError
+        For pegs without a radius, a length that is not positive, a file that cannot be written, and when the extra
+        ``step`` is not installed.
+    """
+    sizes = {
+        "thickness": thickness,
+        "plate_thickness": plate_thickness,
+        "peg_length": peg_length,
+        "peg_height": peg_height,
+    }
+    write_bytes(path, setup_step(fixture, workpiece, toolkit, zero=zero, **sizes))
+
+
+def setup_step(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    *,
+    thickness: float | None = None,
+    plate_thickness: float | None = None,
+    peg_length: float | None = None,
+    peg_height: float | None = None,
+    zero: PartZero | None = None,
+) -> bytes:
+    """The bytes of a set-up's STEP assembly; see :func:`write_setup_step`.
+
+    Raises
+    ------
+    InputError
+        As :func:`write_setup_step`.
+    """
+    if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0:
+        raise InputError(
+            f"pegs of radius 0 have no body to write to a STEP file: give the {toolkit.noun} a peg radius."
+        )
+    thickness = THICKNESS if thickness is None else thickness
+    plate_thickness = THICKNESS if plate_thickness is None else plate_thickness
+    top = thickness if peg_height is None else peg_height
+    length = top + plate_thickness if peg_length is None else peg_length
+    for name, value in (
+        ("thickness", thickness),
+        ("plate thickness", plate_thickness),
+        ("peg height", top),
+        ("peg length", length),
+    ):
+        if not (isfinite(value) and value > 0):
+            raise InputError(f"{name} {value} is not a positive length: give it in mm.")
+    load_step_library()
+    name = plain(shortened(workpiece.name, LONGEST_NAME))
+    named = [(name, part_body(workpiece.placed(fixture.pose), thickness))]
+    seen = shown(fixture, toolkit, workpiece)
+    for each in seen.carriers:
+        for peg in each.pegs:
+            outline = peg_outline((peg.x, peg.y), each.carrier.peg_radius, each.carrier.flat, peg.flat_deg)
+            body = peg_body((peg.x, peg.y), each.carrier.peg_radius, top - length, top)
+            if len(outline) > 1:
+                # Round in its hole, and above the plate as its flat leaves it.
+                body = fused(
+                    peg_body((peg.x, peg.y), each.carrier.peg_radius, top - length, 0.0), outline, top
+                )
+            named.append((f"{each.carrier.peg} {peg.hole}", body))
+    for clamp in seen.clamps:
+        named.append((clamp.tip.hole, extruded(wire(clamp.outline()), [], 0.0, thickness)))
+        if clamp.hole is not None:
+            bolt = peg_body(clamp.hole, seen.carriers[0].carrier.peg_radius, -plate_thickness, 0.0)
+            named.append(
+                (f"bolt {hole_name(clamp.carrier.stands_on, clamp.tip.column, clamp.tip.row)}", bolt)
+            )
+    for wall in seen.walls:
+        named.append((wall.carrier.noun, extruded(wire(rectangle(wall.bar)), [], 0.0, thickness)))
+    named += [(each.carrier.title, plate_body(each, plate_thickness)) for each in seen.carriers]
+    named.append(("part zero X0 Y0", axes_at((zero or part_zero(workpiece)).point, fixture.pose, seen.pitch)))
+    return assembly(f"{name} set-up", named)
+
+
+def axes_at(point: Point, pose: Pose, length: float) -> Any:
+    """The axes of the part at a point of it, at z = 0: x as long as told, y half as long."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Compound
+
+    axes, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(axes)
+    x, y = point
+    start, *ends = (
+        (float(u), float(v))
+        for u, v in (pose.apply(*p) for p in ((x, y), (x + length, y), (x, y + length / 2)))
+    )
+    for end in ends:
+        builder.Add(axes, edge(Line(start, end)))
+    return axes
+
+
+def part_body(part: Workpiece, thickness: float) -> Any:
+    """The part, in its pose, as a solid from z = 0 up."""
+    outer, *holes = (wire(segments) for segments in part.loop_segments)
+    return extruded(outer, holes, 0.0, thickness)
+
+
+def peg_body(center: Point, radius: float, low: float, high: float) -> Any:
+    """A peg as a cylinder between two heights."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    return BRepPrimAPI_MakeCylinder(
+        gp_Ax2(gp_Pnt(*center, low), gp_Dir(0.0, 0.0, 1.0)), radius, high - low
+    ).Solid()
+
+
+def fused(foot: Any, outline: Sequence[Segment], height: float) -> Any:
+    """A peg of its round foot and what stands on it, from z = 0 up."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+
+    return BRepAlgoAPI_Fuse(foot, extruded(wire(outline), [], 0.0, height)).Shape()
+
+
+def plate_body(shown: ShownCarrier, thickness: float) -> Any:
+    """A plate with its holes, its upper side at z = 0."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+
+    radius, plate = shown.carrier.peg_radius, shown.plate
+    x0, y0, x1, y1 = plate.x0, plate.y0, plate.x1, plate.y1
+    border = wire(rectangle(plate))
+
+    def whole(hole: Point) -> bool:
+        return (
+            x0 < hole[0] - radius
+            and hole[0] + radius < x1
+            and y0 < hole[1] - radius
+            and hole[1] + radius < y1
+        )
+
+    centers = [hole.center for hole in shown.holes(MOST_HOLES)]
+    holes = [wire([Arc(hole, radius, 0.0, pi, -1.0)]) for hole in centers if whole(hole)]
+    body = extruded(border, holes, -thickness, 0.0)
+    # Plates that nearly meet leave no material around the holes of their last columns.
+    for hole in centers:
+        if not whole(hole):
+            body = BRepAlgoAPI_Cut(body, peg_body(hole, radius, -2 * thickness, thickness)).Shape()
+    return body
+
+
+def rectangle(box: Box) -> list[Line]:
+    """The sides of a box, counter-clockwise."""
+    corners = [(box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1)]
+    return [Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
+
+
+def wire(segments: Iterable[Segment]) -> Any:
+    """A closed wire at z = 0 of segments in running order."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
+
+    maker = BRepBuilderAPI_MakeWire()
+    for segment in segments:
+        maker.Add(edge(segment))
+    return maker.Wire()
+
+
+def edge(segment: Segment) -> Any:
+    """A segment as an edge at z = 0; the circle of an arc run clockwise looks down."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pnt
+
+    if isinstance(segment, Line):
+        return BRepBuilderAPI_MakeEdge(gp_Pnt(*segment.start, 0.0), gp_Pnt(*segment.end, 0.0)).Edge()
+    start = segment.mid_angle - segment.sign * segment.half_sweep
+    axes = gp_Ax2(
+        gp_Pnt(*segment.center, 0.0), gp_Dir(0.0, 0.0, segment.sign), gp_Dir(cos(start), sin(start), 0.0)
+    )
+    return BRepBuilderAPI_MakeEdge(gp_Circ(axes, segment.radius), 0.0, 2 * segment.half_sweep).Edge()
+
+
+def extruded(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
+    """The solid between two heights over a border with holes, which run clockwise."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
+
+    maker = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), outer)
+    for hole in holes:
+        maker.Add(hole)
+    move = gp_Trsf()
+    move.SetTranslation(gp_Vec(0.0, 0.0, low))
+    face = maker.Face().Moved(TopLoc_Location(move))
+    return BRepPrimAPI_MakePrism(face, gp_Vec(0.0, 0.0, high - low), True).Shape()
+
+
+def assembly(name: str, named: Sequence[tuple[str, Any]]) -> bytes:
+    """The STEP file of an assembly of named bodies."""
+    from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+    from OCP.BRep import BRep_Builder
+    from OCP.STEPCAFControl import STEPCAFControl_Writer
+    from OCP.STEPControl import STEPControl_StepModelType
+    from OCP.StepRepr import StepRepr_NextAssemblyUsageOccurrence
+    from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+    from OCP.TDataStd import TDataStd_Name
+    from OCP.TDocStd import TDocStd_Document
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.TopoDS import TopoDS_Compound
+    from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+    document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    compound = TopoDS_Compound()
+    BRep_Builder().MakeCompound(compound)
+    root = shapes.AddShape(compound, True)
+    TDataStd_Name.Set_s(root, TCollection_ExtendedString(name, True))
+    for word, body in named:
+        label = shapes.AddShape(body, False)
+        TDataStd_Name.Set_s(label, TCollection_ExtendedString(word, True))
+        placed = shapes.AddComponent(root, label, TopLoc_Location())
+        TDataStd_Name.Set_s(placed, TCollection_ExtendedString(word, True))
+    shapes.UpdateAssemblies()
+    writer = STEPCAFControl_Writer()
+    if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
+        raise RuntimeError("the STEP library could not translate the set-up")
+    model = writer.ChangeWriter().Model()
+    header = APIHeaderSection_MakeHeader(model)
+    header.SetName(TCollection_HAsciiString("set-up"))
+    header.SetTimeStamp(TCollection_HAsciiString(TIME_STAMP))
+    header.SetAuthorValue(1, TCollection_HAsciiString(""))
+    header.SetOrganizationValue(1, TCollection_HAsciiString(""))
+    header.SetOriginatingSystem(TCollection_HAsciiString("workhold"))
+    # The library numbers the places of an assembly through the life of the process.
+    entities = (model.Entity(k) for k in range(1, model.NbEntities() + 1))
+    uses = (entity for entity in entities if isinstance(entity, StepRepr_NextAssemblyUsageOccurrence))
+    for number, use in enumerate(uses, start=1):
+        use.SetId(TCollection_HAsciiString(str(number)))
+    stream = BytesIO()
+    writer.WriteStream(stream)
+    return stream.getvalue()
+
+
+def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> bytes:
+    """The bytes of the assembly; the same plates give the same bytes.
+
+    Parameters
+    ----------
+    thickness : of the plates, in mm; 10 if None.
+
+    Raises
+    ------
+    InputError
+        For a thickness that is not positive, and when the extra ``step`` is not installed.
+    """
+    thickness = THICKNESS if thickness is None else thickness
+    if not (isfinite(thickness) and thickness > 0):
+        raise InputError(f"thickness {thickness} is not a positive length: give it in mm.")
+    load_step_library()
+    named = [
+        (f"{plate.title} plate", drilled(plate, right, thickness))
+        for plate, right in zip(plates, beside(plates), strict=True)
+    ]
+    return assembly("jaw plates", named)
+
+
+def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
+    """A plate as a solid, moved to the right."""
+    box = plate.outline
+    corners = [
+        (box.x0 + right, box.y0),
+        (box.x1 + right, box.y0),
+        (box.x1 + right, box.y1),
+        (box.x0 + right, box.y1),
+    ]
+    border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
+    holes: list[tuple[Point, float]] = [(center, plate.hole_diameter) for _, center in plate.holes]
+    if plate.bolts is not None:
+        holes += [(center, plate.bolts.diameter) for center in plate.bolts.places]
+    wires = [wire([Arc((x + right, y), diameter / 2, 0.0, pi, -1.0)]) for (x, y), diameter in holes]
+    return extruded(border, wires, -thickness, 0.0)
+
+
+def write_plates_step(plates: Sequence[JawPlate], path: str | Path, thickness: float | None = None) -> None:
+    """Write jaw plates as a STEP assembly.
+
+    Raises
+    ------
+    InputError
+        As :func:`plates_step`, and when the file cannot be written.
+    """
+    write_bytes(path, plates_step(plates, thickness))

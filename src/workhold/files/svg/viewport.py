@@ -1,0 +1,269 @@
+"""Numbers, lengths and angles of SVG, and the viewports in which they are measured.
+
+Attributes and CSS properties of an element give them. A drawing, a nested drawing or a symbol has a viewport
+with its ``viewBox``, and a window that cuts off what is outside.
+
+Glossary
+--------
+viewport : what the percentages of lengths are of, in user units.
+window : a convex polygon that hides what is outside: the edge of a nested drawing or of a symbol, or a clip
+    path.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+from math import atan2, hypot, isfinite, pi, sqrt
+from typing import Literal
+from xml.etree.ElementTree import Element
+
+from attrs import frozen
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import Chain, Placement
+from workhold.files.svg.document import GEOMETRY, Declared, short
+from workhold.geometry.segment import Point
+
+__all__ = [
+    "ANGLES",
+    "NUMBER",
+    "ShapeElement",
+    "ViewBox",
+    "Viewport",
+    "Window",
+    "absolute",
+    "convex",
+    "fitted",
+    "millimetres",
+    "numbers",
+    "physical",
+    "viewbox_of",
+]
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+LENGTH = re.compile(rf"\s*({NUMBER})([a-zA-Z]*|%)\s*$")
+NUMBERS = re.compile(rf"\s*(?:(?>{NUMBER})\s*(?:,\s*(?=[-+.\d]))?)*+\s*$")
+# CSS Values 4, 6.2: 96 px to the inch.
+PIXELS = {
+    "": 1.0,
+    "px": 1.0,
+    "in": 96.0,
+    "cm": 96 / 2.54,
+    "mm": 96 / 25.4,
+    "q": 96 / 101.6,
+    "pt": 96 / 72,
+    "pc": 16.0,
+}
+ANGLES = {"deg": pi / 180, "rad": 1.0, "grad": pi / 200, "turn": 2 * pi}
+HEIGHTS = {"y", "height", "cy", "ry", "y1", "y2"}
+
+# Width and height of what percentages are of, in user units; None where they are not known.
+Viewport = tuple[float | None, float | None]
+
+
+def absolute(text: str, *, unitless: bool = True) -> float | None:
+    """A length in user units of CSS pixels; None unless it is a number with an absolute unit, or with none."""
+    match = LENGTH.match(text)
+    if match is None or match.group(2).lower() not in PIXELS:
+        return None
+    value = float(match.group(1)) * PIXELS[match.group(2).lower()]
+    return None if not isfinite(value) or (value and not match.group(2) and not unitless) else value
+
+
+def millimetres(text: str) -> float | None:
+    """A length in mm; None unless it is a number with an absolute unit, or with none."""
+    value = absolute(text)
+    return None if value is None else value * 25.4 / 96
+
+
+def physical(text: str) -> bool:
+    """Whether a length is in a unit of paper, not in pixels."""
+    match = LENGTH.match(text)
+    return match is not None and match.group(2).lower() in PIXELS and match.group(2).lower() not in ("", "px")
+
+
+def numbers(text: str, what: str) -> list[float]:
+    """All numbers of a list separated by blanks and commas.
+
+    Raises
+    ------
+    InputError
+        For anything else in the list.
+    """
+    if not NUMBERS.match(text):
+        raise InputError(f"{what} '{short(text)}' is not a list of numbers: correct it.")
+    values = [float(word) for word in re.findall(NUMBER, text)]
+    if not all(map(isfinite, values)):
+        raise InputError(f"{what} '{short(text)}' has a number that is too large: correct it.")
+    return values
+
+
+@frozen
+class ShapeElement:
+    """An element as its shape sees it.
+
+    Parameters
+    ----------
+    element : what has the attributes.
+    label : what messages call it.
+    declarations : its declared values.
+    viewport : what percentages are of.
+    closed : whether only its fill is seen, which closes open subpaths.
+    """
+
+    element: Element
+    label: str
+    declarations: dict[str, list[Declared]]
+    viewport: Viewport
+    closed: bool = False
+
+    def given(self, name: str) -> Declared | None:
+        """The value of a geometry property or attribute; None when there is none."""
+        if name in GEOMETRY:
+            return self.declarations[name][0] if name in self.declarations else None
+        text = self.element.get(name)
+        return None if text is None else Declared(text.strip(), css=False)
+
+    def length(self, name: str, default: float = 0.0) -> float:
+        """A length in user units.
+
+        Raises
+        ------
+        InputError
+            For anything but a number with an absolute unit, or percents of a viewport that is known.
+        """
+        given = self.given(name)
+        if given is None or given.text in ("auto", "initial"):
+            return default
+        value = absolute(given.text, unitless=not given.css)
+        if value is None and given.text.endswith("%"):
+            value = self.percent(given.text, name)
+        if value is None:
+            raise InputError(
+                f'{self.label} has {name}="{short(given.text)}", which is not a plain length: write a number'
+                f"{' with px' if given.css else ''}."
+            )
+        return value
+
+    def percent(self, text: str, name: str) -> float | None:
+        """Percents of the viewport in user units (SVG 2, 8.9); None when the viewport is not known."""
+        width, height = self.viewport
+        match = LENGTH.match(text)
+        if name == "r":
+            side = None if width is None or height is None else hypot(width, height) / sqrt(2)
+        else:
+            side = height if name in HEIGHTS else width
+        return None if match is None or side is None else float(match.group(1)) / 100 * side
+
+
+# A window's edge and an outline on it, relative to the window's size, may differ by the rounding of a drawing's digits.
+ON_EDGE = 1e-6
+
+ViewBox = tuple[float, float, float, float]
+ALIGNMENT = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
+
+
+def viewbox_of(text: str | None, label: str) -> ViewBox | None:
+    """Left, top, width and height of a viewBox; None when there is none.
+
+    Raises
+    ------
+    InputError
+        When it is not four numbers with a positive size.
+    """
+    if text is None:
+        return None
+    values = numbers(text, f"the viewBox of {label}")
+    if len(values) != 4 or not (values[2] > 0 and values[3] > 0):
+        raise InputError(
+            f"the viewBox '{short(text)}' of {label} is not usable: it must be x y width height."
+        )
+    return values[0], values[1], values[2], values[3]
+
+
+def fitted(box: ViewBox, width: float, height: float, aspect: str, label: str) -> Placement:
+    """The map from a viewBox to a viewport at the origin (SVG 2, 8.2).
+
+    Raises
+    ------
+    InputError
+        For a ``preserveAspectRatio`` that is not SVG's.
+    """
+    words = aspect.split() or ["xMidYMid"]
+    sx, sy = width / box[2], height / box[3]
+    if words[0] == "none":
+        return Placement(a=sx, d=sy, e=-sx * box[0], f=-sy * box[1])
+    align, way = words[0], words[1] if len(words) > 1 else "meet"
+    if len(words) > 2 or way not in ("meet", "slice") or align[:1] + align[4:5] != "xY" or len(align) != 8:
+        raise InputError(
+            f"{label} has the preserveAspectRatio '{short(aspect)}', which cannot be read: correct it."
+        )
+    scale = max(sx, sy) if way == "slice" else min(sx, sy)
+    shares = ALIGNMENT.get(align[1:4]), ALIGNMENT.get(align[5:8])
+    if shares[0] is None or shares[1] is None:
+        raise InputError(
+            f"{label} has the preserveAspectRatio '{short(aspect)}', which cannot be read: correct it."
+        )
+    left, top = shares[0] * (width - scale * box[2]), shares[1] * (height - scale * box[3])
+    return Placement(a=scale, d=scale, e=left - scale * box[0], f=top - scale * box[1])
+
+
+def convex(points: tuple[Point, ...]) -> bool:
+    """Whether a closed polygon, its first point repeated at its end, is convex and not crossed by itself."""
+    steps = [(x - u, y - v) for (u, v), (x, y) in pairwise(points) if (x, y) != (u, v)]
+    if len(steps) < 3:
+        return False
+    turns = [atan2(a * d - b * c, a * c + b * d) for (a, b), (c, d) in pairwise([*steps, steps[0]])]
+    return (
+        all(t >= -1e-9 for t in turns) != all(t <= 1e-9 for t in turns)
+        and abs(abs(sum(turns)) - 2 * pi) < 1e-6
+    )
+
+
+@frozen
+class Window:
+    """A convex polygon in mm that hides what is outside, and what messages call it.
+
+    Parameters
+    ----------
+    corners : N + 1 points, the last the first.
+    label : such as ``the clip-path of g 'a'``.
+    """
+
+    corners: tuple[Point, ...]
+    label: str
+
+    def shows(self, chain: Chain) -> Literal["all", "some", "nothing"]:
+        """How much of a chain is inside, as far as the window's edges, taken one by one, show."""
+        area = sum(u * y - v * x for (u, v), (x, y) in pairwise(self.corners))
+        size = max(hypot(x - u, y - v) for (u, v), (x, y) in pairwise(self.corners))
+        whole, outside = True, False
+        for (u, v), (x, y) in pairwise(self.corners):
+            side = hypot(x - u, y - v) * (1 if area > 0 else -1)
+            if side == 0:
+                continue
+            outward = ((y - v) / side, (u - x) / side)
+            edge = outward[0] * u + outward[1] * v
+            outside = outside or -reach(chain, (-outward[0], -outward[1])) >= edge - ON_EDGE * size
+            whole = whole and reach(chain, outward) <= edge + ON_EDGE * size
+        return "all" if whole else "nothing" if outside else "some"
+
+
+def reach(chain: Chain, direction: Point) -> float:
+    """How far a chain reaches in a direction (a unit vector): the largest product with one of its points."""
+    nx, ny = direction
+    farthest = max(nx * x + ny * y for x, y in chain.points)
+    for k, bulge in enumerate(chain.bulges):
+        if bulge:
+            (u, v), (x, y) = chain.points[k], chain.points[k + 1]
+            # Centre and radius of an arc of bulge b over a chord: half the chord times (1 - b²) / 2b and (1 + b²) / 2b.
+            off, radius = (
+                (1 - bulge * bulge) / (4 * bulge),
+                hypot(x - u, y - v) * (1 + bulge * bulge) / abs(4 * bulge),
+            )
+            top = ((u + x) / 2 - off * (y - v) + nx * radius, (v + y) / 2 + off * (x - u) + ny * radius)
+            # A counter-clockwise arc is what lies right of its chord.
+            if bulge * ((x - u) * (top[1] - v) - (y - v) * (top[0] - u)) < 0:
+                farthest = max(farthest, nx * top[0] + ny * top[1])
+    return farthest

@@ -1,0 +1,342 @@
+"""A toolkit described in TOML: a preset of the program's own, or a file of the user's.
+
+All lengths come out in mm.
+
+Each preset in ``data/toolkits`` says where its figures are from. A preset of a vise is a plate on each jaw,
+as in the paper. No vise that comes with a lattice of dowel holes on both jaws is known to us. How many
+columns a jaw has is for its owner to say; a preset's number is only a usual one. Dowel pins of the standards
+are looked up by nominal diameter; their figures and sources are in ``data/dowels.toml``.
+
+Glossary
+--------
+entry : a key of the file and its value.
+fields : the keyword arguments of the toolkit's class that the file gives.
+fit : limits of pin and hole and the position of the hole, from which the peg's tolerance follows.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from difflib import get_close_matches
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from attrs import frozen
+
+from workhold.conventions import SAME_SIZE
+from workhold.errors import InputError
+from workhold.files.text import read_text, toml_table
+from workhold.fixels.fields import OPTIONS
+from workhold.fixels.kinds import USUAL, kind_of, toolkit_of
+from workhold.fixels.table import Form
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.dowels import DowelSize, Fit, Limits, peg_error, refuse_limits
+from workhold.model.requirements import Tolerance
+from workhold.units import Unit, unit_named
+
+__all__ = [
+    "DowelSeries",
+    "LoadedToolkit",
+    "described_toolkit",
+    "dowel_series",
+    "dowel_size",
+    "is_sold",
+    "load_toolkit",
+    "preset",
+    "preset_names",
+    "read_toolkit_file",
+]
+
+
+@frozen
+class DowelSeries:
+    """The pins of one standard.
+
+    Parameters
+    ----------
+    name : the standard, and its tolerance class where it has several.
+    unit : in which the standard gives its sizes.
+    source : where the figures are from.
+    sizes : by increasing diameter, in mm.
+    """
+
+    name: str
+    unit: Unit
+    source: str
+    sizes: tuple[DowelSize, ...]
+
+
+@cache
+def dowel_series() -> tuple[DowelSeries, ...]:
+    """The standards whose pins are known.
+
+    Examples
+    --------
+    >>> [series.name for series in dowel_series()]
+    ['ASME B18.8.5M', 'ASME B18.8.2', 'ISO 2338 m6', 'ISO 2338 h8']
+    """
+    text = (files("workhold") / "data" / "dowels.toml").read_text(encoding="utf-8")
+    found = []
+    for entry in tomllib.loads(text)["series"]:
+        unit = unit_named(entry["unit"])
+        sizes = []
+        for row in entry["sizes"]:
+            nominal, *limits = (unit.length(number) for number in row)
+            hole = (limits[2], limits[3]) if len(limits) == 4 else None
+            sizes.append(DowelSize(nominal, (limits[0], limits[1]), hole))
+        found.append(DowelSeries(entry["name"], unit, entry["source"], tuple(sizes)))
+    return tuple(found)
+
+
+def dowel_size(standard: str, diameter: float) -> DowelSize:
+    """A standard's pin of a nominal diameter in mm.
+
+    Raises
+    ------
+    InputError
+        For a standard that is not known, and a diameter that it does not have.
+
+    Examples
+    --------
+    >>> dowel_size("ASME B18.8.5M", 6.0).pin
+    (6.003, 6.009)
+    """
+    for series in dowel_series():
+        if series.name.lower() == " ".join(standard.lower().split()):
+            for size in series.sizes:
+                if abs(size.nominal - diameter) < SAME_SIZE:
+                    return size
+            sizes = ", ".join(series.unit.figure(size.nominal) for size in series.sizes)
+            raise InputError(
+                f"{series.name} has no dowel of {series.unit.figure(diameter)} {series.unit.abbreviation}: its sizes "
+                f"are {sizes} {series.unit.abbreviation}."
+            )
+    names = ", ".join(series.name for series in dowel_series())
+    raise InputError(f'dowel "{standard[:40]}" is not known: the standards are {names}.')
+
+
+# Bytes; a toolkit takes a few hundred.
+LARGEST_FILE = 1_000_000
+# Where nobody says how well the holes are placed: what a tolerance is when nothing is said, see Tolerance.
+ASSUMED_POSITION = Tolerance().peg
+
+
+@frozen
+class LoadedToolkit:
+    """A toolkit as its file describes it.
+
+    Parameters
+    ----------
+    name : the preset's name, or the file's.
+    title : what it is, in a line; empty where the file gives none.
+    source : where the figures are from; empty where the file does not say.
+    unit : in which the file gives its lengths.
+    kind : of toolkit, see ``fixels.kinds``.
+    fields : keyword arguments of its class, in mm; those not in the file are left out.
+    tolerance : of its pegs and of the faces they touch.
+    fit : what the tolerance of the pegs follows from; None where the file gives no pin or hole.
+    assumed : entries for which there is no source, as the file says.
+    """
+
+    name: str
+    title: str
+    source: str
+    unit: Unit
+    kind: str
+    fields: dict[str, Any]
+    tolerance: Tolerance
+    fit: Fit | None
+    assumed: tuple[str, ...] = ()
+
+    @property
+    def toolkit(self) -> Toolkit:
+        """The toolkit with nothing changed."""
+        return toolkit_of(self.kind, self.fields)
+
+
+def read_toolkit_file(path: Path) -> LoadedToolkit:
+    """The toolkit of a user's file.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read or used, naming the entry.
+    """
+    from workhold.files.input_forms import checked_toolkit
+
+    try:
+        return described_toolkit(
+            path.stem, checked_toolkit(toml_table(read_text(path, LARGEST_FILE, "a toolkit")))
+        )
+    except InputError as error:
+        raise InputError(f"{path.name or path}: {error}") from error
+
+
+def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
+    """The toolkit of a file's entries, which are of the right types.
+
+    Raises
+    ------
+    InputError
+        For values that no toolkit can have.
+    """
+    unit = unit_named(entries["unit"])
+    if unit.name not in ("mm", "inch"):
+        raise InputError('the unit of a toolkit is "mm" or "inch".')
+    kind, said = kind_of(entries.get("kind", USUAL))
+    given = {row.name: in_mm(row.form, entries[row.name], unit) for row in OPTIONS if row.name in entries}
+    fields: dict[str, Any] = {**said, **given}
+    toolkit_of(kind, fields)
+    fit = fit_of(entries, unit, fields["peg_radius"])
+    return LoadedToolkit(
+        name=name,
+        title=entries.get("title", ""),
+        source=entries.get("source", ""),
+        unit=unit,
+        kind=kind,
+        fields=fields,
+        tolerance=tolerance_of(entries, unit, fit, fields["peg_radius"]),
+        fit=fit,
+        assumed=tuple(entries.get("assumed", ())),
+    )
+
+
+def in_mm(form: Form, value: Any, unit: Unit) -> Any:
+    """Convert what an entry gives for a field to the constructor's argument, with lengths in mm."""
+    if form in ("count", "directions"):
+        return value
+    if form == "holes":
+        return tuple(value)
+    lengths = tuple(map(unit.length, value if isinstance(value, list) else [value]))
+    if form == "length":
+        return lengths[0]
+    return 2 * lengths if form == "pitch" and len(lengths) == 1 else lengths
+
+
+def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | None:
+    """Pin and hole as the file gives them, or as the standard it names does; None when it gives neither.
+
+    Raises
+    ------
+    InputError
+        For one without the other, and for limits that are not those of the peg.
+    """
+    limits: dict[str, Limits | None] = {"pin_diameter": None, "hole_diameter": None}
+    if "dowel" in entries:
+        size = dowel_size(entries["dowel"], 2 * peg_radius)
+        limits = {"pin_diameter": size.pin, "hole_diameter": size.hole}
+    for key in limits:
+        if key in entries:
+            low, high = entries[key]
+            limits[key] = (unit.length(low), unit.length(high))
+    pin, hole = limits["pin_diameter"], limits["hole_diameter"]
+    if pin is None and hole is None:
+        if "hole_position" in entries:
+            raise InputError(
+                "hole_position is given without the pin: add dowel, or pin_diameter and hole_diameter, or give "
+                "peg_tolerance alone."
+            )
+        return None
+    if pin is None:
+        raise InputError("hole_diameter is given without the pin: add pin_diameter or dowel.")
+    if hole is None:
+        raise InputError("the pin is given without its hole: add hole_diameter, smallest and largest.")
+    refuse_limits("pin_diameter", pin, peg_radius)
+    refuse_limits("hole_diameter", hole, peg_radius)
+    position = entries.get("hole_position")
+    if position is not None and position < 0:
+        raise InputError(f"hole_position {position:g} is negative: give 0 or more.")
+    length = ASSUMED_POSITION if position is None else unit.length(position)
+    return Fit(pin, hole, length, position is None, entries.get("dowel", ""))
+
+
+def tolerance_of(entries: Mapping[str, Any], unit: Unit, fit: Fit | None, peg_radius: float) -> Tolerance:
+    """The tolerance that the file gives, or that follows from its pin and hole, or else the usual one.
+
+    Raises
+    ------
+    InputError
+        For negative lengths.
+    """
+    usual = Tolerance()
+    # Rounded to where a difference of decimal figures is exact again.
+    peg = usual.peg if fit is None else round(peg_error(peg_radius, fit.pin, fit.hole, fit.position), 9)
+    given = {key: unit.length(entries[key]) for key in ("peg_tolerance", "face_tolerance") if key in entries}
+    return Tolerance(given.get("peg_tolerance", peg), given.get("face_tolerance", usual.face), fit)
+
+
+ENDING = ".toml"
+
+
+@cache
+def preset_names() -> tuple[str, ...]:
+    """The names of the presets, what is sold first, of that plates before vises, then by kind and by pitch.
+
+    Examples
+    --------
+    >>> preset_names()[0]
+    'clamp-plate-20mm'
+    """
+    found = [
+        entry.name
+        for entry in (files("workhold") / "data" / "toolkits").iterdir()
+        if entry.name.endswith(ENDING)
+    ]
+    presets = [preset(name.removesuffix(ENDING)) for name in found]
+    presets.sort(key=lambda one: (one.name.split("-")[0], one.fields["pitch"], one.fields.get("columns", 0)))
+    presets.sort(key=lambda one: (not is_sold(one.name), one.toolkit.moving.has_lattice))
+    return tuple(one.name for one in presets)
+
+
+def is_sold(name: str) -> bool:
+    """Whether what a preset is named after can be bought or drilled; the paper's grippers cannot.
+
+    >>> is_sold("table-50mm"), is_sold("gripper-one-column, radius 2")
+    (True, False)
+    """
+    return not name.startswith("gripper-")
+
+
+def preset(name: str) -> LoadedToolkit:
+    """The preset of a name that exists."""
+    text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
+    return described_toolkit(name, tomllib.loads(text))
+
+
+def load_toolkit(name: str | Path) -> LoadedToolkit:
+    """Load a toolkit by the name of a preset or from a TOML file; a file wins.
+
+    Parameters
+    ----------
+    name : a preset's name in any mixture of capitals, or the path of a file.
+
+    Raises
+    ------
+    InputError
+        For a toolkit that cannot be found, with the names that are close, and for a file that cannot be used.
+
+    Examples
+    --------
+    >>> from workhold import Vise
+    >>> loaded = load_toolkit("plate-20mm")
+    >>> Vise(**loaded.fields | {"columns": 2}).pitch
+    (20.0, 20.0)
+    """
+    path = Path(name)
+    try:
+        is_path = path.exists()
+    except (OSError, ValueError):
+        is_path = False
+    names = preset_names()
+    asked = str(name).strip().lower()
+    if is_path and asked and not (path.is_dir() and asked in names):
+        return read_toolkit_file(path)
+    if asked in names:
+        return preset(asked)
+    close = get_close_matches(asked, names, n=3, cutoff=0.5) or names
+    raise InputError(
+        f"{str(name)[:200]!r}: file not found, and no toolkit has that name (try {', '.join(close)})."
+    )

@@ -1,0 +1,84 @@
+"""Arrays inside kernels: those that grow by doubling, and inverses of matrices of four rows."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner, inner_making_arrays
+
+Number = TypeVar("Number", np.float64, np.int64)
+
+
+@inner_making_arrays
+def grown(array: NDArray[Number]) -> NDArray[Number]:
+    """A copy of a (N, M) array with room for twice as many rows."""
+    out = np.empty((2 * array.shape[0], array.shape[1]), array.dtype)
+    for i in range(array.shape[0]):
+        for j in range(array.shape[1]):
+            out[i, j] = array[i, j]
+    return out
+
+
+@inner_making_arrays
+def with_room(array: NDArray[Number], count: int) -> NDArray[Number]:
+    """A (N, M) array with room for another row after ``count``: the array itself, or a grown copy when it is full."""
+    return grown(array) if count == array.shape[0] else array
+
+
+Array = NDArray[np.float64]
+
+
+@inner
+def eliminate(matrix: Array, inverse: Array) -> float:
+    """Invert a (4, 4) matrix, which is used up, by Gauss and Jordan's elimination with pivots by rows.
+
+    Returns
+    -------
+    float
+        The size of the determinant; where it is 0 or NaN there is no inverse.
+    """
+    for i in range(4):
+        for j in range(4):
+            inverse[i, j] = 1.0 if i == j else 0.0
+    determinant = 1.0
+    for k in range(4):
+        best = k
+        for i in range(k + 1, 4):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        pivot = matrix[best, k]
+        determinant *= abs(pivot)
+        if not determinant > 0.0:
+            return determinant
+        # Told by name, the pivot's row is not read again for each row that it is taken from.
+        a, b, c, d = (
+            matrix[best, 0] / pivot,
+            matrix[best, 1] / pivot,
+            matrix[best, 2] / pivot,
+            matrix[best, 3] / pivot,
+        )
+        e, f, g, h = (
+            inverse[best, 0] / pivot,
+            inverse[best, 1] / pivot,
+            inverse[best, 2] / pivot,
+            inverse[best, 3] / pivot,
+        )
+        for j in range(4):
+            matrix[best, j], inverse[best, j] = matrix[k, j], inverse[k, j]
+        matrix[k, 0], matrix[k, 1], matrix[k, 2], matrix[k, 3] = a, b, c, d
+        inverse[k, 0], inverse[k, 1], inverse[k, 2], inverse[k, 3] = e, f, g, h
+        for i in range(4):
+            if i != k:
+                factor = matrix[i, k]
+                matrix[i, 0] -= factor * a
+                matrix[i, 1] -= factor * b
+                matrix[i, 2] -= factor * c
+                matrix[i, 3] -= factor * d
+                inverse[i, 0] -= factor * e
+                inverse[i, 1] -= factor * f
+                inverse[i, 2] -= factor * g
+                inverse[i, 3] -= factor * h
+    return determinant

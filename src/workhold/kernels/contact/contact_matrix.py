@@ -1,0 +1,126 @@
+"""Where the four contacts of a fixture are, and the contact matrix that all its figures come from.
+
+With c the centre of the part, L the length of the wrenches and x the direction against which the moving
+carrier clamps, the contact matrix A (4, 4) has a row for each peg:
+
+    n_x,  n_y,  (q - c) x n / L,  n . x on the moving carrier and 0 on the other
+
+for a contact at q with outward unit normal n. It answers both questions one asks of a fixture.
+
+- Motion: let peg i stand delta_i too far towards the part. Then to first order A y = -delta, where y holds
+the part's movement at c (x, y), its turn times L, and how far the carrier moves on.
+- Force: pegs press with f >= 0 against the part, a load (g_x, g_y, moment m about c) acts on it, the moving
+  carrier is pushed with a force F. Then A^T f = (g_x, g_y, m / L, F).
+
+So one inverse serves for both; its last row is the peg forces per unit of clamping force, and that row scaled
+to sum 1 is the null vector of the wrenches. The duality of motions and forces is that of virtual work.
+"""
+
+from __future__ import annotations
+
+from math import cos, hypot, inf, nan, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.arrays import eliminate
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    HIGH_SLACK,
+    IS_ARC,
+    LOW_SLACK,
+    RADIUS,
+    SIGN,
+    X,
+    Y,
+)
+from workhold.kernels.chord.evaluation import distance_to_end, parameter_on
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@inner
+def distance_to_edge(row: Array, s: float) -> float:
+    """Distance in mm along a feature from a parameter to the nearer end that is no tangent joint; infinite without one."""
+    if row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi:
+        return inf
+    low = row[HALF_EXTENT] + s if row[LOW_SLACK] <= 0.0 else inf
+    high = row[HALF_EXTENT] - s if row[HIGH_SLACK] <= 0.0 else inf
+    return min(low, high) if row[IS_ARC] == 0.0 else min(low, high) * row[RADIUS]
+
+
+@compiled
+def contact_matrices_of(
+    pegs: Array,
+    pose: Array,
+    moves: Array,
+    axes: Array,
+    faces: IntArray,
+    features: Array,
+    starts: IntArray,
+    center: Array,
+    length: float,
+    points: Array,
+    normals: Array,
+    ends: Array,
+    edges: Array,
+    inverses: Array,
+    matrix: Array,
+) -> None:
+    """Contacts of N fixtures and the inverses of their contact matrices.
+
+    Parameters
+    ----------
+    pegs : (N, P, 2) peg centres in the toolkit's frame, in mm.
+    pose : (N, 3) orientation in radians and translation in mm.
+    moves : (N, P) 1 for a peg on the moving carrier, 0 for others.
+    axes : (N, 2) the unit vector x of each in the toolkit's frame.
+    faces : (N, P) number of the face each peg touches.
+    features : (F, 12) rows of contact features about c with the slacks of their ends, ordered by face.
+    starts : where the features of each face number begin, one more than there are numbers.
+    center : (2,) c.
+    length : L in mm.
+    points : (N, P, 2) receives the peg centres in the part's frame about c, in mm.
+    normals : (N, P, 2) receives the outward unit normals in the part's frame.
+    ends : (N, P) receives the distances in mm along the features to their nearer ends.
+    edges : (N, P) receives the distances in mm along them to their nearer edges, see :func:`distance_to_edge`.
+    inverses : (N, 4, P) receives the inverses where P is 4; NaN where there is none, or a face has no feature.
+    matrix : (P, 4) work space.
+    """
+    count = pegs.shape[1]
+    for k in range(len(pegs)):
+        cosine, sine = cos(pose[k, 0]), sin(pose[k, 0])
+        known = True
+        for i in range(count):
+            px, py = pegs[k, i, 0] - pose[k, 1], pegs[k, i, 1] - pose[k, 2]
+            x, y = cosine * px + sine * py - center[0], cosine * py - sine * px - center[1]
+            # A face may have several features; the peg stands on one of them, and beyond the ends of the others.
+            nearest, chosen, parameter = -inf, -1, 0.0
+            for f in range(starts[faces[k, i]], starts[faces[k, i] + 1]):
+                s = parameter_on(features[f], x, y)
+                distance = distance_to_end(features[f], s)
+                if distance > nearest:
+                    nearest, chosen, parameter = distance, f, s
+            known = known and chosen >= 0
+            row = features[max(chosen, 0)]
+            nx, ny = row[AXIS_Y], -row[AXIS_X]
+            if row[IS_ARC] != 0.0:
+                nx, ny = row[SIGN] * (x - row[X]), row[SIGN] * (y - row[Y])
+                size = hypot(nx, ny)
+                nx, ny = nx / size, ny / size
+            points[k, i, 0], points[k, i, 1] = x, y
+            normals[k, i, 0], normals[k, i, 1] = nx, ny
+            ends[k, i], edges[k, i] = nearest, distance_to_edge(row, parameter)
+            matrix[i, 0], matrix[i, 1], matrix[i, 2] = nx, ny, (x * ny - y * nx) / length
+            matrix[i, 3] = moves[k, i] * (
+                (nx * cosine - ny * sine) * axes[k, 0] + (nx * sine + ny * cosine) * axes[k, 1]
+            )
+        if not known or (count == 4 and not eliminate(matrix, inverses[k]) > 0.0):
+            for i in range(count):
+                ends[k, i] = edges[k, i] = nan
+                for j in range(4):
+                    inverses[k, j, i] = nan

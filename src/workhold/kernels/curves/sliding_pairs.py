@@ -1,0 +1,459 @@
+"""Sliding pairs: chords that fit at one orientation only and slide there.
+
+Two pegs on parallel lines, or on arcs of equal radius whose centres lie exactly one chord apart, fix the
+orientation; the workpiece can still slide along the lines or around the arcs, and the other pegs stop it.
+Such a chord is not a curve over the orientation: it exists at one alone, and is met with the other chords by
+evaluating those there.
+
+Two sliding pairs at one orientation leave the workpiece a freedom that the contacts do not resist, so they
+never make a fixture together; nor does a sliding pair whose contacts share one line of action.
+"""
+
+from __future__ import annotations
+
+from math import acos, atan2, ceil, cos, floor, hypot, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.conventions import PARALLEL, SQUARE
+from workhold.kernels.base.arrays import grown
+from workhold.kernels.base.compiling import compiled_making_arrays, inner, inner_making_arrays
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.given import Features, Lattice, Limits
+from workhold.kernels.base.interval import TURN
+from workhold.kernels.chord.coincidences import are_one_chord_apart, shares_a_line
+from workhold.kernels.chord.columns import (
+    COLUMN_STEP,
+    DIRECTION,
+    FROM,
+    HEAD,
+    ORIENTATION,
+    ROW_STEP,
+    SHIFT,
+    SLIDE_FROM,
+    SLIDE_TO,
+    STEP_LENGTH,
+    TAIL,
+    TO,
+    Curves,
+    SlidingPairs,
+)
+from workhold.kernels.chord.evaluation import backward_error, parameter_on
+from workhold.kernels.chord.intervals import SLIVER
+from workhold.kernels.contact.record import (
+    PEG_RADIUS,
+    PEG_X,
+    PEG_Y,
+    RECORD_LENGTH,
+    place_peg,
+    write_record,
+)
+from workhold.kernels.contact.rules import is_fixture, is_listed, share_a_carrier
+from workhold.kernels.curves.roots import WorkSpace, work_space
+from workhold.kernels.curves.three_and_one import add_moving_pegs, height_range, place_triple, row_meets
+from workhold.kernels.curves.two_and_two import CANDIDATES, CONTACTS, STOPPED, is_among, place_chord
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Rounding of a sliding pair's orientation in radians.
+ROUNDING = 4e-15
+
+
+@inner
+def line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
+    """Write the sliding pairs between two parallel lines as (from, to, alpha) rows; return their number."""
+    nx, ny = a[AXIS_Y], -a[AXIS_X]
+    cosine = (nx * (b[X] - a[X]) + ny * (b[Y] - a[Y])) / d
+    if abs(cosine) >= 1.0 - SQUARE:
+        return 0
+    count = 0
+    same = 1.0 if a[AXIS_X] * b[AXIS_X] + a[AXIS_Y] * b[AXIS_Y] > 0.0 else -1.0
+    for k in range(2):
+        alpha = atan2(ny, nx) + (1.0 - 2.0 * k) * acos(cosine)
+        # Parameter on b of the head when the tail is in the middle of a; it moves by +-s with the tail.
+        middle = same * (
+            (a[X] + d * cos(alpha) - b[X]) * b[AXIS_X] + (a[Y] + d * sin(alpha) - b[Y]) * b[AXIS_Y]
+        )
+        low, high = (
+            max(-a[HALF_EXTENT], -b[HALF_EXTENT] - middle),
+            min(a[HALF_EXTENT], b[HALF_EXTENT] - middle),
+        )
+        if low <= high:
+            out[count, SLIDE_FROM], out[count, SLIDE_TO], out[count, DIRECTION] = low, high, alpha
+            count += 1
+    return count
+
+
+@inner
+def arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
+    """Write the sliding pairs between equal arcs one chord apart as (from, to, alpha) rows; return their number."""
+    if not are_one_chord_apart(a, b, d):
+        return 0
+    alpha = atan2(b[Y] - a[Y], b[X] - a[X])
+    turned = atan2(
+        a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X], a[AXIS_X] * b[AXIS_X] + a[AXIS_Y] * b[AXIS_Y]
+    )
+    if b[HALF_EXTENT] >= pi:
+        out[0, SLIDE_FROM], out[0, SLIDE_TO], out[0, DIRECTION] = -a[HALF_EXTENT], a[HALF_EXTENT], alpha
+        return 1
+    count = 0
+    for lap in range(-1, 2):
+        middle = turned + lap * TURN
+        low, high = (
+            max(-a[HALF_EXTENT], middle - b[HALF_EXTENT]),
+            min(a[HALF_EXTENT], middle + b[HALF_EXTENT]),
+        )
+        if low <= high:
+            out[count, SLIDE_FROM], out[count, SLIDE_TO], out[count, DIRECTION] = low, high, alpha
+            count += 1
+    return count
+
+
+@inner_making_arrays
+def sliding_pairs_between(a: Array, b: Array, d: float) -> Array:
+    """Sliding pairs of a chord of length d from feature a to feature b.
+
+    Returns
+    -------
+    (N, 3) array
+        Columns: lowest and highest parameter of the tail on a, alpha in radians.
+    """
+    out = np.empty((4, 3))
+    count = 0
+    if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
+        if abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL:
+            count = line_sliding_pairs(a, b, d, out)
+    elif a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
+        count = arc_sliding_pairs(a, b, d, out)
+    return out[:count]
+
+
+@inner
+def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tuple[bool, float]:
+    """Whether a curve may exist at an orientation known to ``reach``, and psi moved by whole turns into its range.
+
+    Slivers around a coincidence, left out of the ranges, count as inside.
+    """
+    low, high = reals[curve, FROM] - reals[curve, SHIFT], reals[curve, TO] - reals[curve, SHIFT]
+    inside = psi + TURN * ceil((low - SLIVER - reach - psi) / TURN)
+    return (inside <= high + SLIVER + reach, min(max(inside, low), high))
+
+
+@inner
+def sliding_pair_reach(a: Array, b: Array, sliding_pair: Array) -> float:
+    """How far in radians the orientation of a sliding pair may be off.
+
+    Between lines the distance h across gives the angle off square by cos = h / d, so an error of h counts by 1 / (d sin);
+    the sine is at least 8.9e-8 (``conventions.SQUARE``). Between arcs whose centres are a misfit m from one chord apart, and
+    whose radii differ by r, the chord whose contacts lie in the direction phi from the centres' line is (r + m cos phi) /
+    (d sin phi) off: no more than told where its lines of action are 15 degrees from the chord or more, and nearer to it with
+    the share of the closure that such contacts leave the others.
+    """
+    d = sliding_pair[STEP_LENGTH]
+    error = backward_error(a, b, d)
+    if a[IS_ARC] == 0.0:
+        nx, ny = a[AXIS_Y], -a[AXIS_X]
+        along = abs(cos(sliding_pair[DIRECTION]) * ny - sin(sliding_pair[DIRECTION]) * nx)
+        tilt = abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) + ROUNDING
+        return ROUNDING + (error + tilt * (a[HALF_EXTENT] + b[HALF_EXTENT] + d)) / (d * along)
+    return (
+        ROUNDING + (error + 4.0 * (abs(hypot(b[X] - a[X], b[Y] - a[Y]) - d) + abs(a[RADIUS] - b[RADIUS]))) / d
+    )
+
+
+@inner
+def place_sliding_pair(
+    pegs: Array,
+    x: float,
+    y: float,
+    line: float,
+    whole: IntArray,
+    sliding_pair: Array,
+    radius: float,
+    reach: float,
+) -> None:
+    """Write the pegs of a sliding pair to (2, 6) places, with its tail at (x, y) in row ``line`` of column 0."""
+    alpha, d = sliding_pair[DIRECTION], sliding_pair[STEP_LENGTH]
+    place_peg(pegs[0], x, y, whole[TAIL], 0.0, line, radius)
+    place_peg(
+        pegs[1],
+        x + d * cos(alpha),
+        y + d * sin(alpha),
+        whole[HEAD],
+        float(whole[COLUMN_STEP]),
+        line + whole[ROW_STEP],
+        radius + d * reach,
+    )
+
+
+@inner
+def tail_inside(row: Array, sliding_pair: Array, x: float, y: float, radius: float) -> bool:
+    """Whether a tail known to a radius in mm may lie in a sliding pair's range on its feature."""
+    spare = radius + 1e-10
+    if row[IS_ARC] != 0.0:
+        spare = 1.2 * spare / row[RADIUS]
+    s = parameter_on(row, x, y)
+    return sliding_pair[SLIDE_FROM] - spare <= s <= sliding_pair[SLIDE_TO] + spare
+
+
+@inner
+def add_lines(
+    out: Array,
+    count: int,
+    pair: int,
+    reach: float,
+    curve: int,
+    inside: float,
+    sliding_pairs: SlidingPairs,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    space: WorkSpace,
+    stats: IntArray,
+) -> int:
+    """Append the fixtures of a sliding pair on one carrier and a curve's chord on the other: one for each line of holes in
+    which they meet.
+
+    Parameters
+    ----------
+    reach : how far the orientation of the pair may be off, in radians.
+    inside : the orientation in the curve's range.
+
+    Returns
+    -------
+    how many records there are, -1 when there is no room for another
+    """
+    whole, sliding_pair, pegs = sliding_pairs.integers[pair], sliding_pairs.reals[pair], space.pegs
+    rows, pitch_y, psi = features.rows, lattice.pitch_y, sliding_pair[ORIENTATION]
+    ax, ay = -sin(psi), cos(psi)
+    row = features.loose[whole[TAIL]]
+    lowest, highest = height_range(row, ax, ay)
+    tail = curves.integers[curve, TAIL]
+    place_chord(pegs[:2], curve, inside, 2.0 * reach + SLIVER, 0.0, rows, curves)
+    height = ax * pegs[0, PEG_X] + ay * pegs[0, PEG_Y]
+    error = pegs[0, PEG_RADIUS] + 4.0 * limits.wrench_length * reach
+    slack = 1e-9 + error / pitch_y
+    for order in range(2):
+        # The sliding pair stands still for order 0, and is on the moving carrier for order 1.
+        one, two = (whole[TAIL], tail) if order == 0 else (tail, whole[TAIL])
+        if not (is_among(one, features.standing) and is_among(two, features.moving)):
+            continue
+        sign = 1.0 if order == 0 else -1.0
+        base = height - sign * lattice.row_offset
+        first = int(ceil((lowest - base) / pitch_y - slack))
+        last = int(floor((highest - base) / pitch_y + slack))
+        for line in range(first, last + 1):
+            for k in range(2):
+                meets, x, y, radius = row_meets(row, ax, ay, base + line * pitch_y, error, 1.0 - 2.0 * k)
+                if not meets or not tail_inside(row, sliding_pair, x, y, radius):
+                    continue
+                # The first peg of the standing chord is in row 0.
+                slid, turned = (0.0, float(-line)) if order == 0 else (float(line), 0.0)
+                at, other = 2 * order, 2 - 2 * order
+                place_sliding_pair(pegs[at : at + 2], x, y, slid, whole, sliding_pair, radius, reach)
+                place_chord(
+                    pegs[other : other + 2], curve, inside, 2.0 * reach + SLIVER, turned, rows, curves
+                )
+                verdict, separation = is_fixture(
+                    pegs, 2.0, psi, reach, features, limits, space.contacts, space.null
+                )
+                stats[CANDIDATES] += 1
+                if verdict > 0 and order == 0:
+                    stats[CONTACTS] += 1
+                if is_listed(verdict, counting, count, limits):
+                    if count == out.shape[0]:
+                        return -1
+                    write_record(out[count], 2.0, pegs, psi, separation, reach)
+                    count += 1
+    return count
+
+
+@inner
+def add_chords(
+    out: Array,
+    count: int,
+    pair: int,
+    sliding_pairs: SlidingPairs,
+    members: IntArray,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    space: WorkSpace,
+    stats: IntArray,
+) -> int:
+    """Append the fixtures of two and two pegs of a sliding pair and the curves, from the member at ``space.at`` on (see
+    ``work_space``)."""
+    at, loose = space.at, features.loose
+    whole, sliding_pair = sliding_pairs.integers[pair], sliding_pairs.reals[pair]
+    psi, reach = (
+        sliding_pair[ORIENTATION],
+        sliding_pair_reach(loose[whole[TAIL]], loose[whole[HEAD]], sliding_pair),
+    )
+    for m in range(at[0], members.shape[0]):
+        if stats[STOPPED] != 0:
+            break
+        curve = members[m]
+        exists, inside = orientation_inside(curve, psi, reach, curves.reals)
+        if not exists or shares_a_line(curves.reals[curve], inside):
+            continue
+        candidates, contacts = stats[CANDIDATES], stats[CONTACTS]
+        more = add_lines(
+            out,
+            count,
+            pair,
+            reach,
+            curve,
+            inside,
+            sliding_pairs,
+            features,
+            curves,
+            lattice,
+            limits,
+            counting,
+            space,
+            stats,
+        )
+        if more < 0:
+            at[0], stats[CANDIDATES], stats[CONTACTS] = m, candidates, contacts
+            return count
+        count = more
+    at[0] = members.shape[0]
+    return count
+
+
+@inner
+def add_third_pegs(
+    out: Array,
+    count: int,
+    pair: int,
+    sliding_pairs: SlidingPairs,
+    members: IntArray,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    space: WorkSpace,
+    stats: IntArray,
+) -> int:
+    """Append the fixtures of three and one peg of a sliding pair and the curves from its tail, from the member at
+    ``space.at`` on (see ``work_space``)."""
+    at, loose, pegs = space.at, features.loose, space.pegs
+    whole, sliding_pair = sliding_pairs.integers[pair], sliding_pairs.reals[pair]
+    psi, tail = sliding_pair[ORIENTATION], whole[TAIL]
+    reach = sliding_pair_reach(loose[tail], loose[whole[HEAD]], sliding_pair)
+    for m in range(at[0], members.shape[0]):
+        if stats[STOPPED] != 0:
+            break
+        curve = members[m]
+        if curves.integers[curve, TAIL] != tail:
+            continue
+        exists, inside = orientation_inside(curve, psi, reach, curves.reals)
+        if not exists or not share_a_carrier(whole, curves.integers[curve], limits):
+            continue
+        if shares_a_line(curves.reals[curve], inside):
+            continue
+        place_triple(pegs, curve, curve, inside, 2.0 * reach + SLIVER, features.rows, curves)
+        x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]
+        if not tail_inside(loose[tail], sliding_pair, x, y, radius):
+            continue
+        place_sliding_pair(pegs[:2], x, y, 0.0, whole, sliding_pair, radius, reach)
+        candidates, contacts = stats[CANDIDATES], stats[CONTACTS]
+        more = add_moving_pegs(out, count, psi, reach, features, lattice, limits, counting, space, stats)
+        if more < 0:
+            at[0], stats[CANDIDATES], stats[CONTACTS] = m, candidates, contacts
+            return count
+        count = more
+    at[0] = members.shape[0]
+    return count
+
+
+@compiled_making_arrays
+def sliding_two_and_two(
+    chosen: IntArray,
+    sliding_pairs: SlidingPairs,
+    members: IntArray,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    stats: IntArray,
+) -> Array:
+    """All fixtures of two and two pegs that rest on one of the ``chosen`` sliding pairs and on a curve of ``members``.
+
+    Parameters and result as for ``two_and_two_cells``.
+    """
+    out, space = np.empty((16, RECORD_LENGTH)), work_space()
+    count = int(np.int64(0))
+    for pair in chosen:
+        space.at[0] = 0
+        while True:
+            count = add_chords(
+                out,
+                count,
+                pair,
+                sliding_pairs,
+                members,
+                features,
+                curves,
+                lattice,
+                limits,
+                counting,
+                space,
+                stats,
+            )
+            if space.at[0] == members.shape[0]:
+                break
+            out = grown(out)
+    return out[:count]
+
+
+@compiled_making_arrays
+def sliding_three_and_one(
+    chosen: IntArray,
+    sliding_pairs: SlidingPairs,
+    members: IntArray,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    stats: IntArray,
+) -> Array:
+    """All fixtures of three and one peg two of whose standing pegs form one of the ``chosen`` sliding pairs from the shared
+    tail.
+
+    Parameters and result as for ``two_and_two_cells``.
+    """
+    out, space = np.empty((16, RECORD_LENGTH)), work_space()
+    count = int(np.int64(0))
+    for pair in chosen:
+        if not is_among(sliding_pairs.integers[pair, TAIL], features.standing):
+            continue
+        space.at[0] = 0
+        while True:
+            count = add_third_pegs(
+                out,
+                count,
+                pair,
+                sliding_pairs,
+                members,
+                features,
+                curves,
+                lattice,
+                limits,
+                counting,
+                space,
+                stats,
+            )
+            if space.at[0] == members.shape[0]:
+                break
+            out = grown(out)
+    return out[:count]

@@ -1,0 +1,381 @@
+"""Two pegs on each carrier: crossings of the heights of two chords, modulo the row pitch (the paper's Type I).
+
+Where a half turn swaps two equal carriers, half a turn of orientations is enough: each fixture shows up once,
+with the one chord or the other on the carrier that stands still.
+
+Before crossings are sought, three bounds of the pieces are compared, each by a few additions. The moving
+chord must be able to stand the smallest gap to the right of the standing one. Both must be able to push
+against each other along x. The difference of their heights must be able to be a whole number of pitches.
+"""
+
+from __future__ import annotations
+
+from math import ceil, cos, floor, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
+from workhold.kernels.base.arrays import grown
+from workhold.kernels.base.compiling import compiled_making_arrays, inner
+from workhold.kernels.base.given import Features, Lattice, Limits
+from workhold.kernels.chord.columns import (
+    ACROSS_LEAST,
+    ACROSS_MOST,
+    CENTER,
+    COLUMN_STEP,
+    CURVE,
+    HEAD,
+    HIGH,
+    LEFTWARD_LOW,
+    LENGTH,
+    LOW,
+    PIECE_LENGTH,
+    RIGHTWARD_LOW,
+    ROW_STEP,
+    SHIFT,
+    STEADY,
+    TAIL,
+    VALUE_LEAST,
+    VALUE_MOST,
+    X_STANDING,
+    Curves,
+)
+from workhold.kernels.chord.evaluation import HEIGHT
+from workhold.kernels.contact.record import RECORD_LENGTH, place_peg, write_given_up, write_record
+from workhold.kernels.contact.rules import is_fixture, is_listed
+from workhold.kernels.curves.piece_bounds import HAIR, chord_tail, kept_edges
+from workhold.kernels.curves.pieces import cell_pieces
+from workhold.kernels.curves.roots import (
+    MULTIPLE,
+    ROOT_PSI,
+    ROOT_RADIUS,
+    WorkSpace,
+    crossings,
+    may_meet,
+    work_space,
+)
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought, four contacts
+# examined, and those that may be inside their features.
+PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
+# Beside these is what another thread asks for: any number but 0 at STOPPED ends the work soon.
+STOPPED = 4
+STATISTICS = 5
+# Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
+(
+    ROLE_X,
+    ROLE_FORCE_LOW,
+    ROLE_FORCE_HIGH,
+    ROLE_VALUE_LEAST,
+    ROLE_VALUE_MOST,
+    ROLE_LOW,
+    ROLE_HIGH,
+    ROLE_PIECE,
+) = range(8)
+ROLE_LENGTH = 8
+
+
+@inner
+def place_chord(
+    pegs: Array, curve: int, psi: float, reach: float, line: float, features: Array, curves: Curves
+) -> None:
+    """Write the pegs of a curve's chord to (2, 6) places, the tail in row ``line`` of column 0.
+
+    ``reach`` tells how far in radians psi may be off; the pegs' radii follow from it.
+    """
+    step, reals = curves.integers[curve], curves.reals[curve]
+    tail, head = step[TAIL], step[HEAD]
+    d, alpha = reals[LENGTH], psi + reals[SHIFT]
+    x, y, radius = chord_tail(features[tail], features[head], reals, psi, reach)
+    column, row = float(step[COLUMN_STEP]), float(step[ROW_STEP])
+    place_peg(pegs[0], x, y, tail, 0.0, line, radius)
+    place_peg(pegs[1], x + d * cos(alpha), y + d * sin(alpha), head, column, line + row, radius + d * reach)
+
+
+@inner
+def is_among(feature: int, touched: tuple[int, int]) -> bool:
+    """Whether a feature is among those that the pegs of a carrier touch."""
+    return touched[0] <= feature < touched[1]
+
+
+@inner
+def write_roles(
+    pieces: Array,
+    integers: IntArray,
+    touched: tuple[int, int],
+    x_column: int,
+    force_column: int,
+    counting: bool,
+    out: Array,
+) -> int:
+    """Write the (N, 8) roles of the pieces that may be on one carrier; return their number."""
+    count = int(np.int64(0))
+    for k in range(pieces.shape[0]):
+        row = pieces[k]
+        if row[force_column] > row[force_column + 1] and not counting:
+            continue
+        if not is_among(integers[int(row[CURVE]), TAIL], touched):
+            continue
+        role = out[count]
+        role[ROLE_X], role[ROLE_FORCE_LOW] = row[x_column], row[force_column]
+        role[ROLE_FORCE_HIGH] = row[force_column + 1]
+        role[ROLE_VALUE_LEAST], role[ROLE_VALUE_MOST] = row[VALUE_LEAST], row[VALUE_MOST]
+        role[ROLE_LOW], role[ROLE_HIGH], role[ROLE_PIECE] = row[LOW], row[HIGH], k
+        count += 1
+    return count
+
+
+@inner
+def sort_from_right(roles: Array, keys: Array, order: IntArray, out: Array) -> None:
+    """Write (N, 8) roles to ``out`` in the order of their places along x, the rightmost first (Shell's sort).
+
+    ``keys`` and ``order`` are (N,) work space.
+    """
+    count = roles.shape[0]
+    for k in range(count):
+        keys[k], order[k] = roles[k, ROLE_X], k
+    step = 1
+    while step < count // 3:
+        step = 3 * step + 1
+    while step > 0:
+        for k in range(step, count):
+            key, item, at = keys[k], order[k], k
+            while at >= step and keys[at - step] < key:
+                keys[at], order[at] = keys[at - step], order[at - step]
+                at -= step
+            keys[at], order[at] = key, item
+        step //= 3
+    for j in range(count):
+        for k in range(ROLE_LENGTH):
+            out[j, k] = roles[order[j], k]
+
+
+@inner
+def flat_slope(first: Array, second: Array) -> float:
+    """A slope of the difference of heights below which two pieces do not clamp hard enough anywhere.
+
+    The forces of each carrier's pegs act together along the line through the instant centres, so of a force of size 1 the
+    part x . (P_B - P_A) / |P_B - P_A| clamps, and x . (P_B - P_A) is minus the slope.
+    """
+    across = max(first[ACROSS_LEAST] - second[ACROSS_MOST], second[ACROSS_LEAST] - first[ACROSS_MOST])
+    return 0.9 * LEAST_CLAMPING * max(across, 0.0)
+
+
+@inner
+def may_cross(standing: Array, moving: Array, lattice: Lattice, counting: bool) -> bool:
+    """Whether two roles far enough apart may make a fixture: their force directions and their heights allow it.
+
+    For ``counting`` it is asked only whether the four contacts may be simultaneous.
+    """
+    if not counting and (
+        moving[ROLE_FORCE_LOW] > standing[ROLE_FORCE_HIGH]
+        or moving[ROLE_FORCE_HIGH] < standing[ROLE_FORCE_LOW]
+    ):
+        return False
+    if moving[ROLE_LOW] >= standing[ROLE_HIGH] or standing[ROLE_LOW] >= moving[ROLE_HIGH]:
+        return False
+    lowest = moving[ROLE_VALUE_LEAST] - standing[ROLE_VALUE_MOST] - lattice.row_offset - HAIR
+    highest = moving[ROLE_VALUE_MOST] - standing[ROLE_VALUE_LEAST] - lattice.row_offset + HAIR
+    return ceil(lowest / lattice.pitch_y) * lattice.pitch_y <= highest
+
+
+@inner
+def counts_once(features: Features, lattice: Lattice) -> bool:
+    """Whether it makes no other contact when two chords change carriers: both touch the same features, and both signs of the
+    row offset mean the same rows."""
+    offsets = 2.0 * lattice.row_offset / lattice.pitch_y
+    return features.standing[0] == features.moving[0] and abs(floor(offsets + 0.5) - offsets) <= 1e-12
+
+
+@inner
+def add_crossings(
+    out: Array,
+    count: int,
+    number: int,
+    one: int,
+    two: int,
+    features: Features,
+    curves: Curves,
+    limits: Limits,
+    counting: bool,
+    space: WorkSpace,
+    stats: IntArray,
+) -> int:
+    """Examine the four contacts at each of a ``number`` of crossings of two curves; append those that are listed to ``out``,
+    which has room for all."""
+    pegs, roots = space.pegs, space.roots
+    for root in range(number):
+        psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
+        # The height of the moving chord over the standing one is the row offset and so many pitches.
+        place_chord(pegs[:2], one, psi, reach, 0.0, features.rows, curves)
+        place_chord(pegs[2:], two, psi, reach, roots[root, MULTIPLE], features.rows, curves)
+        verdict, separation = is_fixture(pegs, 2.0, psi, reach, features, limits, space.contacts, space.null)
+        stats[CANDIDATES] += 1
+        if verdict > 0:
+            stats[CONTACTS] += 1
+        if is_listed(verdict, counting, count, limits):
+            write_record(out[count], 2.0, pegs, psi, separation, reach)
+            count += 1
+    return count
+
+
+@inner
+def add_pairs(
+    out: Array,
+    count: int,
+    standing: Array,
+    moving: Array,
+    pieces: Array,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    space: WorkSpace,
+    stats: IntArray,
+) -> int:
+    """Append what comes of the pairs of two lists of roles, from the one at ``space.at`` on (see ``work_space``).
+
+    Parameters
+    ----------
+    standing, moving : (N, 8) and (M, 8) roles, the moving ones from right to left.
+    """
+    at, loose, integers = space.at, features.loose, curves.integers
+    gap = limits.gap - GAP_SLACK - HAIR
+    once = counting and limits.most_listed == 0.0 and counts_once(features, lattice)
+    for i in range(at[0], standing.shape[0]):
+        if stats[STOPPED] != 0:
+            break
+        role = standing[i]
+        first = pieces[int(role[ROLE_PIECE])]
+        one = int(first[CURVE])
+        for j in range(at[1], moving.shape[0]):
+            other = moving[j]
+            if not counting and other[ROLE_X] - role[ROLE_X] < gap:
+                break
+            stats[PAIRS] += 1
+            if not may_cross(role, other, lattice, counting):
+                continue
+            second = pieces[int(other[ROLE_PIECE])]
+            two = int(second[CURVE])
+            if one == two or (integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]):
+                continue
+            if once and one > two:
+                continue
+            steady = first[STEADY] * second[STEADY] == 1.0
+            if steady and not may_meet(first, second, lattice.row_offset, lattice.pitch_y):
+                continue
+            if stats[STOPPED] != 0:
+                break
+            flat = 0.0 if counting else flat_slope(first, second)
+            number = crossings(
+                first,
+                second,
+                loose,
+                curves,
+                HEIGHT,
+                lattice.row_offset,
+                lattice.pitch_y,
+                flat,
+                space.stack,
+                space.roots,
+            )
+            if count + max(number, 1) > out.shape[0]:
+                at[0], at[1] = i, j
+                stats[PAIRS] -= 1
+                return count
+            stats[CROSSED] += 1
+            if number < 0:
+                write_given_up(out[count], 2.0, first, second, integers)
+                count += 1
+            count = add_crossings(
+                out, count, number, one, two, features, curves, limits, counting, space, stats
+            )
+        at[1] = 0
+    at[0] = standing.shape[0]
+    return count
+
+
+@compiled_making_arrays
+def two_and_two_cells(
+    edges: Array,
+    members: IntArray,
+    features: Features,
+    curves: Curves,
+    lattice: Lattice,
+    limits: Limits,
+    counting: bool,
+    stats: IntArray,
+) -> Array:
+    """All fixtures of two and two pegs with psi in some neighbouring cells, but those that rest on a sliding pair.
+
+    Parameters
+    ----------
+    edges : (K + 1,) edges of K cells, psi in radians.
+    members : (M,) indices of the curves that exist in some of them, ascending.
+    counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only; those that are listed,
+        if any, are listed with either chord on the carrier that stands still.
+    stats : (5,) counts to add to; once its entry ``STOPPED`` is not 0, what was found so far is returned.
+
+    Returns
+    -------
+    (N, 19) array of records
+    """
+    out = np.empty((64, RECORD_LENGTH))
+    count = int(np.int64(0))
+    space, kept, room = work_space(), kept_edges(members.shape[0]), np.empty((64, PIECE_LENGTH))
+    loose, integers = features.loose, curves.integers
+    # Where closing clamps, standing pegs push to the right; where opening does, to the left.
+    standing_force, moving_force = RIGHTWARD_LOW, LEFTWARD_LOW
+    if limits.clamping < 0.0:
+        standing_force, moving_force = LEFTWARD_LOW, RIGHTWARD_LOW
+    for cell in range(edges.shape[0] - 1):
+        if stats[STOPPED] != 0:
+            break
+        room, number = cell_pieces(
+            edges[cell],
+            edges[cell + 1],
+            members,
+            loose,
+            curves,
+            lattice.pitch_x,
+            limits.least_margin,
+            HEIGHT,
+            kept,
+            np.inf,
+            room,
+        )
+        pieces = room[:number]
+        roles, counts = np.empty((2, pieces.shape[0], ROLE_LENGTH)), np.empty(2, np.int64)
+        for side in range(2):
+            touched = features.standing if side == 0 else features.moving
+            force = standing_force if side == 0 else moving_force
+            counts[side] = write_roles(
+                pieces, integers, touched, X_STANDING + side, force, counting, roles[side]
+            )
+        moving = np.empty((counts[1], ROLE_LENGTH))
+        sort_from_right(roles[1, : counts[1]], np.empty(counts[1]), np.empty(counts[1], np.int64), moving)
+        standing, space.at[0] = roles[0, : counts[0]], 0
+        while True:
+            count = add_pairs(
+                out,
+                count,
+                standing,
+                moving,
+                pieces,
+                features,
+                curves,
+                lattice,
+                limits,
+                counting,
+                space,
+                stats,
+            )
+            if space.at[0] == standing.shape[0]:
+                break
+            out = grown(out)
+    return out[:count]

@@ -1,0 +1,119 @@
+"""Proven contacts as fixtures: where they are, with what forces, and in the one form each fixture is listed in."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.conventions import LEAST_SPAN
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.given import Setting
+from workhold.kernels.contact.record import NULL, take_pegs, touch
+from workhold.kernels.proof.newton_kantorovich import held, wrenches
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@compiled
+def contacts_of(
+    records: Array,
+    rows: Array,
+    setting: Setting,
+    points: Array,
+    gaps: Array,
+    nulls: Array,
+    forces: Array,
+    w: Array,
+    pairs: Array,
+) -> None:
+    """Where the contacts of records are, and with what forces they hold.
+
+    Parameters
+    ----------
+    records : (N, 19), see ``kernels.contact.record``.
+    rows : (F, 12) of the features.
+    points : (N, 4, 2) receives the pegs' centres in mm.
+    gaps : (N,) receives the x distance from the rightmost standing to the leftmost moving peg.
+    nulls : (N, 4) receives the null vectors scaled to sizes of sum 1, their sum not negative; all -1 where the wrenches do
+        not span the space.
+    forces : (N, 4) receives the forces per unit of clamping force.
+    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null vectors.
+    """
+    length, null = setting.limits.wrench_length, w[NULL]
+    for n in range(records.shape[0]):
+        take_pegs(records[n], setting.lattice, w)
+        touch(records[n], rows, length, w, pairs[0])
+        wrenches(records[n], rows, length, pairs, null)
+        total = null[0] + null[1] + null[2] + null[3]
+        size = abs(null[0]) + abs(null[1]) + abs(null[2]) + abs(null[3])
+        sign = 1.0 if total >= 0.0 else -1.0
+        for k in range(4):
+            null[k] = sign * null[k] / size if size > LEAST_SPAN else -1.0
+        gaps[n], push = held(w, pairs[0], pairs[1], null)
+        push *= setting.limits.clamping
+        for k in range(4):
+            points[n, k, 0], points[n, k, 1] = pairs[0, k, 0], pairs[0, k, 1]
+            nulls[n, k], forces[n, k] = null[k], null[k] / push
+
+
+@compiled
+def to_canonical_form(
+    standing: IntArray,
+    theta: Array,
+    columns: IntArray,
+    rows: IntArray,
+    orders: IntArray,
+    swapped: int,
+    hair: float,
+) -> None:
+    """Bring fixtures to the form they are listed in, in place.
+
+    Orientations are in [0, 2 pi), or in [0, pi) where the half turn that swaps the carriers leaves the arrangement as it is,
+    up to a hair; columns count from the leftmost peg of each carrier, rows from the lowest of all; pegs of a carrier are in
+    the order of columns and rows.
+
+    Parameters
+    ----------
+    standing : (N,) how many of the pegs, the first ones, stand on the carrier that stands still.
+    theta : (N,) orientation of the workpiece in radians.
+    columns, rows : (N, 4) lattice places.
+    orders : (N, 4) receives the order of the pegs.
+    swapped : how many pegs stand on each carrier of the arrangement that such a half turn leaves as it is; 0 for none.
+    hair : orientations nearer than this, in radians, are one.
+    """
+    for n in range(len(standing)):
+        angle = (theta[n] + hair) % (2.0 * pi) - hair
+        # Everything turned half way round: the carriers swap, rows and columns run the other way.
+        turned = standing[n] == swapped and angle >= pi - hair
+        theta[n] = angle - pi if turned else angle
+        order, column, row = orders[n], columns[n], rows[n]
+        for k in range(4):
+            order[k] = 3 - k if turned else k
+            if turned:
+                column[k], row[k] = -column[k], -row[k]
+        lowest = min(min(row[0], row[1]), min(row[2], row[3]))
+        for carrier in range(2):
+            first, last = (0, standing[n]) if carrier == 0 else (standing[n], 4)
+            base = column[order[first]]
+            for k in range(first, last):
+                base = min(base, column[order[k]])
+            for k in range(first, last):
+                column[order[k]] -= base
+                row[order[k]] -= lowest
+            for k in range(first + 1, last):
+                m = k
+                while m > first and comes_before(column, row, order[m], order[m - 1]):
+                    order[m - 1], order[m] = order[m], order[m - 1]
+                    m -= 1
+        a, b, c, d = order[0], order[1], order[2], order[3]
+        column[0], column[1], column[2], column[3] = column[a], column[b], column[c], column[d]
+        row[0], row[1], row[2], row[3] = row[a], row[b], row[c], row[d]
+
+
+@inner
+def comes_before(column: IntArray, row: IntArray, one: int, other: int) -> bool:
+    """Whether a peg stands before another in the order of columns and rows."""
+    return column[one] < column[other] or (column[one] == column[other] and row[one] < row[other])

@@ -1,0 +1,371 @@
+"""Where a part is free between pegs: slices of the C-space, and directions in which it can be taken away.
+
+In a slice at one orientation and height a part's free places along x are intervals for each jaw. Places are
+counted from where the part lies in its seat, for the left jaw as it stands and for the right one as it stands
+there. With the jaws opened by s, x in an interval of the left and x - s in one of the right is free. A pair
+of intervals is open below s where the low end of the left less the high end of the right is less.
+
+A part is taken away straight with the jaws as they stand. Seen from a peg's centre, the directions in which
+it meets a piece of the boundary from outside are a range. So are those that lead into a piece that it
+touches. Where the ranges of all pegs, and of a wall, leave any direction, they leave the end of one of them.
+
+Glossary
+--------
+slice : a part of the C-space in which a coordinate has one value: T. Lozano-Perez, "Spatial planning: a
+    configuration space approach", IEEE Transactions on Computers C-32 (1983).
+"""
+
+from __future__ import annotations
+
+from math import acos, atan2, cos, floor, hypot, inf, isnan, nan, pi, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.columns import Obstacles
+from workhold.kernels.seating.obstacles import (
+    angle_from_middle,
+    cut_by_wall,
+    length,
+    normal_at,
+    on_piece,
+    place_on_part,
+)
+from workhold.kernels.seating.two_contact_curves import gap
+
+Array = NDArray[np.float64]
+
+# Intervals of a jaw that are kept at one place, and crossings that are looked at.
+MOST_INTERVALS, MOST_CROSSINGS = 6, 256
+# A grid does not stand on its middle, where pegs touch: by these parts of a step.
+OFF_TURN, OFF_SHIFT = 0.29, 0.37
+
+
+@inner
+def add_crossing(crossings: Array, count: int, at: float, sign: float) -> int:
+    """Writes where pegs enter (1) or leave (-1) a part that moves along +x; returns the new count."""
+    if count < crossings.shape[0]:
+        crossings[count, 0], crossings[count, 1] = at, sign
+    return count + 1
+
+
+@inner
+def collect_crossings(
+    config: Array, theta: float, y: float, jaw: int, obstacles: Obstacles, crossings: Array
+) -> int:
+    """Writes where a part moving along x meets the pegs of a jaw, which stands as in a configuration.
+
+    Returns how many.
+    """
+    cosine, sine = cos(theta), sin(theta)
+    count = 0
+    for k in range(obstacles.pegs.shape[0]):
+        if obstacles.right[k] != jaw:
+            continue
+        ahead = obstacles.pegs[k, 0] + obstacles.right[k] * config[3] - config[1]
+        level = obstacles.pegs[k, 1] - y
+        for piece in range(obstacles.parts[jaw, 0], obstacles.parts[jaw, 1]):
+            row = obstacles.rows[piece]
+            cx, up = cosine * row[X] - sine * row[Y], level - (sine * row[X] + cosine * row[Y])
+            ax, ay = cosine * row[AXIS_X] - sine * row[AXIS_Y], sine * row[AXIS_X] + cosine * row[AXIS_Y]
+            if row[IS_ARC] == 0.0:
+                # Half open, so that a joint counts once; the normal is (ay, -ax).
+                if ay != 0.0 and -row[HALF_EXTENT] <= up / ay < row[HALF_EXTENT]:
+                    count = add_crossing(
+                        crossings, count, ahead - (cx + up / ay * ax), 1.0 if ay > 0.0 else -1.0
+                    )
+                continue
+            if abs(up) >= row[RADIUS]:
+                continue
+            for side in range(2):
+                dx = (1.0 - 2.0 * side) * sqrt((row[RADIUS] - up) * (row[RADIUS] + up))
+                angle = angle_from_middle(row, cosine * dx + sine * up, cosine * up - sine * dx)
+                if row[HALF_EXTENT] >= pi or -row[HALF_EXTENT] <= angle < row[HALF_EXTENT]:
+                    count = add_crossing(
+                        crossings, count, ahead - (cx + dx), 1.0 if row[SIGN] * dx > 0.0 else -1.0
+                    )
+    return count
+
+
+@inner
+def free_intervals(
+    config: Array, theta: float, y: float, jaw: int, obstacles: Obstacles, crossings: Array, out: Array
+) -> int:
+    """Writes the intervals of x in which the pegs of a jaw are off the part; returns how many.
+
+    Where rounding leaves them in doubt there are none.
+    """
+    count = collect_crossings(config, theta, y, jaw, obstacles, crossings)
+    if count > crossings.shape[0]:
+        return 0
+    for i in range(1, count):
+        at, sign = crossings[i, 0], crossings[i, 1]
+        j = i
+        while j > 0 and crossings[j - 1, 0] > at:
+            crossings[j, 0], crossings[j, 1] = crossings[j - 1, 0], crossings[j - 1, 1]
+            j -= 1
+        crossings[j, 0], crossings[j, 1] = at, sign
+    found, depth, low = 0, 0, -inf
+    for i in range(count):
+        depth += 1 if crossings[i, 1] > 0.0 else -1
+        if depth == 1 and crossings[i, 1] > 0.0:
+            if crossings[i, 0] > low:
+                if found >= out.shape[0] - 1:
+                    return 0
+                out[found, 0], out[found, 1] = low, crossings[i, 0]
+                found += 1
+        elif depth == 0:
+            low = crossings[i, 0]
+    if depth != 0:
+        # A joint was missed or counted twice.
+        return 0
+    out[found, 0], out[found, 1] = low, inf
+    return found + 1
+
+
+@compiled
+def free_poses(
+    config: Array,
+    opening: float,
+    cells: int,
+    step: Array,
+    lean: float,
+    arm: float,
+    obstacles: Obstacles,
+    crossings: Array,
+    intervals: Array,
+    out: Array,
+) -> int:
+    """Writes free poses around a seat with the jaws opened.
+
+    Of each cell of a grid of orientations and heights, and each pair of intervals, they are the nearest and
+    both ends.
+
+    Parameters
+    ----------
+    config : (4,) of the seat.
+    opening : in mm.
+    cells, step : of the grid, both ways; (2,) in radians and mm.
+    lean : how fast in mm per radian the grid's middle rises with the orientation.
+    arm : R, largest distance of a point of the silhouette from the centre, in mm.
+    crossings, intervals : (MOST_CROSSINGS, 2) and (2, MOST_INTERVALS, 2) work space.
+    out : (N, 5) rows of |shift| + 2 R sin(|turn| / 2), and theta, x, y, S, as far as there is room.
+
+    Returns
+    -------
+    how many were written
+    """
+    count = 0
+    for i in range(cells):
+        turn = (i - cells // 2 + OFF_TURN) * step[0]
+        for j in range(cells):
+            shift = lean * turn + (j - cells // 2 + OFF_SHIFT) * step[1]
+            theta, y = config[0] + turn, config[2] + shift
+            n = free_intervals(config, theta, y, 0, obstacles, crossings, intervals[0])
+            n = cut_by_wall(config, theta, y, obstacles, intervals[0], n)
+            m = free_intervals(config, theta, y, 1, obstacles, crossings, intervals[1])
+            for a in range(n):
+                for b in range(m):
+                    low = max(intervals[0, a, 0], intervals[1, b, 0] + opening)
+                    high = min(intervals[0, a, 1], intervals[1, b, 1] + opening)
+                    if low > high:
+                        continue
+                    nearest = low if low > 0.0 else high if high < 0.0 else 0.0
+                    for way in range(3):
+                        x = nearest if way == 0 else low if way == 1 else high
+                        if (way > 0 and (x == nearest or abs(x) == inf)) or count >= out.shape[0]:
+                            continue
+                        row = out[count]
+                        row[0] = hypot(x, shift) + 2.0 * arm * sin(abs(turn) / 2.0)
+                        row[1], row[2], row[3], row[4] = theta, config[1] + x, y, config[3] + opening
+                        count += 1
+    return count
+
+
+# mm. A peg this near to a piece touches it, and one that is this deep in the part, as it may be where a way
+# down begins.
+TOUCHED, ENTERED = 1e-4, 0.01
+# mm. So far a peg is taken off what it touches, so that the way along that is seen to be free as far as it
+# is.
+LIFTED = 1e-6
+# Radians. Directions that pass an end by less meet it, and those that lead into what is touched by less go
+# along it; one range begins where another ends if no more is between: rounding.
+HAIR, ROUNDING = 1e-9, 1e-12
+TURN = 2.0 * pi
+# The most ranges that a peg and a piece have: into what is touched, and what is seen of an arc on each turn.
+RANGES = 4
+
+
+@inner
+def add_range(low: float, sweep: float, ranges: Array, count: int) -> int:
+    """Writes a range, its first direction and how far it goes on counter-clockwise; returns the new count."""
+    ranges[count, 0], ranges[count, 1] = low, sweep
+    return count + 1
+
+
+@inner
+def is_touched(row: Array, x: float, y: float) -> bool:
+    """Whether a peg at a place touches a piece."""
+    return -ENTERED < gap(row, x, y) < TOUCHED and on_piece(row, x, y, TOUCHED)
+
+
+@inner
+def add_line(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+    """Writes the directions in which a point meets a line; see ``add_piece``."""
+    off = gap(row, x, y)
+    if off <= 0.0:
+        return count
+    axis, along = atan2(row[AXIS_Y], row[AXIS_X]), (x - row[X]) * row[AXIS_X] + (y - row[Y]) * row[AXIS_Y]
+    low, high = atan2(off, row[HALF_EXTENT] - along), atan2(off, -row[HALF_EXTENT] - along)
+    return add_range(axis + low - HAIR, high - low + 2.0 * HAIR, ranges, count)
+
+
+@inner
+def seen_outside(radius: float, away: float, angle: float) -> float:
+    """The direction to a place of a circle from a point outside it, less that to the centre.
+
+    The angle is the place's, from the direction of the point.
+    """
+    return atan2(-radius * sin(angle), away - radius * cos(angle))
+
+
+@inner
+def seen_inside(radius: float, away: float, angle: float) -> float:
+    """The direction to a place of a circle from a point inside it, from the direction of the point.
+
+    It is never a quarter turn from the angle of the place, so that it goes on with it past half turns.
+    """
+    return angle + atan2(away * sin(angle), radius - away * cos(angle))
+
+
+@inner
+def add_side(row: Array, away: float, toward: float, near: bool, ranges: Array, count: int) -> int:
+    """Writes the directions in which a point outside an arc's circle meets its near or its far side.
+
+    The point is ``away`` from the centre in a direction.
+    """
+    seen = acos(row[RADIUS] / away)
+    first, last = (-seen, seen) if near else (seen, TURN - seen)
+    middle = atan2(row[AXIS_Y], row[AXIS_X]) - toward
+    middle -= TURN * floor(middle / TURN)
+    for turns in range(-1, 2):
+        around = middle + TURN * turns
+        low, high = max(around - row[HALF_EXTENT], first), min(around + row[HALF_EXTENT], last)
+        if low < high:
+            one, two = seen_outside(row[RADIUS], away, low), seen_outside(row[RADIUS], away, high)
+            count = add_range(toward + pi + min(one, two) - HAIR, abs(two - one) + 2.0 * HAIR, ranges, count)
+    return count
+
+
+@inner
+def add_concave(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+    """Writes the directions in which a point meets a concave arc, from inside or through the opening."""
+    dx, dy, radius = x - row[X], y - row[Y], row[RADIUS]
+    away, toward = length(dx, dy), atan2(dy, dx)
+    if is_touched(row, x, y):
+        # Along it there is no way.
+        count = add_range(toward - pi / 2.0 - HAIR, pi + 2.0 * HAIR, ranges, count)
+        away = min(away, radius)
+    if away > radius:
+        return add_side(row, away, toward, False, ranges, count)
+    if row[HALF_EXTENT] >= pi:
+        return add_range(0.0, TURN, ranges, count)
+    middle = atan2(row[AXIS_Y], row[AXIS_X]) - toward
+    low = seen_inside(radius, away, middle - row[HALF_EXTENT])
+    high = seen_inside(radius, away, middle + row[HALF_EXTENT])
+    return add_range(toward + low - HAIR, high - low + 2.0 * HAIR, ranges, count)
+
+
+@inner
+def add_piece(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+    """Writes the directions in which a point that moves straight meets a piece from outside.
+
+    Returns the new count.
+    """
+    if row[IS_ARC] == 0.0:
+        return add_line(row, x, y, ranges, count)
+    if row[SIGN] < 0.0:
+        return add_concave(row, x, y, ranges, count)
+    dx, dy = x - row[X], y - row[Y]
+    away = length(dx, dy)
+    return count if away <= row[RADIUS] else add_side(row, away, atan2(dy, dx), True, ranges, count)
+
+
+@inner
+def add_peg(x: float, y: float, rows: Array, first: int, end: int, ranges: Array, count: int) -> int:
+    """Writes the ranges of directions in which a peg meets the pieces of its boundary; returns the new count.
+
+    Of pieces that it touches they are those into them, and of all others those seen from beside what it
+    touches.
+    """
+    beside_x, beside_y = x, y
+    for k in range(first, end):
+        if is_touched(rows[k], x, y) and (rows[k, IS_ARC] == 0.0 or rows[k, SIGN] > 0.0):
+            nx, ny = normal_at(rows[k], x, y)
+            count = add_range(atan2(ny, nx) + pi / 2.0 + HAIR, pi - 2.0 * HAIR, ranges, count)
+            beside_x, beside_y = beside_x + LIFTED * nx, beside_y + LIFTED * ny
+    for k in range(first, end):
+        # What bends away from where it is touched is met nowhere else.
+        if (rows[k, IS_ARC] != 0.0 and rows[k, SIGN] < 0.0) or not is_touched(rows[k], x, y):
+            count = add_piece(rows[k], beside_x, beside_y, ranges, count)
+    return count
+
+
+@inner
+def way_left(ranges: Array, count: int) -> float:
+    """A direction in none of some open ranges, or NaN.
+
+    The search goes from the end of one to that of another which goes on farthest, until none does or all has
+    been gone around.
+    """
+    if count == 0:
+        return 0.0
+    at, gone = ranges[0, 0] + ranges[0, 1], 0.0
+    while gone <= TURN:
+        farthest = 0.0
+        for k in range(count):
+            if ranges[k, 1] >= TURN:
+                return nan
+            within = at - ranges[k, 0]
+            within -= TURN * floor(within / TURN)
+            if ROUNDING < within < ranges[k, 1] - ROUNDING:
+                farthest = max(farthest, ranges[k, 1] - within)
+        if farthest == 0.0:
+            return at
+        at, gone = at + farthest, gone + farthest
+    return nan
+
+
+@inner
+def way_away(config: Array, obstacles: Obstacles, ranges: Array) -> float:
+    """The direction that ``leave`` writes, of one configuration."""
+    count = 0
+    if obstacles.half_plane[0] != 0.0 or obstacles.half_plane[1] != 0.0:
+        # The part moves the other way than pegs do on it, and nothing moves toward the wall.
+        count = add_range(
+            atan2(obstacles.half_plane[1], obstacles.half_plane[0]) - config[0] - pi / 2.0, pi, ranges, count
+        )
+    for peg in range(obstacles.pegs.shape[0]):
+        (x, y), side = place_on_part(config, obstacles, peg), obstacles.right[peg]
+        count = add_peg(
+            x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1], ranges, count
+        )
+    return way_left(ranges, count)
+
+
+@compiled
+def leave(configs: Array, obstacles: Obstacles, ranges: Array, out: Array) -> None:
+    """Writes a direction (N,) along which all pegs can leave a part in configurations (N, 4), or NaN.
+
+    It is in radians in the part's frame; no peg enters the part, which comes no nearer to a wall. Entries
+    that are NaN already are left as they are.
+
+    Parameters
+    ----------
+    ranges : (RANGES * K * P + 1, 2) work space, of so many pegs and pieces.
+    """
+    for n in range(configs.shape[0]):
+        if not isnan(out[n]):
+            out[n] = way_away(configs[n], obstacles, ranges)

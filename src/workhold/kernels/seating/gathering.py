@@ -1,0 +1,264 @@
+"""The equilibria of a pattern gathered: candidates from subsets of its pegs, and manifolds, each once.
+
+Candidates of subsets are kept in the subsets' own frames. Columns of a subset:
+
+- FIRST, END : of its candidates among all that are kept.
+- NUMBER : of the first in their origins.
+- JAW : 0 or 1 where its pegs are all of one jaw and fix the part to it, else -1.
+- NAMES : four names, the pattern's numbers of its pegs, and last -1 of none.
+- SHIFT : what is added to x, y and S.
+
+Columns of what is gathered are those of a candidate, then SUBSET and ORIGIN: the subset that makes it and its
+number in the origins, -1 where none does. Of manifolds it is found what lies in which, and where descent
+paths off them begin.
+"""
+
+from __future__ import annotations
+
+from math import hypot, inf, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.seating.candidates import add_fourths
+from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
+    CONTACTS,
+    PEG,
+    PLACE_X,
+    SEPARATION,
+    Given,
+    Manifolds,
+)
+from workhold.kernels.seating.obstacles import length
+
+Array = NDArray[np.float64]
+
+FIRST, END, NUMBER, JAW, NAMES, SHIFT = 0, 1, 2, 3, 4, 8
+SUBSET_LENGTH = 11
+SUBSET, ORIGIN = CANDIDATE_LENGTH, CANDIDATE_LENGTH + 1
+GATHERED_LENGTH = CANDIDATE_LENGTH + 2
+
+
+@inner
+def write_moved(row: Array, subset: Array, out: Array) -> None:
+    """Writes a candidate of a subset as one of the pattern."""
+    for k in range(CANDIDATE_LENGTH):
+        out[k] = row[k]
+    for k in range(3):
+        out[PLACE_X + k] = row[PLACE_X + k] + subset[SHIFT + k]
+    for k in range(PEG, PEG + 4):
+        out[k] = subset[NAMES + (int(row[k]) if row[k] >= 0.0 else 3)]
+
+
+@inner
+def keep_reached(out: Array, count: int, end: int, stop: float, widest: float) -> int:
+    """Keeps the rows from ``count`` to ``end`` at separations that are reached, which no subset has.
+
+    Returns the new count.
+    """
+    for n in range(count, end):
+        if stop < out[n, SEPARATION] < widest:
+            for k in range(CANDIDATE_LENGTH):
+                out[count, k] = out[n, k]
+            out[count, SUBSET] = out[count, ORIGIN] = -1.0
+            count += 1
+    return count
+
+
+@inner
+def add_rows(rows: Array, stop: float, widest: float, out: Array, count: int) -> int:
+    """Adds candidates of no subset at separations that are reached; returns the new count, or -1.
+
+    -1 means that they do not fit.
+    """
+    if count + rows.shape[0] > out.shape[0]:
+        return -1
+    for n in range(rows.shape[0]):
+        for k in range(CANDIDATE_LENGTH):
+            out[count + n, k] = rows[n, k]
+    return keep_reached(out, count, count + rows.shape[0], stop, widest)
+
+
+@compiled
+def gathered(
+    subsets: Array,
+    kept: Array,
+    before: Array,
+    after: Array,
+    stop: float,
+    widest: float,
+    given: Given,
+    fixed: Array,
+    out: Array,
+) -> int:
+    """Writes all candidates of a pattern at separations that are reached; returns their number, or -1.
+
+    -1 means that they do not fit.
+
+    Of subsets of one jaw they are those with a fourth contact.
+
+    Parameters
+    ----------
+    subsets : (G, 11), see above.
+    kept : (C, 24) candidates of subsets.
+    before, after : (N, 24) candidates of no subset, which come before and after those of subsets.
+    stop, widest : separations in mm.
+    fixed : (24,) work space.
+    out : (N, 26), written here.
+    """
+    count = add_rows(before, stop, widest, out, 0)
+    for number in range(subsets.shape[0]):
+        subset = subsets[number]
+        first = int(subset[FIRST])
+        for n in range(first, int(subset[END])):
+            if count < 0 or count >= out.shape[0]:
+                return -1
+            if subset[JAW] >= 0.0:
+                write_moved(kept[n], subset, fixed)
+                end = add_fourths(fixed, int(subset[JAW]), given, out, count)
+                count = keep_reached(out, count, end, stop, widest) if end >= 0 else -1
+            elif stop < kept[n, SEPARATION] + subset[SHIFT + 2] < widest:
+                write_moved(kept[n], subset, out[count])
+                out[count, SUBSET], out[count, ORIGIN] = number, subset[NUMBER] + (n - first)
+                count += 1
+    return -1 if count < 0 else add_rows(after, stop, widest, out, count)
+
+
+IntArray = NDArray[np.int64]
+
+# mm. How much farther than to the next of its steps a place may be from a set in which it lies.
+BESIDE = 0.02
+# Contacts that a candidate has at most.
+MOST_CONTACTS = 4
+
+
+@inner
+def longest_step(sets: Array, begin: int, end: int, arm: float) -> float:
+    """The longest in mm of the steps along a set."""
+    longest = 0.0
+    for n in range(begin + 1, end):
+        dx, dy = sets[n, 1] - sets[n - 1, 1], sets[n, 2] - sets[n - 1, 2]
+        longest = max(longest, abs(sets[n, 0] - sets[n - 1, 0]) * arm + abs(dx) + abs(dy))
+    return longest
+
+
+@inner
+def lies_in(config: Array, manifolds: Manifolds, number: int, arm: float, most: float) -> bool:
+    """Whether a configuration (4,) is as near to one of a set's as these are to each other.
+
+    Parameters
+    ----------
+    arm : in mm, by which turns are counted.
+    most : by how much in mm the separation may differ.
+    """
+    if not abs(config[3] - manifolds.rows[number, SEPARATION]) < most:
+        return False
+    sets, nearest = manifolds.configs, inf
+    begin, end = manifolds.begins[number], manifolds.begins[number + 1]
+    for n in range(begin, end):
+        turn = (sets[n, 0] - config[0] + pi) % (2.0 * pi) - pi
+        nearest = min(nearest, abs(turn) * arm + length(sets[n, 1] - config[1], sets[n, 2] - config[2]))
+    return nearest <= BESIDE or nearest <= longest_step(sets, begin, end, arm) + BESIDE
+
+
+@inner
+def first_of(config: Array, manifolds: Manifolds, asked: IntArray, arm: float, most: float) -> int:
+    """The place among the asked of the first manifold in which a configuration lies.
+
+    -1 where it lies in none.
+    """
+    for k in range(asked.shape[0]):
+        if lies_in(config, manifolds, asked[k], arm, most):
+            return k
+    return -1
+
+
+@compiled
+def first_sets(
+    configs: Array, manifolds: Manifolds, asked: IntArray, arm: float, most: float, out: IntArray
+) -> None:
+    """Writes ``first_of`` of configurations (N, 4) to ``out`` (N,)."""
+    for n in range(configs.shape[0]):
+        out[n] = first_of(configs[n], manifolds, asked, arm, most)
+
+
+@inner
+def write_set(manifolds: Manifolds, number: int, out: Manifolds, at: int) -> None:
+    """Writes one of some sets in a place among others, after those before it."""
+    begin, to = manifolds.begins[number], out.begins[at]
+    for j in range(manifolds.rows.shape[1]):
+        out.rows[at, j] = manifolds.rows[number, j]
+    for n in range(manifolds.begins[number + 1] - begin):
+        for j in range(4):
+            out.configs[to + n, j] = manifolds.configs[begin + n, j]
+    out.begins[at + 1] = to + manifolds.begins[number + 1] - begin
+    out.closed[at] = manifolds.closed[number]
+    out.across[at, 0], out.across[at, 1] = manifolds.across[number, 0], manifolds.across[number, 1]
+
+
+@compiled
+def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifolds) -> int:
+    """Writes sets, of those that lie in each other the one with the most contacts; how many they are.
+
+    Parameters
+    ----------
+    arm, most : as of ``lies_in``, of the middle of one in the other.
+    out : written here, by the number of their contacts.
+    """
+    count = 0
+    for contacts in range(MOST_CONTACTS, -1, -1):
+        for number in range(manifolds.rows.shape[0]):
+            if manifolds.rows[number, CONTACTS] == contacts:
+                is_new = True
+                for k in range(count):
+                    if lies_in(manifolds.rows[number], out, k, arm, most):
+                        is_new = False
+                        break
+                if is_new:
+                    write_set(manifolds, number, out, count)
+                    count += 1
+    return count
+
+
+@compiled
+def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Array, whose: IntArray) -> int:
+    """Writes configurations just past both ends of each manifold; returns how many.
+
+    Of one that gives way they are to both sides of its middle, and of a whole turn there are none.
+
+    Parameters
+    ----------
+    arm : in mm, by which turns are counted.
+    step : how far beyond, in mm.
+    configs, whose : (2 F, 4) and (2 F,) written here, the latter the numbers of the sets.
+    """
+    count = 0
+    for number in range(manifolds.rows.shape[0]):
+        begin, end = manifolds.begins[number], manifolds.begins[number + 1]
+        gives = manifolds.across[number, 0] == manifolds.across[number, 0]
+        if not gives and (manifolds.closed[number] != 0 or end - begin < 3):
+            continue
+        for side in range(2):
+            config = configs[count]
+            # The end may be the same as the configuration before it, but not as the one before that.
+            at, before = (begin, begin + 2) if side == 0 else (end - 1, end - 3)
+            turn = (manifolds.configs[at, 0] - manifolds.configs[before, 0] + pi) % (2.0 * pi) - pi
+            dx = manifolds.configs[at, 1] - manifolds.configs[before, 1]
+            dy = manifolds.configs[at, 2] - manifolds.configs[before, 2]
+            away = abs(turn) * arm + hypot(dx, dy)
+            for j in range(4):
+                config[j] = manifolds.rows[number, j] if gives else manifolds.configs[at, j]
+            if gives:
+                sign = 1.0 if side == 0 else -1.0
+                config[1] += sign * (step * manifolds.across[number, 0])
+                config[2] += sign * (step * manifolds.across[number, 1])
+            elif away > 0.0:
+                config[0] += step * turn / away
+                config[1] += step * dx / away
+                config[2] += step * dy / away
+            if gives or away > 0.0:
+                whose[count] = number
+                count += 1
+    return count

@@ -1,0 +1,433 @@
+"""A part that stands on a piece of its hull on a wall, between a locator and a tip: where three forces balance.
+
+The part turns about the centre of that piece, which keeps its distance from the wall. The separation S
+follows from the orientation, and the forces balance where S' = 0, enclosed with S'' by intervals
+(``turning``). Ranges in which S' cannot vanish, or a force cannot press, are dropped, and the roots isolated
+in the others.
+
+With the tip in a pocket the distance of the locator from another piece, or from its circle by squares, is a
+trigonometric polynomial of second degree, whose derivatives are bounded by its coefficients. Where the wall
+is along the tip's travel, the orientation follows from the tip's height alone, by one of the first degree.
+"""
+
+from __future__ import annotations
+
+from math import ceil, cos, hypot, pi, sin
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.conventions import SAME_CENTER
+from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
+from workhold.kernels.base.interval import Interval, imul, ineg, iscale, ishift, isub
+from workhold.kernels.seating.candidates import write_pose
+from workhold.kernels.seating.columns import CONTACTS, DOUBT, MOTION, PEG, PIECE, SECOND, SEPARATION
+from workhold.kernels.seating.obstacles import on_piece
+from workhold.kernels.seating.turning import (
+    AWAY,
+    CURVATURE,
+    END,
+    HALVES,
+    NONE,
+    NOTHING,
+    ROOT,
+    Contact,
+    contact,
+    has_none,
+    judged,
+    to_look_at,
+    write_shape,
+)
+
+Array = NDArray[np.float64]
+
+# Radians. Ranges into which a run is cut first.
+CELL = 0.3
+# The pegs of a pattern on a fence, and the first and second contact with the wall.
+LOCATOR, TIP, ON_WALL, ON_WALL_TOO = range(4)
+# Whether a balance is possible, whether S is smooth throughout, S' and S''.
+Rate = tuple[bool, bool, Interval, Interval]
+NOWHERE = (False, False, NOTHING, NOTHING)
+
+
+class Stood(NamedTuple):
+    """A part on a wall.
+
+    Parameters
+    ----------
+    rows, discs : (N, 10) pieces of the boundary on which the pegs' centres lie, and (N, 3) discs around them.
+    parts : (2, 2) first and past-the-last number of the pieces that the locator, and the tip, touch.
+    hull : (H, 6) pieces of the hull, see ``kernels.seating.obstacles``.
+    runs : (M, 3) numbers of such a piece, and first and last orientation in which it is on the wall.
+    pegs : (2, 2) of the locator, and of the tip at separation 0, in mm.
+    half_plane : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall
+        is.
+    """
+
+    rows: Array
+    discs: Array
+    parts: NDArray[np.int64]
+    hull: Array
+    runs: Array
+    pegs: Array
+    half_plane: Array
+
+
+@inner
+def heights(stood: Stood, piece: int) -> tuple[float, float, float]:
+    """The heights of a hull piece's centre, the locator's line and the tip while the piece is on the wall.
+
+    The first is square to the wall, the second is counted from there, and the third from the centre, or from
+    the locator where the wall is upright.
+    """
+    ux, uy = stood.half_plane[0], stood.half_plane[1]
+    center = (ux + uy) * (stood.half_plane[2] + stood.hull[piece, 2])
+    if ux != 0.0:
+        return (center, stood.pegs[LOCATOR, 0] - center, stood.pegs[TIP, 1] - stood.pegs[LOCATOR, 1])
+    return (center, stood.pegs[LOCATOR, 1] - center, stood.pegs[TIP, 1] - center)
+
+
+@inner
+def both(
+    locator: Array,
+    tip: Array,
+    high: tuple[float, float, float],
+    upright: bool,
+    turn: Interval,
+    way: float,
+    within: bool,
+) -> tuple[Contact, Contact]:
+    """The contacts of locator and tip over a range of orientations.
+
+    The ``way`` is the locator's ``facing`` of ``contact``.
+    """
+    level = (high[1], high[1])
+    if not upright:
+        one = contact(locator, turn, level, NOTHING, NOTHING, way, within)
+        return (one, contact(tip, turn, (high[2], high[2]), NOTHING, NOTHING, 1.0, within))
+    one = contact(locator, ishift(pi / 2.0, turn), level, NOTHING, NOTHING, way, within)
+    # The part is as much higher as the locator's contact is lower; a quarter turn makes x of that what was
+    # -y.
+    two = contact(tip, turn, ishift(high[2], ineg(one[2])), ineg(one[3]), ineg(one[4]), 1.0, within)
+    return (one, two if one[0] else one)
+
+
+@inner
+def rate(one: Contact, two: Contact, wall: Array, way: float) -> Rate:
+    """How S changes, where wall, locator and tip may all press.
+
+    With b = (1, tan) of the tip, unit forces along x: the locator's is what that leaves along the wall, and
+    the wall's the rest.
+    """
+    if not (one[0] and two[0]):
+        return NOWHERE
+    smooth = one[1] and two[1]
+    if wall[0] == 0.0:
+        pressing = iscale(wall[1], isub(two[5], one[5]))
+        return (pressing[1] >= 0.0, smooth, isub(two[3], one[3]), isub(two[4], one[4]))
+    pressing = iscale(wall[0], ishift(1.0, imul(one[5], two[5])))
+    return (pressing[1] >= 0.0 and iscale(way, two[5])[1] >= 0.0, smooth, two[3], two[4])
+
+
+@inner
+def balances(
+    stood: Stood,
+    m: int,
+    i: int,
+    j: int,
+    way: float,
+    cell: Interval,
+    shapes: Array,
+    stack: Array,
+    out: Array,
+    count: int,
+) -> int:
+    """Writes the balances of a run with locator and tip on two pieces in a cell; the new count, or -1."""
+    upright, high = stood.half_plane[0] != 0.0, heights(stood, int(stood.runs[m, 0]))
+    depth, looked = 1, 0
+    stack[0, 0], stack[0, 1] = cell
+    while depth > 0:
+        depth -= 1
+        looked += 1
+        turn = (stack[depth, 0], stack[depth, 1])
+        one, two = both(shapes[i], shapes[j], high, upright, turn, way, True)
+        known = rate(one, two, stood.half_plane, way)
+        if not known[0] or has_none(known[2]):
+            continue
+        verdict, middle = HALVES, (turn[0] + turn[1]) / 2.0
+        one, two = both(shapes[i], shapes[j], high, upright, turn, way, False)
+        known = rate(one, two, stood.half_plane, way)
+        if known[1]:
+            one, two = both(shapes[i], shapes[j], high, upright, (middle, middle), way, False)
+            verdict, turn = judged(turn, middle, rate(one, two, stood.half_plane, way)[2], known[3])
+            if verdict == NONE:
+                continue
+        more = -1 if verdict >= ROOT else to_look_at(verdict, turn, looked, stack, depth)
+        if more < 0:
+            count = write_balance(stood, m, i, j, way, middle, verdict != ROOT, shapes, out, count)
+            if count < 0:
+                return -1
+        depth = max(depth, more)
+    return count
+
+
+@inner
+def write_balance(
+    stood: Stood,
+    m: int,
+    i: int,
+    j: int,
+    way: float,
+    theta: float,
+    doubt: bool,
+    shapes: Array,
+    out: Array,
+    count: int,
+) -> int:
+    """Writes the candidate of three contacts at an orientation, if they lie on their pieces.
+
+    Returns the new count.
+
+    It is -1 where the candidate does not fit.
+    """
+    piece, upright = int(stood.runs[m, 0]), stood.half_plane[0] != 0.0
+    high = heights(stood, piece)
+    one, two = both(shapes[i], shapes[j], high, upright, (theta, theta), way, True)
+    if not (one[0] and two[0]):
+        return count
+    if count >= out.shape[0]:
+        return -1
+    c, s = cos(theta), sin(theta)
+    hx, hy = (
+        c * stood.hull[piece, 0] - s * stood.hull[piece, 1],
+        s * stood.hull[piece, 0] + c * stood.hull[piece, 1],
+    )
+    place, speed = (one[2][0] + one[2][1]) / 2.0, (one[3][0] + one[3][1]) / 2.0
+    # The centre of the piece, and how it moves as the part turns.
+    if upright:
+        x, y, vx, vy = high[0], stood.pegs[LOCATOR, 1] + place, 0.0, speed
+    else:
+        x, y, vx, vy = stood.pegs[LOCATOR, 0] - place, high[0], -speed, 0.0
+    known, row = rate(one, two, stood.half_plane, way), out[count]
+    write_pose(row, theta, x - hx, y - hy, 3)
+    row[SEPARATION] = x + (two[2][0] + two[2][1]) / 2.0 - stood.pegs[TIP, 0]
+    row[SECOND], row[DOUBT] = (known[3][0] + known[3][1]) / 2.0, 1.0 if doubt else 0.0
+    row[MOTION], row[MOTION + 1], row[MOTION + 2] = 1.0, vx + hy, vy - hx
+    row[PEG], row[PEG + 1], row[PEG + 2] = LOCATOR, TIP, ON_WALL
+    row[PIECE], row[PIECE + 1], row[PIECE + 2] = i, j, stood.rows.shape[0] + piece
+    return count + 1
+
+
+@compiled
+def stationary(stood: Stood, shapes: Array, stack: Array, out: Array) -> int:
+    """Writes the candidates (N, 24) of all balances of wall, locator and tip on a piece of the hull.
+
+    Returns their number, or -1 where they do not fit.
+
+    Parameters
+    ----------
+    shapes, stack : (N, 11) and (DEPTH, 2) work space.
+    """
+    count, upright = 0, stood.half_plane[0] != 0.0
+    for m in range(stood.runs.shape[0]):
+        piece, low, width = int(stood.runs[m, 0]), stood.runs[m, 1], stood.runs[m, 2] - stood.runs[m, 1]
+        for k in range(stood.rows.shape[0]):
+            write_shape(stood.rows[k], stood.discs[k], stood.hull[piece, 0], stood.hull[piece, 1], shapes[k])
+        cells = int(ceil(width / CELL))
+        for cell in range(cells):
+            turn = (low + cell * width / cells, low + (cell + 1) * width / cells)
+            count = balances_of_cell(stood, m, turn, upright, shapes, stack, out, count)
+            if count < 0:
+                return -1
+    return count
+
+
+@inner
+def balances_of_cell(
+    stood: Stood, m: int, turn: Interval, upright: bool, shapes: Array, stack: Array, out: Array, count: int
+) -> int:
+    """Writes the balances of a run in a cell with all pieces; the new count, or -1 where they do not fit."""
+    high = heights(stood, int(stood.runs[m, 0]))
+    for i in range(stood.parts[0, 0], stood.parts[0, 1]):
+        # Along the wall the locator is pressed from the tip's side, upright from above or from below.
+        for ways in range(1 + upright):
+            way = 2.0 * ways - 1.0
+            seen = contact(
+                shapes[i],
+                ishift(pi / 2.0, turn) if upright else turn,
+                (high[1], high[1]),
+                NOTHING,
+                NOTHING,
+                way,
+                True,
+            )
+            if not seen[0]:
+                continue
+            for j in range(stood.parts[1, 0], stood.parts[1, 1]):
+                # Of a round part S does not depend on the orientation.
+                if (
+                    shapes[i, CURVATURE] != 0.0
+                    and shapes[j, CURVATURE] != 0.0
+                    and max(shapes[i, AWAY], shapes[j, AWAY]) <= SAME_CENTER
+                ):
+                    continue
+                count = balances(stood, m, i, j, way, turn, shapes, stack, out, count)
+                if count < 0:
+                    return -1
+    return count
+
+
+Waves = tuple[float, float, float, float, float]
+# Of a sum of coefficients: rounding of the polynomial.
+ROUNDING = 2e-15
+
+
+@inner
+def value_of(waves: Waves, theta: float) -> tuple[float, float]:
+    """A polynomial at an orientation, and its derivative."""
+    c, s = cos(theta), sin(theta)
+    twice_c, twice_s = c * c - s * s, 2.0 * s * c
+    value = waves[0] + waves[1] * c + waves[2] * s + waves[3] * twice_c + waves[4] * twice_s
+    return (value, waves[2] * c - waves[1] * s + 2.0 * (waves[4] * twice_c - waves[3] * twice_s))
+
+
+@inner
+def zeros(waves: Waves, low: float, high: float, stack: Array, found: Array) -> int:
+    """Writes where a polynomial vanishes between two orientations (N, 2), and 1 where that is in doubt.
+
+    Returns their number. If it all but vanishes everywhere, only some are written.
+
+    Parameters
+    ----------
+    waves : constant, of cos and sin theta, of cos and sin 2 theta.
+    """
+    first, second = hypot(waves[1], waves[2]), hypot(waves[3], waves[4])
+    if max(first, second) <= SAME_CENTER:
+        return 0
+    bend, slack = first + 4.0 * second, ROUNDING * (abs(waves[0]) + first + second) + ROUNDING
+    depth, looked, count = 1, 0, 0
+    stack[0, 0], stack[0, 1] = low, high
+    while depth > 0:
+        depth -= 1
+        looked += 1
+        turn = (stack[depth, 0], stack[depth, 1])
+        middle, reach = (turn[0] + turn[1]) / 2.0, (turn[1] - turn[0]) / 2.0
+        at, slope = value_of(waves, middle)
+        off = bend * reach * (1.0 + 1e-9) + slack
+        verdict, turn = judged(turn, middle, (at - slack, at + slack), (slope - off, slope + off))
+        if verdict == NONE:
+            continue
+        more = -1 if verdict >= ROOT else to_look_at(verdict, turn, looked, stack, depth)
+        if more < 0:
+            found[count, 0], found[count, 1] = middle, 0.0 if verdict == ROOT else 1.0
+            count += 1
+            if count == found.shape[0]:
+                return count
+        depth = max(depth, more)
+    return count
+
+
+@inner
+def off_piece(row: Array, ox: float, oy: float, dx: float, dy: float, along: float, above: float) -> Waves:
+    """The distance of the locator from a line, or its square from a circle over the diameter, as waves.
+
+    The part turns about its point (ox, oy).
+
+    Parameters
+    ----------
+    dx, dy : the pocket from there.
+    along, above : the locator's place along the tip's way from there, and across it from the tip.
+    """
+    ex, ey = row[X] - ox, row[Y] - oy
+    if row[IS_ARC] == 0.0:
+        nx, ny = row[AXIS_Y], -row[AXIS_X]
+        return (
+            (dx * nx + dy * ny) / 2.0 - (ex * nx + ey * ny),
+            along * nx + above * ny,
+            above * nx - along * ny,
+            (dy * ny - dx * nx) / 2.0,
+            (dx * ny + dy * nx) / 2.0,
+        )
+    # The square of the locator's distance from the centre: that of the tip's share in it and of both.
+    ux, uy, unit = dx - 2.0 * ex, dy - 2.0 * ey, 0.5 / row[RADIUS]
+    apart = (hypot(ex, ey) - row[RADIUS]) * (hypot(ex, ey) + row[RADIUS])
+    return (
+        unit * (along * along + above * above + apart + (dx * ux + dy * uy) / 2.0),
+        2.0 * unit * (above * (dy - ey) - along * ex),
+        2.0 * unit * (above * (dx - ex) + along * ey),
+        unit * (dy * uy - dx * ux) / 2.0,
+        unit * (dx * uy + dy * ux) / 2.0,
+    )
+
+
+@inner
+def write_pocketed(
+    stood: Stood, m: int, pocket: Array, pieces: NDArray[np.int64], found: Array, row: Array
+) -> tuple[float, float]:
+    """Writes the candidate of a part with the tip in a pocket at an orientation that was found.
+
+    Its place is that at separation 0, or on an upright wall; its first contact comes later. Returns where the
+    centre of the piece on the wall is.
+    """
+    piece, theta = int(stood.runs[m, 0]), found[0]
+    c, s = cos(theta), sin(theta)
+    hx, hy = (
+        c * stood.hull[piece, 0] - s * stood.hull[piece, 1],
+        s * stood.hull[piece, 0] + c * stood.hull[piece, 1],
+    )
+    ahead, up = c * pocket[0] - s * pocket[1], s * pocket[0] + c * pocket[1]
+    x, y = stood.pegs[TIP, 0] - ahead, stood.pegs[TIP, 1] - up
+    at = 0
+    if stood.half_plane[0] != 0.0:
+        x, at = heights(stood, piece)[0] - hx, 1
+    write_pose(row, theta, x, y, 3)
+    row[SEPARATION], row[DOUBT] = x + ahead - stood.pegs[TIP, 0], found[1]
+    row[PEG + at], row[PIECE + at] = ON_WALL, stood.rows.shape[0] + piece
+    row[PEG + at + 1], row[PIECE + at + 1] = TIP, pieces[0]
+    row[PEG + at + 2], row[PIECE + at + 2] = TIP, pieces[1]
+    return (x + hx, y + hy)
+
+
+@compiled
+def tip_in_pocket(
+    stood: Stood, pockets: Array, pieces: NDArray[np.int64], stack: Array, found: Array, out: Array
+) -> int:
+    """Writes the candidates (N, 24) of a part on a wall with the tip in a pocket; returns their number or -1.
+
+    -1 means that they do not fit.
+
+    Where the wall is upright the locator touches, too. Else the tip and the wall fix all but how far along
+    the wall the part is. Then its place is that at separation 0, and the locator is still to come.
+
+    Parameters
+    ----------
+    pockets, pieces : (V, 2) places on the part, and (V, 2) pieces, of those of the tip.
+    stack, found : (DEPTH, 2) and (64, 2) work space.
+    """
+    count, upright = 0, stood.half_plane[0] != 0.0
+    for m in range(stood.runs.shape[0]):
+        piece, low, last = int(stood.runs[m, 0]), stood.runs[m, 1], stood.runs[m, 2]
+        ox, oy, high = stood.hull[piece, 0], stood.hull[piece, 1], heights(stood, piece)
+        for v in range(pockets.shape[0]):
+            dx, dy = pockets[v, 0] - ox, pockets[v, 1] - oy
+            for i in range(stood.parts[0, 0], stood.parts[0, 1] if upright else stood.parts[0, 0] + 1):
+                if upright:
+                    waves = off_piece(stood.rows[i], ox, oy, dx, dy, high[1], -high[2])
+                else:
+                    waves = (-high[2], dy, dx, 0.0, 0.0)
+                many = zeros(waves, low, last, stack, found)
+                if count + many > out.shape[0]:
+                    return -1
+                for k in range(many):
+                    row = out[count]
+                    x, y = write_pocketed(stood, m, pockets[v], pieces[v], found[k], row)
+                    if upright:
+                        c, s = cos(found[k, 0]), sin(found[k, 0])
+                        wx, wy = stood.pegs[LOCATOR, 0] - x, stood.pegs[LOCATOR, 1] - y
+                        if not on_piece(stood.rows[i], c * wx + s * wy + ox, c * wy - s * wx + oy, END):
+                            continue
+                        row[CONTACTS], row[PEG], row[PIECE] = 4.0, LOCATOR, i
+                    count += 1
+    return count

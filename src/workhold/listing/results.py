@@ -1,0 +1,312 @@
+"""Results that a user sees: of the records of any engine, of fixtures found a few at a time, of several ways.
+
+A search of a few fixtures at a time measures, counts and ranks those found so far, or the best of them. In
+each of a toolkit's ways one carrier moves, and their results are joined as one.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from threading import Event
+
+import numpy as np
+from attrs import define, evolve, field, frozen
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem, Progress
+from workhold.listing.canonical_form import Candidates
+from workhold.listing.collector import BestFixtures, ResultCollector
+from workhold.listing.identity import Identity, SetCount, identity_order
+from workhold.listing.ranking import best_marked, measured_as, rank
+from workhold.model.query import Query
+from workhold.model.result import FixtureTable, Result
+from workhold.model.search_report import (
+    Proof,
+    best_note,
+    cut_note,
+    no_fixture_notes,
+    no_place_note,
+    undecided_note,
+)
+from workhold.proof.deciding import Account
+from workhold.statics.contact_matrix import Touched
+
+__all__ = [
+    "MEASURED",
+    "RankedTable",
+    "Work",
+    "best_result",
+    "collected_result",
+    "joined_ways",
+    "listed_result",
+    "result_of",
+    "stage",
+    "summed",
+]
+
+# The parts of the work after the search, as progress tells it, when all is decided and when all is measured.
+DECIDED, MEASURED = 0.5, 0.8
+
+
+@frozen
+class Work:
+    """How the search went.
+
+    Parameters
+    ----------
+    complete : whether it came to its end.
+    statistics : see ``Result.statistics``.
+    cells, examined : ranges of orientation and sets of four contacts that were examined for the records
+        (None: no more than the records).
+    """
+
+    complete: bool
+    statistics: Mapping[str, int]
+    cells: int = 0
+    examined: int | None = None
+
+
+def stage(progress: Progress | None, low: float, high: float) -> Progress | None:
+    """The progress of one stage of the work, from one fraction of the whole to another."""
+    if progress is None:
+        return None
+    return lambda fraction, found: progress(low + (high - low) * fraction, found)
+
+
+def listed_result(
+    problem: Problem,
+    records: list[NDArray[np.float64]],
+    work: Work,
+    *,
+    progress: Progress | None = None,
+    cancel: Event | None = None,
+    threads: int = 1,
+) -> Result:
+    """Checks, lists once, ranks and counts the fixtures that an engine found.
+
+    Parameters
+    ----------
+    problem : what was searched.
+    records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.record`` says.
+    progress : called as ``progress(fraction done, records that still may be fixtures)``.
+    cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
+    threads : how many threads share the deciding.
+    """
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        collector = ResultCollector(problem, pool, 2 * threads, cancel)
+        with collector.given_up_on_errors():
+            for array in records:
+                collector.take(array)
+            result = collected_result(collector, work, stage(progress, 0.0, MEASURED))
+            result = with_table(result, collector, stage(progress, MEASURED, 1.0))
+    return evolve(result, table=result.table.take(slice(0, problem.query.best)))
+
+
+def collected_result(collector: ResultCollector, work: Work, progress: Progress | None = None) -> Result:
+    """The result of what a collector was given, without its fixtures; those it hands over.
+
+    Parameters
+    ----------
+    progress : called as ``progress(fraction done, records that still may be fixtures)``.
+    """
+    account = collector.finish_deciding(stage(progress, 0.0, DECIDED))
+    whole = collector.measure(stage(progress, DECIDED, 1.0))
+    query = collector.problem.query
+    names = [one.name for one in query.toolkit.arrangements]
+    found, distinct = (
+        dict(zip(names, counts.tolist(), strict=True)) for counts in (collector.found, collector.distinct)
+    )
+    return Result(
+        query=query,
+        table=FixtureTable.empty(query.toolkit),
+        found=found,
+        distinct=distinct,
+        complete=work.complete and account.left == 0 and whole,
+        notes=(undecided_note(len(account.undecided)),) if account.undecided else (),
+        statistics=work.statistics,
+        proof=proof_of(account, work),
+    )
+
+
+def with_table(result: Result, collector: ResultCollector, progress: Progress | None = None) -> Result:
+    """The result of what a collector was given, with its fixtures."""
+    tables, listed = list(collector.tables(progress)), collector.listed
+    # If somebody asked to stop since, millions are not put together any more.
+    enough = 1 + int(np.searchsorted(np.cumsum([len(table) for table in tables]), listed))
+    table = FixtureTable.joined(tables[:enough]).take(slice(listed))
+    result = evolve(result, table=table)
+    return result if len(table) == sum(result.found.values()) else result.cut_short(len(table))
+
+
+def best_result(kept: BestFixtures, work: Work) -> Result:
+    """The result of a search for the best fixtures only.
+
+    How many fixtures there are in all is not known: those that could not be among the best were not examined.
+    """
+    candidates, account = kept.finished()
+    result = result_of(kept.problem, candidates, account, work)
+    if not (work.complete and kept.has_dropped):
+        return result
+    return evolve(result, notes=(best_note(kept.most), *result.notes))
+
+
+def result_of(problem: Problem, candidates: Candidates, account: Account, work: Work) -> Result:
+    """The result of fixtures that are decided."""
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        collector = ResultCollector(problem, pool, 1)
+        collector.add(candidates, account)
+        return with_table(collected_result(collector, work), collector)
+
+
+def proof_of(account: Account, work: Work) -> Proof:
+    """The account of a search for the result."""
+    # A pair of chords that was given up counts as one candidate.
+    examined = work.examined
+    candidates = account.records if examined is None else examined + account.given_up - account.left
+    kept = account.verified + len(account.undecided)
+    # One candidate may hold two solutions, which then count as two.
+    candidates = max(candidates, kept)
+    return Proof(
+        work.cells, candidates, candidates - kept, account.verified, account.escalated, account.undecided
+    )
+
+
+@define(eq=False)
+class RankedTable:
+    """Fixtures that are listed once, no more of them than are asked for.
+
+    Parameters
+    ----------
+    query : what is asked.
+    problem : the search of one direction of the clamp, for what all have in common.
+    """
+
+    query: Query
+    problem: Problem
+    touched: Touched = field(init=False)
+    count: SetCount = field(init=False)
+    tables: list[FixtureTable] = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        part, toolkit = self.query.workpiece, self.query.toolkit
+        self.touched = Touched.of(part, toolkit, length=self.problem.wrench_length)
+        self.count = SetCount(Identity(toolkit, part, self.query.listing != "best"))
+        self.tables = [FixtureTable.empty(toolkit)]
+
+    def __len__(self) -> int:
+        return int(self.count.found.sum())
+
+    def add(self, table: FixtureTable) -> None:
+        """Takes fixtures; where only the best are asked for, keeps those that may be among them."""
+        query, most = self.query, self.query.best
+        self.count.add(table)
+        self.tables.append(measured_as(table, query, self.touched))
+        if most is not None:
+            together = self.together()
+            chosen = best_marked(together.quality, query.ranking, query.tolerance, most, ties=True)
+            self.tables = [together.take(chosen)]
+
+    def together(self) -> FixtureTable:
+        """What is kept, in the order of identities."""
+        everything = FixtureTable.joined(self.tables)
+        self.tables = [everything.take(identity_order(everything))]
+        return self.tables[0]
+
+    def result(self, account: Account, work: Work) -> Result:
+        """The result of all."""
+        query, table = self.query, self.together()
+        order = rank(table.quality, query.ranking, query.tolerance)[: query.best]
+        return Result(
+            query=query,
+            table=table.take(order),
+            found=self.count.by_type(self.count.found),
+            distinct=self.count.by_type(self.count.distinct),
+            complete=work.complete,
+            notes=(undecided_note(len(account.undecided)),) if account.undecided else (),
+            statistics=work.statistics,
+            proof=proof_of(account, work),
+        )
+
+
+def joined_ways(results: Sequence[Result], query: Query) -> Result:
+    """The results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the
+    query."""
+    table = joined_tables([result.table for result in results])
+    # Of a search that was stopped no more than the best of a way may be listed: of all then, too.
+    cut = (
+        []
+        if query.best
+        else [len(result) for result in results if 0 < len(result) < sum(result.found.values())]
+    )
+    most = min(cut, default=query.best)
+    ranked = table.take(rank(table.quality, query.ranking, query.tolerance)[:most])
+    proofs = [result.proof for result in results if result.proof is not None]
+    found, distinct = (summed(getattr(result, name) for result in results) for name in ("found", "distinct"))
+    if query.best is not None and any(best_note(query.best) in result.notes for result in results):
+        # Each way left others out than the best of its own, so of all no more are known than the best.
+        counted = SetCount(Identity(query.toolkit, query.workpiece))
+        counted.add(ranked)
+        found, distinct = counted.by_type(counted.found), counted.by_type(counted.distinct)
+    joined = Result(
+        query=query,
+        table=ranked,
+        found=found,
+        distinct=distinct,
+        complete=all(result.complete for result in results),
+        notes=tuple(joined_notes(results, query)),
+        statistics=summed(result.statistics for result in results),
+        proof=joined_proofs(proofs) if len(proofs) == len(results) else None,
+    )
+    return joined.cut_short(len(ranked)) if cut else joined
+
+
+def joined_notes(results: Sequence[Result], query: Query) -> Iterator[str]:
+    """The remarks of several results as those of all: how many candidates are undecided, or why no result has
+    a fixture. Of several reasons it is the one that most candidates got to."""
+    proofs = [result.proof for result in results if result.proof is not None]
+    verified, undecided = (
+        sum(proof.verified for proof in proofs),
+        sum(len(proof.undecided) for proof in proofs),
+    )
+    reasons = no_fixture_notes(query.toolkit.wording)
+    counted = {*reasons, *(no_place_note(proof.verified, query.toolkit.wording) for proof in proofs)}
+    counted |= {undecided_note(len(proof.undecided)) for proof in proofs}
+    counted |= {cut_note(sum(result.found.values()), len(result)) for result in results}
+    notes = dict.fromkeys(note for result in results for note in result.notes)
+    yield from (note for note in notes if note not in counted)
+    if undecided:
+        yield undecided_note(undecided)
+    elif not any(result.found[kind] for result in results for kind in result.found):
+        said = [reason for reason in reasons if reason in notes]
+        yield from [no_place_note(verified, query.toolkit.wording)] if verified else said[-1:]
+
+
+def joined_tables(tables: Sequence[FixtureTable]) -> FixtureTable:
+    """Tables one after the other, each with one arrangement, which are numbered on."""
+    numbered = [
+        evolve(table, arrangement=(table.arrangement + number).astype(np.int8))
+        for number, table in enumerate(tables)
+    ]
+    return FixtureTable.joined(numbered)
+
+
+def summed(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
+    """Counts by name, summed over several."""
+    total: Counter[str] = Counter()
+    for one in counts:
+        total.update({name: int(count) for name, count in one.items()})
+    return dict(total)
+
+
+def joined_proofs(proofs: Sequence[Proof]) -> Proof:
+    """Several accounts as one."""
+    return Proof(
+        cells=sum(proof.cells for proof in proofs),
+        candidates=sum(proof.candidates for proof in proofs),
+        discarded_by_bound=sum(proof.discarded_by_bound for proof in proofs),
+        verified=sum(proof.verified for proof in proofs),
+        escalated=sum(proof.escalated for proof in proofs),
+        undecided=tuple(item for proof in proofs for item in proof.undecided),
+    )

@@ -1,0 +1,306 @@
+"""What is required of a fixture besides holding the part: loads, what a user rules out, and tolerances.
+
+A load is what a cutter, a drill or a hand does to the workpiece while it is held. Ruled out are faces not to touch, places
+where no peg may stand, and angles the part may not lie at. A tolerance says how far pegs and faces may be off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import hypot, isfinite
+from typing import Any
+
+import numpy as np
+from attrs import evolve, field, frozen
+from numpy.typing import NDArray
+
+from workhold.delegates import delegate
+from workhold.errors import InputError
+from workhold.geometry.loop import (
+    LoopShape,
+    checked_vertices,
+    loop_segments,
+    refuse_self_crossing,
+    reversed_vertices,
+    signed_area,
+)
+from workhold.geometry.segment import Segment
+from workhold.limits import real, refuse_long, refuse_strong
+from workhold.model.dowels import Fit
+
+__all__ = ["ANY_DIRECTION", "Load", "Restrictions", "Tolerance", "Zone", "circle_zone", "polygon_zone"]
+
+ANY_DIRECTION = (0.0, 360.0)
+
+
+def point_pairs(points: Iterable[Iterable[float]]) -> tuple[tuple[float, float], ...]:
+    """Points as pairs of floats."""
+    return tuple((real(x), real(y)) for x, y in points)
+
+
+def direction_range(directions: Iterable[float]) -> tuple[float, float]:
+    """A range of directions in degrees, from ``low`` counter-clockwise to ``high``, with low in [0, 360) and
+    low <= high <= low + 360."""
+    low, high = (real(value) for value in directions)
+    if 0.0 <= low < 360.0 and low <= high <= low + 360.0:
+        return ANY_DIRECTION if high - low == 360.0 else (low, high)
+    if not (isfinite(low) and isfinite(high) and abs(high - low) <= 360.0):
+        raise InputError(
+            f"direction {low:g}..{high:g} is not a range of at most 360 degrees: give two angles, or any for all of them."
+        )
+    if abs(high - low) == 360.0:
+        return ANY_DIRECTION
+    # The rest of a tiny negative angle rounds up to the whole turn.
+    start = low % 360.0 % 360.0
+    return start, start + (high - low) % 360.0
+
+
+@frozen
+class Load:
+    """A force and a moment that act ON the workpiece; pegs must push back.
+
+    The force acts at one of the points, whichever is worst, in one of the directions, whichever is worst; the moment acts
+    together with it. A cutter that runs along a polyline is a load with several points: between two of them nothing is
+    worse than at the worse of the two.
+
+    Parameters
+    ----------
+    points : where the force may act, (x, y) in mm in the part's coordinates; may be empty when there is no force.
+    force : its size in N, 0 or more.
+    directions : (low, high) in degrees in the part's frame, counter-clockwise from the part's x axis and from low to
+        high; (0, 360) is any direction.
+    moment : in N mm, positive counter-clockwise.
+    name : what the user calls it.
+
+    Raises
+    ------
+    InputError
+        For numbers that are not finite or beyond the limits, a negative force, a force without a point, and a load that
+        does nothing.
+
+    Examples
+    --------
+    >>> from workhold.model.requirements import Load
+    >>> Load(points=[(10, 5)], force=200, directions=(-30, 30)).directions
+    (330.0, 390.0)
+    """
+
+    points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
+    force: float = field(default=0.0, converter=real)
+    directions: tuple[float, float] = field(default=ANY_DIRECTION, converter=direction_range)
+    moment: float = field(default=0.0, converter=real)
+    name: str = ""
+
+    def __attrs_post_init__(self) -> None:
+        if not isfinite(self.force) or self.force < 0:
+            raise InputError(
+                f"force {self.force:g} is not a size in N: give 0 or more, and where it points as a direction."
+            )
+        if not isfinite(self.moment):
+            raise InputError(
+                f"moment {self.moment:g} is not a number: give it in N mm, positive counter-clockwise."
+            )
+        refuse_strong("force", self.force)
+        refuse_strong("moment", self.moment, "N mm")
+        for x, y in self.points:
+            if not isfinite(hypot(x, y)):
+                raise InputError(
+                    f"the point ({x:g}, {y:g}) of a load is not a place: give finite coordinates in mm."
+                )
+            refuse_long("a load's point", max(x, y, key=abs))
+        if self.force > 0 and not self.points:
+            raise InputError(
+                f"a force of {self.force:g} N needs the point it acts at: give at=X,Y or path=X,Y;X,Y."
+            )
+        if self.force == 0 and self.moment == 0:
+            raise InputError(
+                "a load with neither force nor moment does nothing: give force=... or moment=...."
+            )
+
+
+Angles = tuple[float, float]
+
+
+@frozen
+class Zone:
+    """A keep-out zone: no part of a peg's body may stand over it.
+
+    Parameters
+    ----------
+    loop : (N, 3) read-only vertices x, y (mm, in the part's frame) and bulge, counter-clockwise.
+    """
+
+    loop: NDArray[np.float64] = field(eq=lambda loop: loop.tolist(), hash=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.loop.setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # So that the array is read-only again on the other side.
+        return Zone, (self.loop,)
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """Its boundary, the zone on the left."""
+        return tuple(loop_segments(self.loop))
+
+
+def circle_zone(x: float, y: float, radius: float) -> Zone:
+    """A round zone; lengths in mm.
+
+    Raises
+    ------
+    InputError
+        When it has no size.
+    """
+    x, y, radius = real(x), real(y), real(radius)
+    if not (isfinite(x) and isfinite(y) and isfinite(radius) and radius > 0):
+        raise InputError(
+            f"a keep-out circle of radius {radius:g} at ({x:g}, {y:g}) is no circle: give a positive radius."
+        )
+    return zone_of([[x - radius, y, 1.0], [x + radius, y, 1.0]])
+
+
+def polygon_zone(points: Sequence[Sequence[float]]) -> Zone:
+    """A zone with straight sides; points (x, y) in mm, either way round.
+
+    Raises
+    ------
+    InputError
+        For fewer than three points and for a boundary that crosses itself.
+    """
+    if len(points) < 3:
+        raise InputError(f"a keep-out polygon has {len(points)} corners: give three or more.")
+    return zone_of([[x, y, 0.0] for x, y in points])
+
+
+def zone_of(vertices: Sequence[Sequence[float]]) -> Zone:
+    """A zone of (x, y, bulge) vertices in mm, run either way.
+
+    Raises
+    ------
+    InputError
+        For a boundary that crosses itself, and numbers that are not finite.
+    """
+
+    def place(k: int) -> str:
+        return f"keep-out zone: side {k}"
+
+    checked = checked_vertices(vertices, "keep-out zone", place)
+    shape = LoopShape.of(loop_segments(checked))
+    refuse_self_crossing(shape, place)
+    if signed_area(shape.segments) < 0:
+        checked = reversed_vertices(checked)
+    return Zone(checked)
+
+
+def angle_pairs(ranges: Iterable[Iterable[float]]) -> tuple[Angles, ...]:
+    """Ranges of angles as pairs of floats."""
+    return tuple((float(low), float(high)) for low, high in ranges)
+
+
+def all_zones(zones: Iterable[Zone]) -> tuple[Zone, ...]:
+    """Zones as a tuple."""
+    return tuple(zones)
+
+
+def ascending(numbers: Iterable[int]) -> tuple[int, ...]:
+    """Numbers in order, each once."""
+    return tuple(sorted(set(numbers)))
+
+
+@frozen
+class Restrictions:
+    """What fixtures must keep clear of.
+
+    Parameters
+    ----------
+    avoid : numbers of faces that no peg may touch.
+    zones : places in the part's frame where no peg may stand.
+    angles : ranges (from, to) of the part's angle in the vise, in degrees, ends included; empty for any angle.
+
+    Raises
+    ------
+    InputError
+        For a range of angles that is not one.
+    """
+
+    avoid: tuple[int, ...] = field(default=(), converter=ascending)
+    zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
+    angles: tuple[Angles, ...] = field(default=(), converter=angle_pairs)
+
+    def __attrs_post_init__(self) -> None:
+        for low, high in ((real(low), real(high)) for low, high in self.angles):
+            if not (isfinite(low) and isfinite(high) and low <= high):
+                raise InputError(
+                    f"angles {low:g} to {high:g} are not a range in degrees: give the smaller first, such as -10..10."
+                )
+
+    def __bool__(self) -> bool:
+        """Whether anything is ruled out."""
+        return bool(self.avoid or self.zones or self.angles)
+
+
+@frozen
+class Tolerance:
+    """Largest errors along the normal of a contact, either way.
+
+    Parameters
+    ----------
+    peg : how far the surface of a peg may be from where it should be, in mm.
+    face : how far a face of the part may be from where it should be, in mm; the departure is a part of it.
+    fit : of the dowels that are the pegs, which the first follows from; None where it is not known.
+    departure : how far the outline as read may be from the drawn one, in mm; a query sets it to its workpiece's.
+
+    Raises
+    ------
+    InputError
+        For lengths that are negative, not finite or beyond the limits.
+    """
+
+    peg: float = field(default=0.01, converter=real)
+    face: float = field(default=0.01, converter=real)
+    fit: Fit | None = None
+    departure: float = field(default=0.0, converter=real)
+
+    def __attrs_post_init__(self) -> None:
+        for name, value in (
+            ("peg", self.peg),
+            ("face", self.face),
+            ("departure in the face", self.departure),
+        ):
+            if not (isfinite(value) and value >= 0):
+                raise InputError(f"{name} tolerance {value} is not a length: give 0 or more, in mm.")
+            refuse_long(f"{name} tolerance", value)
+
+    @classmethod
+    def preset(cls, name: str) -> Tolerance:
+        """The tolerance that follows from the dowels of a toolkit by name, see :meth:`workhold.Vise.preset`.
+
+        Raises
+        ------
+        InputError
+            For a name that is not known.
+
+        Examples
+        --------
+        >>> from workhold import Tolerance
+        >>> round(Tolerance.preset("plate-20mm").peg, 6)
+        0.0145
+        """
+        tolerance: Tolerance = delegate("preset_tolerance")(name)
+        return tolerance
+
+    def with_departure(self, departure: float) -> Tolerance:
+        """The same tolerance for an outline that departs by so much, in mm, from the drawn one.
+
+        Examples
+        --------
+        >>> Tolerance(0.01, 0.02).with_departure(0.5).face
+        0.52
+        >>> round(Tolerance(0.01, 0.02).with_departure(0.5).with_departure(0.1).face, 9)
+        0.12
+        """
+        if departure == self.departure:
+            return self
+        return evolve(self, face=max(self.face - self.departure, 0.0) + departure, departure=departure)

@@ -1,0 +1,246 @@
+"""What a search tells besides its fixtures: its proof, why there is no fixture, and remarks for the user.
+
+A proof shows what was examined, and what could not be decided. An explanation tells what each rule took away, the nearest
+miss, and what would help. Remarks are one sentence each; they follow from the numbers of a result, so that whoever has the
+numbers can tell which remarks there must be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from attrs import field, frozen
+
+from workhold.fixels.toolkit import Wording
+from workhold.model.fixture import Fixture
+
+__all__ = [
+    "AT_AN_EDGE",
+    "GIVEN_UP",
+    "NEARLY_DOUBLE",
+    "UNBOUNDED",
+    "Explanation",
+    "Help",
+    "NearestMiss",
+    "Proof",
+    "Removal",
+    "Undecided",
+    "best_note",
+    "by_hand_note",
+    "cut_note",
+    "fitted_note",
+    "kept_note",
+    "no_fixture_notes",
+    "no_pair_note",
+    "no_place_note",
+    "seated_note",
+    "stopped_note",
+    "undecided_note",
+]
+
+# Why something is undecided.
+GIVEN_UP = "two pegs on these faces fit in so many nearly equal ways that they cannot be told apart"
+UNBOUNDED = "the pegs slide so easily along these faces that their places cannot be told"
+NEARLY_DOUBLE = "the contacts are a double solution, or so nearly that its clamping force is not decided"
+AT_AN_EDGE = "a rule is met exactly at its edge"
+
+
+@frozen
+class Undecided:
+    """Four contacts, or a pair of chords, of which it is not decided whether they make a fixture; or five, with two clamps.
+
+    Parameters
+    ----------
+    type : of the arrangement, with the direction in which a clamp moves, such as "II" or "clamp -x".
+    faces : the four faces (a pair of chords names the tail and the head of each).
+    columns, rows : the four pegs on their jaws' lattices, counted from each jaw's first peg and from the first left peg; of
+        a clamp the number of its line from the first locator's, and 0.
+    theta_deg : orientation of the workpiece in degrees, about which it would be.
+    reason : why it is not decided, in one sentence without a full stop.
+    reach_deg : how far in degrees the orientation may be from there; None where that is not bounded, and of a pair of
+        chords, which exist there.
+    """
+
+    type: str
+    faces: tuple[int, ...]
+    columns: tuple[int, ...]
+    rows: tuple[int, ...]
+    theta_deg: float
+    reason: str
+    reach_deg: float | None = None
+
+
+@frozen
+class Proof:
+    """The account of a proven search; ``candidates`` is the sum of what was discarded, verified and left undecided.
+
+    Parameters
+    ----------
+    cells : ranges of orientation examined, for each type apart.
+    candidates : sets of four contacts that the bounds of the chord curves allow.
+    discarded_by_bound : candidates that break a rule everywhere within their error.
+    verified : candidates proven to be fixtures, before rows and the largest opening are asked; one found from two sides, as
+        at a joint, counts twice.
+    escalated : candidates that their certificates left open: they went on to interval arithmetic, or were given up.
+    undecided : what that could not decide either.
+    """
+
+    cells: int
+    candidates: int
+    discarded_by_bound: int
+    verified: int
+    escalated: int
+    undecided: tuple[Undecided, ...] = field(default=())
+
+
+@frozen
+class Removal:
+    """What one rule took away.
+
+    Parameters
+    ----------
+    rule : the rule in a few words.
+    before, after : sets of four simultaneous contacts before and after it.
+    """
+
+    rule: str
+    before: int
+    after: int
+
+    @property
+    def removed(self) -> int:
+        """How many it took away."""
+        return self.before - self.after
+
+
+@frozen
+class NearestMiss:
+    """Four simultaneous contacts that came nearest to being a fixture.
+
+    Parameters
+    ----------
+    fixture : where the pegs and the part would be; a peg with a negative force would have to pull.
+    words : what is wrong with it, in one sentence.
+    """
+
+    fixture: Fixture
+    words: str
+
+
+@frozen
+class Help:
+    """A change of what was asked for, and how many fixtures there are with it.
+
+    Parameters
+    ----------
+    change : in a few words, such as "without avoiding faces 1, 4".
+    fixtures : how many there are then.
+    complete : False when there are more, because the search for them was ended.
+    fields : those of the toolkit that it changes; None when it changes something else.
+    """
+
+    change: str
+    fixtures: int
+    complete: bool = True
+    fields: Mapping[str, Any] | None = None
+
+
+@frozen
+class Explanation:
+    """Why there is no fixture.
+
+    Parameters
+    ----------
+    contacts : sets of four pegs of the two jaws that touch the part at the same time, before any rule.
+    removals : what each rule took away, in the order they were asked; the last one left nothing.
+    nearest : the nearest miss, if four pegs can touch the part at all.
+    helps : changes that were tried and with which there are fixtures, the most first.
+    """
+
+    contacts: int
+    removals: tuple[Removal, ...]
+    nearest: NearestMiss | None
+    helps: tuple[Help, ...]
+
+    @property
+    def last_rule(self) -> str | None:
+        """The rule that took the last candidates away; None when four pegs cannot touch the part to begin with."""
+        return self.removals[-1].rule if self.removals else None
+
+
+def no_fixture_notes(wording: Wording) -> tuple[str, ...]:
+    """Why a search finds no fixture: all normals meet, no pegs of one carrier touch, no four touch, no four hold; or what
+    the toolkit has to say instead."""
+    return wording.reasons or (
+        "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing keeps the part "
+        "from turning.",
+        f"No {wording.two} can touch the part together: the pitch is too large for it.",
+        f"No {wording.four} can touch the part at the same time inside their faces.",
+        f"Four pegs can touch the part at the same time, but no such set {wording.rules}.",
+    )
+
+
+def no_place_note(verified: int, wording: Wording) -> str:
+    """Why a search finds no fixture though so many candidates are proven to hold the part."""
+    return f"{verified} {wording.sets} would hold the part, but none of them can stand in {wording.within}."
+
+
+def no_pair_note(seats: int, contacts: int) -> str:
+    """Why no two clamps hold the part, at so many seats with so many clamps."""
+    if contacts == 0:
+        return "No three locators and a clamp can touch the part at the same time inside their faces."
+    if seats == 0:
+        return "Three locators and a clamp can touch the part, but there is no place for the second clamp that is needed."
+    return f"No two clamps press the part against all three locators at any of the {seats} seats found."
+
+
+def best_note(best: int) -> str:
+    """Of a search for so many, the best, that left others out."""
+    return f"Only the best {best} were sought, so how many fixtures there are in all was not counted."
+
+
+def cut_note(found: int, listed: int) -> str:
+    """Of a search that was stopped while its fixtures were put in order or written."""
+    return f"Stopped with {found:,} fixtures found: the best {listed:,} of them are listed; more would have taken long."
+
+
+def undecided_note(count: int) -> str:
+    """Of a search that left so many candidates undecided."""
+    some = "1 candidate is undecided" if count == 1 else f"{count} candidates are undecided"
+    return f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason."
+
+
+def fitted_note(departure: float) -> str:
+    """Of a part whose outline as read is so far, in mm, from the drawn one at most."""
+    return (
+        f"All that is claimed, completeness too, holds for the outline of lines and arcs, which is up to {departure:.2g} mm "
+        "off the drawn one."
+    )
+
+
+def kept_note(found: int, kept: int) -> str:
+    """Of a server that keeps only some of the fixtures found, the best."""
+    return f"{found:,} fixtures were found; this server keeps the best {kept:,} of them."
+
+
+def seated_note(looked_at: int, kept: int) -> str:
+    """Of a search that lists only fixtures whose seating is as asked: of so many looked at so many are."""
+    return (
+        f"The seating of the first {looked_at:,} fixtures was worked out: {kept:,} of them are as asked, and no other is "
+        "listed. Of fixtures beyond these nothing is known, and some may be as asked: look at more of them to see."
+    )
+
+
+def by_hand_note() -> str:
+    """Of a search that asks for seating with two clamps, of which there is none to order fixtures by."""
+    return (
+        "With two clamps the part is pushed against its locators by hand, so fixtures are in the same order as without "
+        "seating. How to put the part in is told of each fixture."
+    )
+
+
+def stopped_note(seconds: float) -> str:
+    """Of a server that ended a search after so many seconds."""
+    end = f"The search was stopped after {seconds:g} s, the longest this server allows"
+    return f"{end}: this is a part of the fixtures only."

@@ -1,0 +1,275 @@
+"""What a machinist sets and programs from: part zero, X0 Y0, and the setting of each thing that moves.
+
+Where nothing is asked for, part zero is the origin of the drawing if that lies on the part's outside dimensions or within
+them, because the CAM system took the same drawing; else it is the lower left corner of the part as drawn. A drawing far from
+its origin, such as a part cut out of a large assembly, so never gives a zero beside the machine.
+
+The setting of a vise is its opening. Of a clamp that is bolted in a hole it is the stroke, from the hole to the tip; of one
+of which only the line is known, how far its tip is from the first column or row. Every picture, sheet and table tells of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+
+from attrs import frozen
+
+from workhold.conventions import AGREEMENT
+from workhold.errors import InputError
+from workhold.fixels.carrier import Carrier, Measure
+from workhold.fixels.contacts import CLAMP_TIP
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Arc, Point, bounding_box
+from workhold.limits import refuse_long
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.workpiece import Workpiece
+from workhold.units import MILLIMETRE, Unit
+
+__all__ = ["Mounting", "PartZero", "Setting", "contact_names", "hole_centers", "part_zero", "settings_of"]
+
+WAYS = "give corner, centre, hole and its number, or a point of the drawing as X,Y"
+
+
+@frozen
+class PartZero:
+    """A part's zero.
+
+    Parameters
+    ----------
+    point : in mm in the part's coordinates, which are those of its drawing.
+    words : what it is, such as "centre of hole 2".
+    """
+
+    point: Point
+    words: str
+
+
+def part_zero(
+    workpiece: Workpiece, asked: str | Sequence[float] | None = None, unit: Unit = MILLIMETRE
+) -> PartZero:
+    """The zero of a part.
+
+    Parameters
+    ----------
+    asked : "corner" (the lower left one of the outside dimensions), "centre" (of the same), "hole N" (its centre; holes are
+        counted from 1 as in the inset of the setup sheet), "X,Y" or two numbers, or None for what the module's head says.
+    unit : of the numbers.
+
+    Raises
+    ------
+    InputError
+        For anything else, and a hole that the part does not have.
+
+    Examples
+    --------
+    >>> far = Workpiece.from_loops("plate", [[[2000, 0, 0], [2040, 0, 0], [2040, 20, 0], [2000, 20, 0]]])
+    >>> [part_zero(far, asked).point for asked in (None, "centre", "2010,5")]
+    [(2000.0, 0.0), (2020.0, 10.0), (2010.0, 5.0)]
+    """
+    x0, y0, x1, y1 = workpiece.bounds
+    if asked is None:
+        within = min(-x0, -y0, x1, y1) >= -AGREEMENT
+        return PartZero((0.0, 0.0), "origin of the drawing") if within else part_zero(workpiece, "corner")
+    if not isinstance(asked, str):
+        return PartZero(given_point(list(map(str, asked)), str(asked), unit), "point given")
+    word = asked.strip().lower()
+    if word == "corner":
+        return PartZero((x0, y0), "lower left corner as drawn")
+    if word in ("centre", "center"):
+        return PartZero(workpiece.center, "centre of the outside dimensions")
+    if word.startswith("hole"):
+        number, centers = word.removeprefix("hole").strip(), hole_centers(workpiece)
+        if number.isascii() and number.isdigit() and 0 < int(number[:9]) <= len(centers):
+            return PartZero(centers[int(number) - 1], f"centre of hole {int(number)}")
+        count = {0: "no hole", 1: "one hole"}.get(len(centers), f"holes 1 to {len(centers)}")
+        raise InputError(f"part zero {asked[:40]!r} cannot be used: the part has {count}; {WAYS}.")
+    return PartZero(given_point(asked.split(","), repr(asked[:40]), unit), "point given")
+
+
+def given_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
+    """The point in mm that two numbers tell.
+
+    Raises
+    ------
+    InputError
+        When they are not two finite numbers, or are beyond all lengths.
+    """
+    try:
+        x, y = (unit.length(float(number)) for number in numbers)
+    except (ValueError, OverflowError):
+        x = y = float("nan")
+    if not (isfinite(x) and isfinite(y)):
+        raise InputError(f"part zero {words} is not known: {WAYS}.")
+    for value in (x, y):
+        refuse_long("part zero", value)
+    return x, y
+
+
+def hole_centers(workpiece: Workpiece) -> list[Point]:
+    """The centre of each hole, in the order of the part's loops: of a round one that of its circle, else the middle of its
+    outside dimensions.
+    """
+    outer = len(workpiece.loops[0])
+    round_ones = {
+        face.number: face.segment.center
+        for face in workpiece.faces
+        if face.number >= outer and isinstance(face.segment, Arc) and face.segment.is_full
+    }
+    centers, number = [], outer
+    for loop in workpiece.loop_segments[1:]:
+        boxes = [bounding_box(segment) for segment in loop]
+        middle = [(min(box[k] for box in boxes) + max(box[k + 2] for box in boxes)) / 2 for k in (0, 1)]
+        x, y = round_ones.get(number, middle)
+        centers.append((float(x), float(y)))
+        number += len(loop)
+    return centers
+
+
+@frozen
+class Mounting:
+    """How a clamp is put on its plate, in words that take its name for ``{clamp}`` and its hole or line for ``{place}``.
+
+    Parameters
+    ----------
+    label : above the place.
+    there : where the clamp is.
+    put : what is done with it.
+    how : what is measured, a sentence without the end, which takes the setting's title for ``{title}``.
+    then : what is measured once the tip touches, which takes the setting's title and name.
+    """
+
+    label: str
+    there: str
+    put: str
+    how: str
+    then: str
+
+
+BOLTED = Mounting(
+    "bolted in",
+    "bolted in {place}",
+    "Bolt {clamp} in {place}",
+    "Stroke: from the centre of hole {place} to the centre of the tip",
+    "Its {name}",
+)
+ALONG = Mounting(
+    "along",
+    "on {place}",
+    "Set {clamp} so that its tip is on {place}",
+    "{title}, to its centre",
+    "The {title},",
+)
+MOUNTINGS: Mapping[Measure, Mounting] = {"stroke": BOLTED, "tip": ALONG}
+
+
+@frozen
+class Setting:
+    """A length to set.
+
+    Parameters
+    ----------
+    name : what it is called, such as "opening S".
+    title : the same above the length itself.
+    sign : what stands before it on a drawing, such as "S".
+    length : in mm.
+    start, end : the points that it is measured between along the travel, in mm.
+    carrier : what moves.
+    tip : the peg of a clamp that touches the part; None of what has a lattice of its own.
+    """
+
+    name: str
+    title: str
+    sign: str
+    length: float
+    start: Point
+    end: Point
+    carrier: Carrier
+    tip: Peg | None = None
+
+    @property
+    def short(self) -> str:
+        """What it is called over a column of lengths."""
+        return self.name if self.carrier.measure == "tip" else self.sign
+
+    @property
+    def mounting(self) -> Mounting:
+        """How the clamp is put on its plate."""
+        return MOUNTINGS[self.carrier.measure]
+
+    @property
+    def label(self) -> str:
+        """What stands above the clamp's place."""
+        return f"{self.carrier.noun.capitalize()} {self.mounting.label}"
+
+    @property
+    def place(self) -> str:
+        """The clamp's hole, or its line; nothing of what has a lattice of its own."""
+        if self.tip is None:
+            return ""
+        return self.carrier.place_name(self.tip.column, self.tip.row).removeprefix(f"{self.carrier.noun} ")
+
+    @property
+    def caption(self) -> str:
+        """Its title as a sentence begins."""
+        return f"{self.title[0].upper()}{self.title[1:]}"
+
+
+def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[Setting, ...]:
+    """What there is to set: of a vise one length, of clamps one each in their order, and nothing where nothing moves.
+
+    Examples
+    --------
+    >>> from workhold.model.fixture import Pose
+    >>> from workhold import Plate
+    >>> plate, tip = Plate(pitch=20, peg_radius=3, travel=(10, 30)), Peg("clamp -x", 4, 1, 66.0, 20.0, 2, 1.0)
+    >>> (setting,) = settings_of(Fixture("clamp", (tip,), Pose(0, 0, 0), -14.0, {}, "-x"), plate)
+    >>> setting.sign, setting.length, setting.start
+    ('stroke', 14.0, (80.0, 20.0))
+    """
+    clamps = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).contact is CLAMP_TIP]
+    if clamps:
+        return tuple(
+            clamp_setting(tip, toolkit, travelled, len(clamps))
+            for tip, travelled in zip(clamps, fixture.travels, strict=True)
+            if toolkit.carrier(tip.carrier).travel is not None
+        )
+    travelled, name = fixture.jaw_separation, "opening S"
+    return tuple(
+        Setting(
+            name=name,
+            title=f"{name} of the {carrier.noun}s",
+            sign="S",
+            length=travelled,
+            start=carrier.place(0, 0),
+            end=carrier.place(0, 0, travelled),
+            carrier=carrier,
+        )
+        for carrier in toolkit.carriers
+        if carrier.travel is not None and carrier.has_lattice
+    )
+
+
+def clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> Setting:
+    """What there is to set on one of some clamps."""
+    carrier, end = toolkit.carrier(tip.carrier), (tip.x, tip.y)
+    named = f"the {carrier.noun}" if clamps == 1 else carrier.place_name(tip.column, tip.row)
+    if carrier.measure == "stroke":
+        start, stroke = carrier.place(tip.column, tip.row), 0.0 - toolkit.clamping * travelled
+        return Setting(
+            "stroke", f"stroke of {named}, from hole to tip", "stroke", stroke, start, end, carrier, tip
+        )
+    column, row = toolkit.datum.lines
+    if carrier.line == "row":
+        sign, first, length, start = "x", column, tip.x, (0.0, tip.y)
+    else:
+        sign, first, length, start = "y", row, tip.y, (tip.x, 0.0)
+    return Setting(
+        f"tip {sign}", f"tip of {named}, {sign} from {first}", sign, length, start, end, carrier, tip
+    )
+
+
+def contact_names(fixture: Fixture, toolkit: Toolkit) -> list[str]:
+    """What the contacts of a fixture are called in a table: by their holes or lines, the only clamp by its name."""
+    clamps = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).contact is CLAMP_TIP]
+    return [toolkit.carrier(peg.carrier).noun if [peg] == clamps else peg.hole for peg in fixture.pegs]

@@ -1,0 +1,148 @@
+"""Rows of contact features and reactions of locators in ball arithmetic, where doubles are not enough.
+
+Rows are made from the drawing's vertices and bulges. A row in doubles is off by the last digit of a radius or
+a direction. Where a peg nearly grazes an arc at a share p of its normal, that error over p turns the normal.
+Over p squared it changes forces per unit of the clamp's own.
+
+Whether two clamps close is often a matter of an exact zero, as where a clamp's line of force passes through
+the point in which those of two locators meet. Rounding a drawing's numbers once more leaves such a zero far
+below what decides. And a clamp that nearly grazes an arc has its place, and so the share of its force that
+pushes, off by rounding over that share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import Any
+
+from attrs import frozen
+from flint import arb, ctx
+
+from workhold.contact.problem import Problem
+from workhold.conventions import STRAIGHT
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X, REST_Y, SIGN, X, Y
+from workhold.kernels.base.given import Limits
+from workhold.proof.interval_newton import (
+    PRECISIONS,
+    BoxContacts,
+    CandidateBox,
+    SingularFrame,
+    places,
+    refined,
+)
+
+__all__ = ["SharpReactions", "exact_rows", "rounded", "sharp_reactions"]
+
+Vertex = tuple[float, float, float]
+# mm and no unit. A row farther from the drawing is not of that face as it is drawn, such as that of a flat.
+SAME_ROW = 1e-9
+
+
+def exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
+    """Rows (P, 12) of contact features of pegs of some radii in mm, with balls in them, at the precision in force."""
+    sides: list[tuple[Vertex, Vertex]] = []
+    for loop in problem.workpiece.loops:
+        vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
+        sides += zip(vertices, vertices[1:] + vertices[:1], strict=True)
+    runs = {face.number: face.segments for face in problem.workpiece.faces}
+    out = []
+    for feature, radius in zip(features, radii, strict=True):
+        row, run = problem.rows[feature].tolist(), runs[int(problem.faces[feature])]
+        out.append(exact_row(row, [sides[number] for number in run], radius, problem.workpiece.center))
+    return out
+
+
+def exact_row(
+    row: list[Any], run: Sequence[tuple[Vertex, Vertex]], radius: float, center: tuple[float, float]
+) -> list[Any]:
+    """The row of a face that is a run of sides: a line from the first start to the last end, or the first arc's circle."""
+    (start, following), end = run[0], run[-1][1]
+    bulge, is_arc = start[2], row[IS_ARC] != 0.0
+    if is_arc != (abs(bulge) >= STRAIGHT):
+        return row
+    end = following if is_arc else end
+    dx, dy = arb(end[0]) - start[0], arb(end[1]) - start[1]
+    chord, made = (dx * dx + dy * dy).sqrt(), list(row)
+    made[REST_X] = made[REST_Y] = 0.0
+    if is_arc:
+        square = arb(bulge) * bulge
+        aside = (1 - square) / (4 * arb(bulge))
+        made[X] = (arb(start[0]) + end[0]) / 2 - dy * aside - center[0]
+        made[Y] = (arb(start[1]) + end[1]) / 2 + dx * aside - center[1]
+        made[RADIUS] = chord * (1 + square) / (4 * abs(arb(bulge))) + row[SIGN] * arb(radius)
+        pairs = [(made[X], row[X]), (made[Y], row[Y]), (made[RADIUS], row[RADIUS])]
+    else:
+        made[AXIS_X], made[AXIS_Y] = dx / chord, dy / chord
+        along = made[AXIS_X] * (row[X] + arb(center[0]) - start[0]) + made[AXIS_Y] * (
+            row[Y] + arb(center[1]) - start[1]
+        )
+        made[X] = start[0] + made[AXIS_X] * along + made[AXIS_Y] * radius - center[0]
+        made[Y] = start[1] + made[AXIS_Y] * along - made[AXIS_X] * radius - center[1]
+        pairs = [(made[k], row[k]) for k in (X, Y, AXIS_X, AXIS_Y)]
+    return made if all(abs(one - other) < SAME_ROW for one, other in pairs) else row
+
+
+LOCATORS = 3
+# Steps in which a box shrinks to one solution, if it ever does.
+MOST_STEPS = 24
+# Half units in the last place of a double.
+ROUNDING = 2.3e-16
+
+
+@frozen
+class SharpReactions:
+    """Forces of three locators per unit of a clamp's force on its face, how far each may be off, and the clamp's push.
+
+    The push is the share of the clamp's own force that such a unit is.
+    """
+
+    taken: tuple[float, float, float]
+    doubt: float
+    push: float
+
+
+def sharp_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
+    """The reactions at the one solution of a box of three locators and a clamp; None where it cannot be made out."""
+    with ctx.workprec(PRECISIONS[-1]):
+        frame = SingularFrame.of(box, limits)
+        place: list[arb] | None = frame.start()
+        for _ in range(MOST_STEPS):
+            assert place is not None
+            place, unique = frame.step(place, frame.places(place))
+            if place is None:
+                return None
+            if unique:
+                here = places(box, frame.unknowns(refined(frame, place)))
+                (x, y), (along, across) = here.normals[LOCATORS], here.axis
+                return rounded(reactions(here), int(limits.clamping) * (x * along + y * across))
+    return None
+
+
+def reactions(here: BoxContacts) -> list[arb]:
+    """Solution a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w by Cramer's rule, w the clamp's wrench about the first peg."""
+    wrenches = [(n[0], n[1], q[0] * n[1] - q[1] * n[0]) for q, n in zip(here.arms, here.normals, strict=True)]
+    whole = determinant(wrenches[:LOCATORS])
+    out = []
+    for k in range(LOCATORS):
+        columns = list(wrenches[:LOCATORS])
+        columns[k] = wrenches[LOCATORS]
+        out.append(-determinant(columns) / whole)
+    return out
+
+
+def determinant(v: Sequence[tuple[arb, arb, arb]]) -> arb:
+    """The determinant of three vectors."""
+    one, two, three = v
+    return (
+        one[0] * (two[1] * three[2] - two[2] * three[1])
+        - one[1] * (two[0] * three[2] - two[2] * three[0])
+        + one[2] * (two[0] * three[1] - two[1] * three[0])
+    )
+
+
+def rounded(values: Sequence[arb], push: arb) -> SharpReactions:
+    """Balls of reactions and of the push as doubles."""
+    a, b, c = (float(value.mid()) for value in values)
+    doubt = max(float(value.rad()) + ROUNDING * abs(float(value.mid())) for value in values)
+    return SharpReactions((a, b, c), doubt if doubt == doubt else inf, float(push.mid()))

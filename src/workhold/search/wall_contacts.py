@@ -1,0 +1,402 @@
+"""Where round pegs on lines touch a part that lies flush on a wall, and whether two press it there.
+
+Both are in closed form and with bounds of the error. In the wall's frame a part lies on a hull edge: u runs
+along it from its start, v up from it. The lines are rows, of one v each, or columns, of one u each; every one
+meets a straight feature in one point at most and an arc in two. A locator and a clamp press the part against
+the wall where the null vector of the four wrenches, in doubles, says so.
+
+Bounds of the error. Everything is exact but for the rounding of the tangent of the hull edge, by ``turn``
+radians, and of sums and products of lengths up to ``size`` mm, by ``off`` mm together. A contact is then off
+by ``off`` over the sine of the angle at which its line meets the feature. Its normal is off by ``turn`` and,
+on an arc, by the contact's error over the radius; the factors below are generous. Where a line only grazes an
+arc there is no bound, and the contact is decided in balls.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+from attrs import define, fields, frozen
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import (
+    LEAST_CLAMPING,
+    LEAST_CLOSURE,
+    LEAST_PUSH,
+    LEAST_SEAT,
+    LEAST_SPAN,
+    LOOSE,
+    PARALLEL,
+)
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    HIGH_SLACK,
+    IS_ARC,
+    LOW_SLACK,
+    RADIUS,
+    SIGN,
+    X,
+    Y,
+)
+from workhold.kernels.contact.rules import ROUNDING
+from workhold.listing.wall_fixtures import WallFixtures
+
+__all__ = [
+    "ContactPairs",
+    "PartOnWall",
+    "PinContacts",
+    "closure",
+    "may_oppose",
+    "part_on_wall",
+    "pin_contacts_on",
+    "reaction_doubts",
+    "seating",
+]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Half a unit in the last place of a double.
+UNIT_ROUNDOFF = 1.2e-16
+# mm and radians. What lies further past the end of an arc is no contact, however it is rounded: where a line
+# does not graze the arc, its place is off by less.
+PAST_END = 1e-4
+# Pairs of lines and features looked at together.
+TOGETHER = 1 << 19
+
+
+@frozen(eq=False)
+class PartOnWall:
+    """Features of a part that lies on a hull edge.
+
+    Parameters
+    ----------
+    rows : (F, 12) kernel rows in the wall's frame.
+    length : of the hull edge, in mm.
+    turn : by how many radians its direction may be off.
+    off : by how many mm lengths may be off.
+    """
+
+    rows: Array
+    length: float
+    turn: float
+    off: float
+
+
+def part_on_wall(rows: Array, start: Array, end: Array) -> PartOnWall:
+    """Features (F, 12) of a part lying on the hull edge from a start to an end (2,), all about the same
+    point."""
+    step = end - start
+    length = float(np.hypot(*step))
+    (tx, ty), out = step / length, rows.copy()
+    dx, dy = rows[:, X] - start[0], rows[:, Y] - start[1]
+    out[:, X], out[:, Y] = dx * tx + dy * ty, dy * tx - dx * ty
+    out[:, AXIS_X] = rows[:, AXIS_X] * tx + rows[:, AXIS_Y] * ty
+    out[:, AXIS_Y] = rows[:, AXIS_Y] * tx - rows[:, AXIS_X] * ty
+    size = float(np.abs(out[:, [X, Y, RADIUS]]).max(initial=length) + np.abs([start, end]).max())
+    turn = 8 * UNIT_ROUNDOFF * (1.0 + size / length)
+    return PartOnWall(out, length, turn, 16 * UNIT_ROUNDOFF * size + turn * size)
+
+
+@define(frozen=True, eq=False)
+class PinContacts:
+    """M contacts of pegs on lines.
+
+    Parameters
+    ----------
+    line : (M,) index of the line.
+    feature : (M,) index of the feature touched.
+    point : (M, 2) centre of the peg, u and v in mm.
+    normal : (M, 2) outward unit normal there.
+    slack : (M,) how far in mm it is from breaking the rule of ends, infinite on a whole circle.
+    reach, swing : (M,) by how many mm and radians place and normal may be off.
+    branch : (M,) -1 or 1 for the lower or the upper of the two points of an arc, 1 on a straight feature.
+    """
+
+    line: IntArray
+    feature: IntArray
+    point: Array
+    normal: Array
+    slack: Array
+    reach: Array
+    swing: Array
+    branch: Array
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> PinContacts:
+        """The contacts of an index array or mask, in its order."""
+        return PinContacts(*(getattr(self, one.name)[order] for one in fields(PinContacts)))
+
+    @classmethod
+    def joined(cls, parts: list[PinContacts]) -> PinContacts:
+        """All contacts of several."""
+        return cls(
+            *(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(PinContacts))
+        )
+
+
+def pin_contacts_on(
+    lying: PartOnWall, chosen: tuple[int, int], levels: Array, upright: bool, margin: float
+) -> PinContacts:
+    """Contacts of pegs on lines with some features, at least nearly ``margin`` mm inside their ends; at a
+    tangent joint with both features that meet there.
+
+    Parameters
+    ----------
+    chosen : first and past-the-last number of the features.
+    levels : (K,) v of rows, or u of columns if ``upright``, in mm.
+    margin : smallest distance in mm from the end of a feature.
+    """
+    first, last = chosen
+    rows = lying.rows[first:last]
+    along, across = ((Y, X) if upright else (X, Y)), ((AXIS_Y, AXIS_X) if upright else (AXIS_X, AXIS_Y))
+    together = max(TOGETHER // max(len(rows), 1), 1)
+    parts = []
+    for start in range(0, max(len(levels), 1), together):
+        some = levels[start : start + together]
+        for part in (on_lines(lying, rows, some, along, across), on_arcs(lying, rows, some, along, across)):
+            inside = part.slack - margin > -(1.2 * part.reach + LOOSE)
+            kept = part if inside.all() else part.take(inside)
+            parts.append(PinContacts(kept.line + start, kept.feature + first, *tail(kept)))
+    return PinContacts.joined(parts)
+
+
+def tail(places: PinContacts) -> tuple[Array, ...]:
+    """All but the lines and features of contacts."""
+    return tuple(getattr(places, one.name) for one in fields(PinContacts))[2:]
+
+
+def on_lines(
+    lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
+) -> PinContacts:
+    """Contacts with straight features; those parallel to the lines have none."""
+    straight = np.flatnonzero((rows[:, IS_ARC] == 0.0) & (np.abs(rows[:, across[1]]) > PARALLEL))
+    some = rows[straight]
+    rises = np.abs(some[:, across[1]])
+    # Most pairs of a line and a feature are far from each other: the bound below solved for s, generously.
+    farthest = 1.01 * (some[:, HALF_EXTENT] + 4.0 * lying.off / rises + LOOSE)
+    farthest[4.0 * lying.turn > 0.009 * rises] = np.inf
+    line, which = np.nonzero(np.abs(levels[:, None] - some[:, along[1]]) <= farthest * rises)
+    s = (levels[line] - some[which, along[1]]) / some[which, across[1]]
+    reach = 4.0 * (lying.off + lying.turn * np.abs(s)) / rises[which]
+    near = np.abs(s) <= some[which, HALF_EXTENT] + (reach + LOOSE)
+    line, which, s, reach = line[near], which[near], s[near], reach[near]
+    part = some.T[:, which]
+    point = np.stack([part[X] + s * part[AXIS_X], part[Y] + s * part[AXIS_Y]], axis=1)
+    slack = np.minimum(part[HALF_EXTENT] - s + part[HIGH_SLACK], part[HALF_EXTENT] + s + part[LOW_SLACK])
+    normal = np.stack([part[AXIS_Y], -part[AXIS_X]], axis=1)
+    turned = np.full(len(s), 2.0 * lying.turn)
+    return PinContacts(line, straight[which], point, normal, slack, reach, turned, np.ones(len(s)))
+
+
+def on_arcs(
+    lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
+) -> PinContacts:
+    """Contacts with arcs."""
+    round_ = np.flatnonzero(rows[:, IS_ARC] != 0.0)
+    some = rows[round_]
+    radius, place = some[:, RADIUS], some[:, along[1]]
+    # Beside a grazing line the square root below is of what rounding leaves: the place is off by no more than
+    # both roots. Its normal is across the line to within its swing, so no contact there is told to press, but
+    # by balls.
+    least = 16.0 * lying.off * radius
+    low, high = heights(some, across, 3.0 * np.sqrt(least) + PAST_END)
+    line, which = np.nonzero(np.abs(levels[:, None] - (place + (low + high) / 2.0)) <= (high - low) / 2.0)
+    up = levels[line] - place[which]
+    met = np.abs(up) <= radius[which] + 2.0 * lying.off
+    line, which, up = line[met], which[met], up[met]
+    part = some.T[:, which]
+    half = np.sqrt(np.maximum((part[RADIUS] - up) * (part[RADIUS] + up), 0.0))
+    grazing = ~(half * half > least[which])
+    one, other = part[across[0]] * half, part[across[1]] * up
+    ahead = np.stack([other - one, other + one], axis=1)
+    chosen, side = np.nonzero(grazing[:, None] | (ahead >= least_ahead(some)[which][:, None]))
+    line, which = line[chosen], which[chosen]
+    up, half, grazing = up[chosen], half[chosen], grazing[chosen]
+    part, branch = part[:, chosen], np.array([-1.0, 1.0])[side]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reach = 4.0 * lying.off * part[RADIUS] / half
+    reach[grazing] = half[grazing] + np.sqrt(2.0 * least[which[grazing]])
+    ray = np.empty((len(up), 2))
+    upright = along[0] == Y
+    ray[:, int(upright)], ray[:, 1 - int(upright)] = branch * half, up
+    angle = np.arctan2(
+        part[AXIS_X] * ray[:, 1] - part[AXIS_Y] * ray[:, 0],
+        part[AXIS_X] * ray[:, 0] + part[AXIS_Y] * ray[:, 1],
+    )
+    slack = np.minimum(
+        (part[HALF_EXTENT] - angle) * part[RADIUS] + part[HIGH_SLACK],
+        (part[HALF_EXTENT] + angle) * part[RADIUS] + part[LOW_SLACK],
+    )
+    slack[part[HALF_EXTENT] >= np.pi] = np.inf
+    normal = part[SIGN][:, None] * ray / part[RADIUS][:, None]
+    swing = 2.0 * (lying.turn + (reach + lying.off) / part[RADIUS])
+    point = np.stack([part[X] + ray[:, 0], part[Y] + ray[:, 1]], axis=1)
+    return PinContacts(line, round_[which], point, normal, slack, reach, swing, branch)
+
+
+def half_angles(rows: Array) -> Array:
+    """Half angles (F,) in radians of arcs (F, 12), and of what lies not far past their ends."""
+    past = np.maximum(rows[:, HIGH_SLACK], rows[:, LOW_SLACK]) + PAST_END
+    return np.asarray(np.minimum(rows[:, HALF_EXTENT] + past / rows[:, RADIUS] + PAST_END, np.pi))
+
+
+def least_ahead(rows: Array) -> Array:
+    """The least mm (F,) that contacts lie along the axes of arcs (F, 12), of those that are not far past the
+    ends."""
+    angle = half_angles(rows)
+    return np.asarray(np.where(angle >= np.pi, -np.inf, rows[:, RADIUS] * np.cos(angle)))
+
+
+def heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
+    """Least and largest coordinates (F,) in mm from their centres of contacts with arcs (F, 12) that are not
+    far past the ends, and ``spare`` (F,) mm more; ``across`` are the columns of their axes' parts across the
+    coordinate and along it."""
+    turn, half = np.arctan2(np.abs(rows[:, across[0]]), rows[:, across[1]]), half_angles(rows)
+    low = -np.cos(np.maximum(np.pi - turn - half, 0.0))
+    return rows[:, RADIUS] * low - spare, rows[:, RADIUS] * np.cos(np.maximum(turn - half, 0.0)) + spare
+
+
+BoolArray = NDArray[np.bool_]
+
+
+@frozen(eq=False)
+class ContactPairs:
+    """M pairs of a contact of a clamp and one of the locator.
+
+    Parameters
+    ----------
+    places : contacts of the tip; their lines are rows, or columns counted from the locator's.
+    which : (M,) index of the tip's contact.
+    locator : (M,) index of the locator's contact.
+    """
+
+    places: PinContacts
+    which: IntArray
+    locator: IntArray
+
+    def __len__(self) -> int:
+        return len(self.locator)
+
+    def take(self, order: IntArray | BoolArray) -> ContactPairs:
+        """The pairs of an index array or mask, in its order."""
+        return ContactPairs(self.places, self.which[order], self.locator[order])
+
+
+def may_oppose(lying: PartOnWall, one: PinContacts, clamps: ContactPairs, problem: Problem) -> BoolArray:
+    """Which pairs (M,) :func:`closure` may find to press the part: those of whose normals a, b the parts
+    along the wall are opposed, for the locator's force is -b_u sign a_u times the length of the hull edge;
+    about half of all."""
+    length, two = problem.wrench_length, clamps.places
+    reach, swing = (
+        max(x.max(initial=0.0), y.max(initial=0.0))
+        for x, y in ((one.reach, two.reach), (one.swing, two.swing))
+    )
+    band = 20.0 * swing + 4.0 * (reach + lying.off) / length + ROUNDING
+    ahead = -two.normal[clamps.which, 0] * np.copysign(1.0, one.normal[:, 0])[clamps.locator]
+    return np.asarray(~(ahead * (lying.length / length) < -1.2 * band))
+
+
+def seating(
+    lying: PartOnWall,
+    one: PinContacts,
+    two: PinContacts,
+    locator: IntArray,
+    push: tuple[float, float],
+    problem: Problem,
+) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Null vectors, pushes and verdicts as of :func:`closure`, of one of two clamps: wall and locator must
+    fix the part, and the clamp must push.
+
+    The null vectors (M, 4) are the forces of the wall's two ends and the locator per unit of that on the
+    clamp's face. With the notation there the locator's is -b_u / a_u, and the determinant of the three
+    wrenches is |a_u| l.
+    """
+    length = problem.wrench_length
+    a, b = one.normal[locator], two.normal
+    p, q = one.point[locator] / length, two.point / length
+    wall = lying.length / length
+    with np.errstate(divide="ignore", invalid="ignore"):
+        force = -b[:, 0] / a[:, 0]
+        last = (
+            force * (p[:, 0] * a[:, 1] - p[:, 1] * a[:, 0]) + q[:, 0] * b[:, 1] - q[:, 1] * b[:, 0]
+        ) / wall
+        null = np.stack([force * a[:, 1] + b[:, 1] - last, last, force, np.ones(len(force))], axis=1)
+        reach = np.maximum(one.reach[locator], two.reach)
+        swing = np.maximum(one.swing[locator], two.swing)
+        pushes = -(b[:, 0] * push[0] + b[:, 1] * push[1])
+        slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
+        fixed = np.abs(a[:, 0]) * wall - LEAST_SEAT
+        band = 2.0 * swing + ROUNDING
+        worst = np.minimum(
+            slack / (1.2 * reach + 1e-12), np.minimum((pushes - LEAST_PUSH) / band, fixed / (wall * band))
+        )
+    held = worst > 1.0
+    return null, pushes, held, ~held & ~(worst < -1.0)
+
+
+def reaction_doubts(
+    pressed: WallFixtures,
+    lying: PartOnWall,
+    one: PinContacts,
+    two: PinContacts,
+    locator: IntArray,
+    problem: Problem,
+) -> Array:
+    """How far the forces of wall and locator (M,) may be off, from how far places and normals may be."""
+    reach = np.maximum(one.reach[locator], two.reach)
+    swing = np.maximum(one.swing[locator], two.swing)
+    across = np.abs(one.normal[locator, 0])
+    size = 1.0 + np.abs(pressed.null).sum(axis=1)
+    wall = lying.length / problem.wrench_length
+    with np.errstate(invalid="ignore"):
+        doubt = 4.0 * size * (20.0 * swing + 4.0 * (reach + lying.off) / problem.wrench_length + ROUNDING)
+        return np.asarray(np.nan_to_num(doubt / (across * min(wall, 1.0)), nan=inf))
+
+
+def closure(
+    lying: PartOnWall,
+    one: PinContacts,
+    two: PinContacts,
+    locator: IntArray,
+    push: tuple[float, float] | None,
+    problem: Problem,
+) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled; how much (M,) of its force
+    the clamp passes on in its direction; which pairs (M,) press the part, and of which that is open.
+
+    Where both pegs move towards the wall, ``push`` is None: they pass on what the wall takes up, in parts of
+    the second one's force. With normals a, b and moments m, M of locator and clamp about the start of the
+    hull edge of length l, lengths in parts of L, and p = -b_u sign a_u, q = |a_u|, the null vector is (l (p
+    a_v + q b_v) - t, t, p l, q l) with t = p m + q M.
+    """
+    length = problem.wrench_length
+    a, b = one.normal[locator], two.normal
+    p = one.point[locator] / length
+    q = two.point / length
+    across, ahead = np.abs(a[:, 0]), -b[:, 0] * np.copysign(1.0, a[:, 0])
+    wall = lying.length / length
+    last = ahead * (p[:, 0] * a[:, 1] - p[:, 1] * a[:, 0]) + across * (q[:, 0] * b[:, 1] - q[:, 1] * b[:, 0])
+    both = wall * (ahead * a[:, 1] + across * b[:, 1])
+    forces = both - last, last, ahead * wall, across * wall
+    null = np.stack(forces, axis=1)
+    reach = np.maximum(one.reach[locator], two.reach)
+    swing = np.maximum(one.swing[locator], two.swing)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pushes = (both / (across * wall)) if push is None else -(b[:, 0] * push[0] + b[:, 1] * push[1])
+        band = 20.0 * swing + 4.0 * (reach + lying.off) / length + ROUNDING
+        size = sum(map(np.abs, forces))
+        smallest = np.minimum(np.minimum(*forces[:2]), np.minimum(*forces[2:]))
+        least = np.minimum(smallest - LEAST_CLOSURE * size, size - LEAST_SPAN)
+        force = (both if push is None else null[:, 3] * pushes) - LEAST_CLAMPING * size
+        slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
+        worst = np.minimum(least / band, force / (3.0 * band + size * swing))
+        worst = np.minimum(worst, slack / np.maximum(1.2 * reach, 1e-300))
+    held = worst > 1.1
+    return null, pushes, held, ~held & ~(worst < -1.1)

@@ -1,0 +1,397 @@
+"""How a part is clamped: the reading on what moves, the order of tightening, and the friction below which it cannot stick.
+
+The reading when the part rests in a seat is an opening, a stroke, or where the tip is.
+
+Into two clamps a part is pushed against its locators by hand, then clamped. The locators alone fix the pose,
+and neither clamp holds the part alone. So it is not known from where one of them would bring it home: there
+is no opening, no reading, no cage. The order of tightening is known, and which locators each clamp alone does
+not press the part on.
+
+Below some friction a part cannot stick near its seat. In a vise, and under one clamp, that is where three of
+the four contacts balance the jaw inside their cones. Contact i presses with h (-n + s mu t), |s| <= 1. Three
+forces balance where the determinant of their wrenches is zero. Of three unknown ratios the least largest has
+all three equal, or one of the contacts without force. A determinant of signs is a cubic in mu. Where less
+friction does, the jaw's share of the forces vanishes at the least: the three lock whatever its force. Halving
+finds that. Reference: V.-D. Nguyen, "Constructing force-closure grasps", International Journal of Robotics
+Research 7 (1988).
+
+Of two clamps the forces are given, in a ratio. Near the pose both tips touch, and a part that is not in it is
+off some locator. So what is sought is the least mu at which contacts without one of the three locators
+balance the clamps inside their cones. As cones grow with mu, halving finds it. Contacts of poses that come
+ever nearer to the fixture's end in its contacts, and forces of sum 1 have a limit. So below that mu there is
+nothing to stick in near the pose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import combinations
+from math import floor, inf
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import NO_REACTION
+from workhold.fixels.toolkit import Carrier, Toolkit
+from workhold.kernels.seating.sticking import least_friction
+from workhold.limits import MOST_FRICTION
+from workhold.model.clamps import clamp_names, first_clamps, order_words
+from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.seating import DRY_STEEL, length
+from workhold.model.setup import Setting, settings_of
+from workhold.model.workpiece import Workpiece
+from workhold.plain import listed
+from workhold.statics.contact_matrix import LOCATORS, Touched
+from workhold.statics.loads import cone_edges, contacts_on_part
+from workhold.units import MILLIMETRE
+
+__all__ = [
+    "WHY",
+    "ByHand",
+    "Gauge",
+    "OpeningWords",
+    "by_hand",
+    "sticking_friction",
+    "sticking_friction_of_two",
+]
+
+
+@frozen
+class OpeningWords:
+    """Words for opening and closing what moves.
+
+    Parameters
+    ----------
+    open, close : so that the part can be put in, and so that it is held.
+    done, far : that it is open, and how far.
+    hold, whose : how it holds the part, and whose way is meant.
+    """
+
+    open: str
+    close: str
+    done: str
+    far: str
+    hold: str
+    whose: str
+
+
+CLAMP = OpeningWords(
+    "Draw the clamp back", "tighten it", "Drawn back", "far the clamp is drawn back", "it holds", "clamp's"
+)
+# Jaws that clamp by closing (1), and by opening (-1).
+VISE = {
+    1: OpeningWords("Open the jaws", "close them", "Opened", "wide the jaws open", "they hold", "jaws'"),
+    -1: OpeningWords("Close the jaws", "open them", "Closed", "far the jaws close", "they hold", "jaws'"),
+}
+
+
+@frozen
+class Gauge:
+    """The measure by which a fixture's seats are distinguished.
+
+    Parameters
+    ----------
+    fixture, toolkit : whose.
+    """
+
+    fixture: Fixture
+    toolkit: Toolkit
+
+    @property
+    def carrier(self) -> Carrier:
+        """What moves."""
+        carriers = (self.toolkit.carrier(peg.carrier) for peg in self.fixture.pegs)
+        return next(carrier for carrier in carriers if carrier.travel is not None)
+
+    @property
+    def setting(self) -> Setting:
+        """What is read in the fixture's own pose."""
+        return settings_of(self.fixture, self.toolkit)[0]
+
+    @property
+    def ways(self) -> OpeningWords:
+        """Words for opening and closing what moves."""
+        return VISE[self.toolkit.clamping] if self.carrier.on is None else CLAMP
+
+    @property
+    def grows(self) -> bool:
+        """Whether more is read as what moves is opened: a stroke gets less."""
+        return self.at(self.fixture.jaw_separation + self.toolkit.clamping) > self.setting.length
+
+    def pegs(self, travelled: float) -> tuple[Peg, ...]:
+        """The pegs, with what moves elsewhere on its way.
+
+        Parameters
+        ----------
+        travelled : how far it has gone, in mm, such as the jaw separation.
+        """
+        moving = self.carrier
+        assert moving.travel is not None
+        (x, y), by = moving.travel.unit, travelled - self.fixture.jaw_separation
+        return tuple(
+            evolve(peg, x=peg.x + by * x, y=peg.y + by * y) if peg.carrier == moving.name else peg
+            for peg in self.fixture.pegs
+        )
+
+    def at(self, travelled: float) -> float:
+        """What is read there, in mm.
+
+        Examples
+        --------
+        >>> from workhold import Plate
+        >>> from workhold.model.fixture import Pose
+        >>> plate, tip = Plate(pitch=20, peg_radius=3, travel=(10, 30)), Peg("clamp -x", 4, 1, 66.0, 20.0, 2, 1.0)
+        >>> fixture = Fixture("clamp", (tip,), Pose(0, 0, 0), -14.0, {}, "-x")
+        >>> Gauge(fixture, plate).at(-12.5)
+        12.5
+        """
+        moved = evolve(self.fixture, pegs=self.pegs(travelled), jaw_separation=travelled)
+        return settings_of(moved, self.toolkit)[0].length
+
+
+Array = NDArray[np.float64]
+# mm. Contacts are counted in parts of how far they are apart, but of this at least.
+SMALLEST = 1e-9
+# By how much forces of sum 1 may miss their balance, or be below 0, for rounding.
+BALANCED = 1e-10
+# A coefficient of friction is known to this part of it.
+PRECISION = 1e-9
+
+
+def sticking_friction(points: Array, normals: Array, right: Array) -> float:
+    """The least friction at which three of four contacts, or two, balance the jaw; infinite if there is none.
+
+    Parameters
+    ----------
+    points : (4, 2) contact points in mm, in the vise frame.
+    normals : (4, 2) outward unit normals there.
+    right : (4,) 1 for contacts of the right jaw's pegs, 0 for others.
+    """
+    size = max(float((points.max(axis=0) - points.min(axis=0)).max()), SMALLEST)
+    contacts = (
+        (points - points.sum(axis=0) / len(points)) / size,
+        np.ascontiguousarray(normals),
+        np.asarray(right, dtype=np.int64),
+    )
+    return float(
+        least_friction(*contacts, np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 4)), np.empty((4, 4)))
+    )
+
+
+def sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> float:
+    """The least friction at which two clamps, in their working ratio, balance without one of the locators.
+
+    It is infinite where they balance at none up to ``MOST_FRICTION``.
+    """
+    assert fixture.pair is not None
+    ratio = fixture.pair.working_ratio
+    touched = Touched.of(workpiece, toolkit)
+    contacts = contacts_on_part(fixture, workpiece, toolkit, touched, touched.of_fixture(fixture, toolkit))
+    low, high = 0.0, MOST_FRICTION
+
+    def sticks(friction: float) -> bool:
+        edges, share = cone_edges(*contacts, friction, touched.length)
+        return balances_without_a_locator(edges, share, ratio)
+
+    if not sticks(high):
+        return inf
+    while high - low > PRECISION * high:
+        middle = (low + high) / 2
+        low, high = (low, middle) if sticks(middle) else (middle, high)
+    return high
+
+
+def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool:
+    """Whether forces balance two clamps that push in a ratio, without one of three locators.
+
+    If there is a solution that is not negative, one has no more entries above zero than there are equations
+    (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of so many entries are tried.
+
+    Parameters
+    ----------
+    edges, share : of five pegs, the clamps last: see ``statics.loads.cone_edges``.
+    ratio : the second clamp's force over the first's.
+    """
+    count = len(edges) // 2
+    clamps = [np.isin(np.arange(2 * count) % count, [k]) * share for k in (LOCATORS, LOCATORS + 1)]
+    # Balance, what the clamps push with in parts of an unknown force, and the sum of all.
+    rows = np.vstack([edges.T, *clamps, np.ones(2 * count)])
+    force = np.array([0.0, 0.0, 0.0, -1.0, -ratio, 0.0]) / (1.0 + ratio)
+    wanted = np.eye(len(rows))[-1]
+    for left_out in range(LOCATORS):
+        columns = np.column_stack([rows[:, np.arange(2 * count) % count != left_out], force])
+        chosen = columns[:, list(combinations(range(columns.shape[1]), len(rows)))].transpose(1, 0, 2)
+        chosen = chosen[np.linalg.det(chosen) != 0.0]
+        forces = np.linalg.solve(chosen, np.broadcast_to(wanted, (len(chosen), len(rows)))[..., None])
+        missed = np.abs(chosen @ forces - wanted[:, None]).max(axis=(1, 2))
+        if ((forces.min(axis=(1, 2)) > -BALANCED) & (missed < BALANCED)).any():
+            return True
+    return False
+
+
+WHY = (
+    "Neither of the two clamps holds the part alone, so from where they bring it home is not known: put it in its place by "
+    "hand. The locators alone fix that place."
+)
+LOCATOR_COUNT = 3
+# Friction is given to so many decimals, rounded down.
+DECIMALS = 3
+# A ratio of forces below this is given to two digits, others to hundredths.
+SMALL = 0.1
+
+
+@frozen(repr=False)
+class ByHand:
+    """How to put a part into two clamps, and what is known of it there.
+
+    Parameters
+    ----------
+    fixture, toolkit : what holds it.
+    sticking_friction : the coefficient below which a part a little off a locator comes home in both clamps at
+        their working ratio. It is infinite where the part always does, and None for pegs with a flat.
+    """
+
+    fixture: Fixture
+    toolkit: Toolkit
+    sticking_friction: float | None
+
+    def __repr__(self) -> str:
+        friction = (
+            ""
+            if self.sticking_friction is None
+            else f", sticks from a friction of {self.sticking_friction:.3f}"
+        )
+        return f"<ByHand of {self.fixture}{friction}>"
+
+    @property
+    def pair(self) -> Pair:
+        """What is particular to the two clamps."""
+        assert self.fixture.pair is not None
+        return self.fixture.pair
+
+    @property
+    def unpressed(self) -> tuple[tuple[Peg, ...], ...]:
+        """The locators, and ends of the contact with a wall, without force under each clamp alone."""
+        known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATOR_COUNT]
+        return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
+
+    def as_fields(self, text: Callable[[float], str] = MILLIMETRE.text) -> dict[str, Any]:
+        """What is known and what to do, as JSON has it, with clamps and locators by their names.
+
+        Parameters
+        ----------
+        text : writes a length in mm with its unit.
+        """
+        return {
+            "clamps": list(clamp_names(self.fixture)),
+            "first": list(first_clamps(self.fixture)),
+            "unpressed": [[peg.hole for peg in pegs] for pegs in self.unpressed],
+            "ratio": [length(end) for end in self.pair.ratio],
+            "working_ratio": length(self.pair.working_ratio),
+            "sticking_friction": length(self.sticking_friction),
+            "why": WHY,
+            "steps": self.steps(text),
+        }
+
+    def steps(self, text: Callable[[float], str] = MILLIMETRE.text, with_order: bool = True) -> list[str]:
+        """What to do at the machine, and what to look at, one step each.
+
+        Parameters
+        ----------
+        text : writes a length in mm with its unit.
+        with_order : whether the order of tightening is among the steps; some papers have it elsewhere.
+        """
+        order = [order_words(self.fixture)] if with_order else []
+        steps = [self.push_words(), self.touch_words(), " ".join([*order, self.hold_words()])]
+        return [*steps, *self.friction_words(), self.after_words(text)]
+
+    def push_words(self) -> str:
+        """How to put the part in, in one step."""
+        locators = [peg.hole for peg in self.fixture.pegs[:LOCATOR_COUNT] if not peg.is_on_wall]
+        wall, noun = self.toolkit.wall, self.toolkit.carriers[0].peg
+        against = f"all three {noun}s, {listed(locators)}"
+        if wall is not None:
+            against = f"the {wall.noun}, flush, and against the {noun} in {listed(locators)}"
+        ways = (self.fixture.direction or "").split()
+        # Of clamps that push against each other neither shows the way.
+        way = "" if len({name[1] for name in ways}) < len(set(ways)) else f" {self.towards}"
+        return f"Draw both clamps back and push the part{way} by hand until it lies against {against}."
+
+    @property
+    def towards(self) -> str:
+        """The direction in which both clamps push, in words."""
+        return self.toolkit.arrangement(self.fixture.type, self.fixture.direction).towards
+
+    def touch_words(self) -> str:
+        """How to see that it lies right."""
+        touched = listed(
+            [f"{peg.touching} at {place_of(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATOR_COUNT]]
+        )
+        return f"Pull at a slip of paper at each: {touched}. If none comes out, the part lies against all of them."
+
+    def hold_words(self) -> str:
+        """Until when to hold the part."""
+        hold = "Hold the part in its place until both are tight"
+        first, names = first_clamps(self.fixture), clamp_names(self.fixture)
+        loose = [
+            f"{name} alone does not press it on {listed(places_of(pegs, self.toolkit))}"
+            for name, pegs in zip(names, self.unpressed, strict=True)
+            if name in first
+        ]
+        return f"{hold}: {', and '.join(loose)}." if loose else f"{hold}."
+
+    def friction_words(self) -> list[str]:
+        """What friction does, one sentence or none."""
+        least, (first, second) = self.sticking_friction, clamp_names(self.fixture)
+        if least is None:
+            return []
+        ratio = self.pair.working_ratio
+        together = f"{second} with {ratio:{'.2f' if ratio >= SMALL else '.2g'}} times the force of {first}"
+        if least == inf:
+            return [
+                f"Tightened together, {together}, both bring home a part a little off a locator, whatever the friction."
+            ]
+        friction = f"{floor(least * 10.0**DECIMALS) / 10.0**DECIMALS:.{DECIMALS}f}"
+        steel = "dry steel has 0.1 to 0.2"
+        if least >= DRY_STEEL:
+            return [
+                f"Tightened together, {together}, both bring home a part a little off a locator while friction is below "
+                f"{friction}; {steel}."
+            ]
+        return [
+            f"From a friction of {friction} on the part can stay a little off a locator also under both clamps, {together}; "
+            f"{steel}, so tap it home meanwhile."
+        ]
+
+    def after_words(self, text: Callable[[float], str]) -> str:
+        """What to look at in the end."""
+        settings = settings_of(self.fixture, self.toolkit)
+        names = clamp_names(self.fixture)
+        lengths = [
+            f"a {one.name} of {text(one.length)} at {name}" for one, name in zip(settings, names, strict=True)
+        ]
+        return f"Try the paper again. Right is {listed(lengths)}; if not, the part lies against them another way."
+
+
+def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
+    """How to put a part into the two clamps of a fixture, and what is known of it there."""
+
+    friction = None if toolkit.has_flats else sticking_friction_of_two(fixture, workpiece, toolkit)
+    return ByHand(fixture, toolkit, friction)
+
+
+def place_of(peg: Peg, toolkit: Toolkit) -> str:
+    """Where a locator is, or an end of the contact with a wall."""
+    if not peg.is_on_wall or toolkit.wall is None:
+        return peg.hole
+    return f"the {toolkit.wall.noun} on the {peg.hole.rpartition(' ')[2]}"
+
+
+def places_of(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
+    """Where some locators are; both ends of the contact with a wall are the wall."""
+    walls = sum(peg.is_on_wall for peg in pegs)
+    if toolkit.wall is None or walls < 2:
+        return [place_of(peg, toolkit) for peg in pegs]
+    return [f"the {toolkit.wall.noun}", *(peg.hole for peg in pegs if not peg.is_on_wall)]

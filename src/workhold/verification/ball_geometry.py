@@ -1,0 +1,370 @@
+"""Plane geometry in ball arithmetic: numbers, points, and the outline of a workpiece by lines and arcs.
+
+A ball is a midpoint and a radius within which a number is known to lie (python-flint's ``arb``). Every
+operation rounds outward, so that a comparison that holds for a ball holds for the number inside. ``a > b`` is
+true only when it is certain. Where both ``a > b`` and ``a <= b`` are false, the precision does not decide.
+
+Sides are derived from vertices and bulges alone. A bulge b is a rational number, so cosine and sine of half
+the sweep 4 atan(b) are the rational numbers (1 - b²)/(1 + b²) and 2b/(1 + b²). Centre and radius of an arc
+then need no trigonometry.
+
+Glossary
+--------
+exact : a float is a rational number, and a ball of radius 0 holds it.
+hull : the smallest ball around two balls; it also holds every number between them.
+side : one segment of the outline, or a whole face of several, with material on its left.
+gap : distance of a point from the line or circle that carries a side, positive on the outer side.
+slacks : distances along a contact feature from its untrimmed start and end, negative beyond that end.
+
+References
+----------
+F. Johansson, "Arb: efficient arbitrary-precision midpoint-radius interval arithmetic", IEEE Transactions on
+Computers 66 (2017) 1281-1292.
+S. M. Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19 (2010)
+287-449.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from attrs import frozen
+from flint import arb
+
+from workhold.model.workpiece import Workpiece
+from workhold.verification.tolerances import STRAIGHT, TANGENT, WHOLE
+
+__all__ = [
+    "PRECISIONS",
+    "ArcSide",
+    "BallOutline",
+    "LineSide",
+    "Point",
+    "Side",
+    "arc_side",
+    "cross",
+    "dot",
+    "exact_point",
+    "largest",
+    "least",
+    "line_side",
+    "norm",
+    "root",
+    "turned",
+    "whole_face",
+]
+
+Point = tuple[arb, arb]
+
+# Bits of the midpoints; the next is tried when one leaves something undecided.
+PRECISIONS = (128, 256, 512)
+
+
+def exact_point(x: float, y: float) -> Point:
+    """A point given by floats."""
+    return arb(x), arb(y)
+
+
+def dot(a: Point, b: Point) -> arb:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1]
+
+
+def cross(a: Point, b: Point) -> arb:
+    """Third component of the vector product."""
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def root(square: arb) -> arb:
+    """Square root of a number that is not negative, though its ball may reach below 0."""
+    return square.sqrt() if square > 0 else arb(0).union(square.abs_upper().sqrt())
+
+
+def norm(a: Point) -> arb:
+    """Length of a vector, also where the ball holds the null vector."""
+    return root(dot(a, a))
+
+
+def turned(a: Point, cosine: arb, sine: arb) -> Point:
+    """A vector turned counter-clockwise."""
+    return cosine * a[0] - sine * a[1], sine * a[0] + cosine * a[1]
+
+
+def least(values: Sequence[arb]) -> arb:
+    """The smallest of some numbers."""
+    found = values[0]
+    for value in values[1:]:
+        found = found.min(value)
+    return found
+
+
+def largest(values: Sequence[arb]) -> arb:
+    """The largest of some numbers."""
+    return -least([-value for value in values])
+
+
+Vertex = tuple[float, float, float]
+
+
+@frozen(eq=False)
+class LineSide:
+    """A straight side.
+
+    Parameters
+    ----------
+    start, end : in mm.
+    tangent : unit vector from start to end.
+    length : in mm.
+    level : scalar product in mm of the outward normal with any point of the side.
+    """
+
+    start: Point
+    end: Point
+    tangent: Point
+    length: arb
+    level: arb
+
+    @property
+    def normal(self) -> Point:
+        """Outward unit normal."""
+        return self.tangent[1], -self.tangent[0]
+
+    def gap(self, point: Point) -> arb:
+        """Signed distance in mm of a point from the carrying line."""
+        return dot(self.normal, point) - self.level
+
+    def distance(self, point: Point) -> arb:
+        """Distance in mm of a point from the side."""
+        from_start = point[0] - self.start[0], point[1] - self.start[1]
+        along = dot(from_start, self.tangent)
+        if along > 0 and along < self.length:
+            return abs(cross(self.tangent, from_start))
+        if along < 0:
+            return norm(from_start)
+        from_end = point[0] - self.end[0], point[1] - self.end[1]
+        if along > self.length:
+            return norm(from_end)
+        return abs(cross(self.tangent, from_start)).union(norm(from_start).min(norm(from_end)))
+
+    def away(self, point: Point) -> Point | None:
+        """Along the way to a point from the nearest point of the side, of any length; None when that is not certain."""
+        along = dot((point[0] - self.start[0], point[1] - self.start[1]), self.tangent)
+        if along > 0 and along < self.length:
+            return self.normal
+        end = self.start if along < 0 else self.end if along > self.length else None
+        return None if end is None else (point[0] - end[0], point[1] - end[1])
+
+    def slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
+        """Slacks in mm of a peg's centre on the side moved out by ``offset``."""
+        along = dot((point[0] - self.start[0], point[1] - self.start[1]), self.tangent)
+        return along, self.length - along
+
+    def outward(self, point: Point) -> Point:
+        """Outward unit normal at the foot of a point."""
+        return self.normal
+
+
+@frozen(eq=False)
+class ArcSide:
+    """A circular side.
+
+    Parameters
+    ----------
+    start, end : in mm.
+    center, radius : in mm.
+    sign : 1 for a convex arc, -1 for a concave one.
+    middle : unit vector from the centre to the middle of the arc.
+    half_sweep : half the angle covered, in radians.
+    whole : whether it is a whole circle, which has no ends.
+    """
+
+    start: Point
+    end: Point
+    center: Point
+    radius: arb
+    sign: int
+    middle: Point
+    half_sweep: arb
+    whole: bool
+
+    def reach(self, offset: arb) -> arb:
+        """Radius in mm of the arc moved out by ``offset``."""
+        return self.radius + self.sign * offset
+
+    def from_center(self, point: Point) -> Point:
+        """Vector from the centre to a point."""
+        return point[0] - self.center[0], point[1] - self.center[1]
+
+    def gap(self, point: Point) -> arb:
+        """Signed distance in mm of a point from the carrying circle."""
+        return self.sign * (norm(self.from_center(point)) - self.radius)
+
+    def distance(self, point: Point) -> arb:
+        """Distance in mm of a point from the side."""
+        ray = self.from_center(point)
+        from_circle = abs(norm(ray) - self.radius)
+        within = self.within(ray)
+        if self.whole or within > 0:
+            return from_circle
+        start, end = self.start, self.end
+        from_ends = norm((point[0] - start[0], point[1] - start[1])).min(
+            norm((point[0] - end[0], point[1] - end[1]))
+        )
+        return from_ends if within < 0 else from_circle.union(from_ends)
+
+    def away(self, point: Point) -> Point | None:
+        """Along the way to a point from the nearest point of the side, of any length; None when that is not certain."""
+        ray = self.from_center(point)
+        within = self.within(ray)
+        if self.whole or within > 0:
+            return ray
+        ways = [(point[0] - end[0], point[1] - end[1]) for end in (self.start, self.end)]
+        one, two = (dot(way, way) for way in ways)
+        if not within < 0:
+            return None
+        return ways[0] if one < two else ways[1] if two < one else None
+
+    def within(self, ray: Point) -> arb:
+        """Positive for a ray from the centre through the arc, negative beside it."""
+        return dot(self.middle, ray) - norm(ray) * self.half_sweep.cos()
+
+    def slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
+        """Slacks in mm of a peg's centre on the arc moved out by ``offset``; none on a whole circle."""
+        if self.whole:
+            return ()
+        ray = self.from_center(point)
+        angle = self.sign * arb.atan2(cross(self.middle, ray), dot(self.middle, ray))
+        reach = self.reach(offset)
+        return (self.half_sweep + angle) * reach, (self.half_sweep - angle) * reach
+
+    def outward(self, point: Point) -> Point:
+        """Outward unit normal at the foot of a point."""
+        ray = self.from_center(point)
+        far = norm(ray)
+        return self.sign * ray[0] / far, self.sign * ray[1] / far
+
+
+Side = LineSide | ArcSide
+
+
+def line_side(start: Point, end: Point) -> LineSide:
+    """The straight side between two points."""
+    step = end[0] - start[0], end[1] - start[1]
+    length = norm(step)
+    tangent = step[0] / length, step[1] / length
+    return LineSide(start, end, tangent, length, tangent[1] * start[0] - tangent[0] * start[1])
+
+
+def arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
+    """The arc between two points with a bulge.
+
+    With chord (dx, dy) the centre lies (1 - b²)/(4b) chords to the left of the chord's middle, and the radius is
+    (1 + b²)/(4|b|) chords (from r = c / (2 sin(half sweep))).
+    """
+    b = arb(bulge)
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    left = (1 - b * b) / (4 * b)
+    center = (start[0] + end[0]) / 2 - dy * left, (start[1] + end[1]) / 2 + dx * left
+    chord = norm((dx, dy))
+    sign = 1 if bulge > 0 else -1
+    middle = sign * dy / chord, -sign * dx / chord
+    radius = chord * (1 + b * b) / (4 * abs(b))
+    return ArcSide(start, end, center, radius, sign, middle, 2 * abs(b).atan(), False)
+
+
+def vertex_side(vertex: Vertex, following: Vertex) -> Side:
+    """The side that begins at a vertex (x, y, bulge)."""
+    start, end = exact_point(*vertex[:2]), exact_point(*following[:2])
+    return line_side(start, end) if abs(vertex[2]) < STRAIGHT else arc_side(start, end, vertex[2])
+
+
+def whole_face(run: Sequence[Side]) -> Side:
+    """One side for neighbours that continue the same line or circle.
+
+    They agree to rounding only: a line runs from the first start to the last end, a circle is that of the first arc.
+    """
+    first, last = run[0], run[-1]
+    if len(run) == 1:
+        return first
+    if isinstance(first, LineSide):
+        return line_side(first.start, last.end)
+    half_sweep = sum((side.half_sweep for side in run if isinstance(side, ArcSide)), arb(0))
+    whole = bool(half_sweep > arb.pi() - WHOLE)
+    ray = first.from_center(first.start)
+    far = norm(ray)
+    middle = turned((ray[0] / far, ray[1] / far), half_sweep.cos(), first.sign * half_sweep.sin())
+    return ArcSide(first.start, last.end, first.center, first.radius, first.sign, middle, half_sweep, whole)
+
+
+@frozen(eq=False)
+class BallOutline:
+    """All sides of a workpiece.
+
+    Parameters
+    ----------
+    segments : by number.
+    faces : whole faces by their numbers.
+    others : for each face, by its number, the numbers and sides of all segments that are not of it.
+    smooth : whether each face, by its number, meets its neighbours tangentially at its start and at its end.
+    turns : by how much the normals differ at these two joints, the larger component.
+    neighbours : those of each face, by its number, segments at its start and at its end.
+    """
+
+    segments: tuple[Side, ...]
+    faces: Mapping[int, Side]
+    others: Mapping[int, tuple[tuple[int, Side], ...]]
+    smooth: Mapping[int, tuple[bool, bool]]
+    turns: Mapping[int, tuple[arb, arb]]
+    neighbours: Mapping[int, tuple[Side, Side]]
+
+    @classmethod
+    def of(cls, workpiece: Workpiece) -> BallOutline:
+        """The outline at the precision in force."""
+        segments: list[Side] = []
+        before: list[int] = []
+        for loop in workpiece.loops:
+            first, count = len(segments), len(loop)
+            vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
+            segments += [
+                vertex_side(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)
+            ]
+            before += [first + (k - 1) % count for k in range(count)]
+        after = {neighbour: k for k, neighbour in enumerate(before)}
+        faces = {f.number: whole_face([segments[k] for k in f.segments]) for f in workpiece.faces}
+        others = {
+            f.number: tuple((k, side) for k, side in enumerate(segments) if k not in f.segments)
+            for f in workpiece.faces
+        }
+        neighbours = {
+            f.number: (segments[before[f.segments[0]]], segments[after[f.segments[-1]]])
+            for f in workpiece.faces
+        }
+        turns = {
+            number: (
+                turn_at(one, faces[number], faces[number].start),
+                turn_at(faces[number], two, faces[number].end),
+            )
+            for number, (one, two) in neighbours.items()
+        }
+        smooth = {number: (bool(one < TANGENT), bool(two < TANGENT)) for number, (one, two) in turns.items()}
+        return cls(tuple(segments), faces, others, smooth, turns, neighbours)
+
+    def smooth_ends(self, face: int, has_flat: bool) -> tuple[bool, bool]:
+        """Whether a face meets its neighbours tangentially at its start and end, as pegs that touch it feel it.
+
+        One with a flat changes over from flat to round between a line and an arc.
+        """
+        one, other = self.smooth[face]
+        if not has_flat:
+            return one, other
+        first, last = (
+            isinstance(side, ArcSide) and isinstance(self.faces[face], ArcSide)
+            for side in self.neighbours[face]
+        )
+        return one and first, other and last
+
+
+def turn_at(one: Side, two: Side, joint: Point) -> arb:
+    """By how much the normals of two sides differ at a joint, the larger component; they are tangent below ``TANGENT``."""
+    (ax, ay), (bx, by) = one.outward(joint), two.outward(joint)
+    return abs(ax - bx).max(abs(ay - by))
