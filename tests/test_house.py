@@ -96,7 +96,7 @@ def test_the_rooms_of_kinds_may_ask_and_be_named_so(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["search/fence.py", "files/dxf/writer.py", "listing/on_plate.py", "a/opening_b.py"]
+    "name", ["search/fence.py", "files/dxf/plates.py", "listing/on_plate.py", "a/opening_b.py"]
 )
 def test_a_module_named_after_a_kind_is_found(name: str) -> None:
     assert [one.key for one in rules.modules_named_after_kind(planted("", name))] == [

@@ -21,6 +21,7 @@ clearance).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import hypot, isfinite
 
 from attrs import frozen
@@ -41,6 +42,7 @@ __all__ = [
     "fit_words",
     "hole_class",
     "jaw_plates",
+    "plate_places",
     "peg_error",
     "refuse_limits",
 ]
@@ -50,6 +52,10 @@ Limits = tuple[float, float]
 H7 = ((3.0, 0.010), (6.0, 0.012), (10.0, 0.015), (18.0, 0.018), (30.0, 0.021), (50.0, 0.025))
 # A pin whose diameter is this far from that of the peg, in proportion, is not the peg: a radius was given for a diameter.
 FAR = 0.1
+
+
+# Between two plates, in mm.
+PLATE_GAP = 20.0
 
 
 @frozen
@@ -297,3 +303,12 @@ def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
         for other, (u, v) in enumerate(bolts.places[: number - 1], 1):
             if hypot(x - u, y - v) < bolts.diameter:
                 raise InputError(f"{name} runs into bolt {other}: move one of them.")
+
+
+def plate_places(plates: Sequence[JawPlate]) -> list[float]:
+    """How far to the right each plate's hole A1 stands in a drawing of all of them, in mm."""
+    places, right = [], 0.0
+    for number, plate in enumerate(plates):
+        places.append(right + PLATE_GAP - plate.outline.x0 if number else 0.0)
+        right = places[-1] + plate.outline.x1
+    return places

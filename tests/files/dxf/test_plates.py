@@ -8,9 +8,9 @@ from pathlib import Path
 import ezdxf
 import pytest
 
-from workhold.files.dxf.writer import beside, plates_dxf, write_plates_dxf
+from workhold.files.dxf.writer import plates_dxf, write_plates_dxf
 from workhold.fixels.vise import Vise
-from workhold.model.dowels import Bolts, jaw_plates
+from workhold.model.dowels import Bolts, jaw_plates, plate_places
 
 PLATES = jaw_plates(
     Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4),
@@ -31,7 +31,9 @@ def test_every_hole_is_drawn_at_its_place() -> None:
         circles = list(space.query(f'CIRCLE[layer=="{layer}"]'))
         assert {circle.dxf.radius for circle in circles} == {diameter / 2}
         found = sorted((round(c.dxf.center.x, 9), round(c.dxf.center.y, 9)) for c in circles)
-        moved = [(x + right, y) for right, each in zip(beside(PLATES), places, strict=True) for x, y in each]
+        moved = [
+            (x + right, y) for right, each in zip(plate_places(PLATES), places, strict=True) for x, y in each
+        ]
         assert sum(found, ()) == pytest.approx(sum(sorted(moved), ()))
     outlines = list(space.query('LWPOLYLINE[layer=="PLATE"]'))
     assert [outline.closed for outline in outlines] == [True, True]

@@ -25,7 +25,7 @@ from workhold.files.atomic import write_bytes
 from workhold.fixels.carrier import Carrier, column_letters, peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
-from workhold.model.dowels import JawPlate
+from workhold.model.dowels import JawPlate, plate_places
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, Shown, shown
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 __all__ = [
     "CLEARANCE",
     "PLATE_LAYERS",
-    "beside",
     "content_of",
     "fixed_stamps",
     "layers_of",
@@ -301,19 +300,8 @@ def add_zero(space: Modelspace, pose: Pose, zero: Point, length: float) -> None:
 
 
 PLATE_LAYERS = {"PLATE": 7, "DOWEL_HOLES": 1, "BOLT_HOLES": 5, "TEXT": 8}
-# Between two plates, in mm.
-GAP = 20.0
 # Heights of text: of the names of holes as a share of the holes, and of the titles, in mm.
 NAME_HEIGHT, TITLE_HEIGHT = 0.3, 5.0
-
-
-def beside(plates: Sequence[JawPlate]) -> list[float]:
-    """How far to the right each plate's hole A1 stands in a drawing of all of them, in mm."""
-    places, right = [], 0.0
-    for number, plate in enumerate(plates):
-        places.append(right + GAP - plate.outline.x0 if number else 0.0)
-        right = places[-1] + plate.outline.x1
-    return places
 
 
 def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
@@ -330,7 +318,7 @@ def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
         def write(words: str, height: float, at: Point, align: TextEntityAlignment) -> None:
             space.add_text(words, height=height, dxfattribs={"layer": "TEXT"}).set_placement(at, align=align)
 
-        for plate, right in zip(plates, beside(plates), strict=True):
+        for plate, right in zip(plates, plate_places(plates), strict=True):
             box = plate.outline
             corners = [(box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1)]
             space.add_lwpolyline(

@@ -19,12 +19,11 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.files.dxf.writer import beside
 from workhold.files.step.library import load_step_library
 from workhold.fixels.carrier import hole_name, peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Box, Line, Point, Segment
-from workhold.model.dowels import JawPlate
+from workhold.model.dowels import JawPlate, plate_places
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
@@ -317,7 +316,7 @@ def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> b
     load_step_library()
     named = [
         (f"{plate.title} plate", drilled(plate, right, thickness))
-        for plate, right in zip(plates, beside(plates), strict=True)
+        for plate, right in zip(plates, plate_places(plates), strict=True)
     ]
     return assembly("jaw plates", named)
 
