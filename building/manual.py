@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-PLACE = re.compile(r"^::: (workhold|commands)$", flags=re.M)
+PLACE = re.compile(r"^::: (workhold|commands|toolkits)$", flags=re.M)
 # The head of a docstring's section, such as "Parameters", with its line of dashes.
 SECTION = re.compile(r"^(\w[\w ]*)\n-{3,}\n", flags=re.M)
 # Sections whose entries are names with what they mean; those of the others are types.
@@ -33,7 +33,8 @@ def on_config(config: Any) -> Any:
 
 def on_page_markdown(markdown: str, **about: Any) -> str:
     """A page with its places filled."""
-    return PLACE.sub(lambda found: every_command() if found[1] == "commands" else every_name(), markdown)
+    makers = {"workhold": every_name, "commands": every_command, "toolkits": every_toolkit}
+    return PLACE.sub(lambda found: makers[found[1]](), markdown)
 
 
 def every_name() -> str:
@@ -43,6 +44,39 @@ def every_name() -> str:
     things = {name: getattr(workhold, name) for name in workhold.__all__}
     order = sorted(things, key=lambda name: (kind_of(things[name]), name.lower()))
     return "\n\n".join(documented(name, things[name]) for name in order)
+
+
+def every_toolkit() -> str:
+    """The fields of every kind of toolkit under the first name that people give it, a table each."""
+    from workhold.fixels.fields import NAMES
+    from workhold.fixels.kinds import kind_of, table_of
+
+    kinds: dict[str, str] = {}
+    for name in NAMES:
+        kinds.setdefault(kind_of(name)[0], name)
+    return "\n\n".join(
+        f"### `{name}`: {NAMES[name]}\n\n{table_of_fields(table_of(kind).fields)}"
+        for kind, name in kinds.items()
+    )
+
+
+def table_of_fields(rows: Any) -> str:
+    """The key and the option of each field, what is typed, its default and its help, as Markdown."""
+    lines = ["| key in files | option | value | if left out | meaning |", "|---|---|---|---|---|"]
+    for row in rows:
+        words = row.help.replace("{option}", row.option).replace("|", "\\|")
+        value = row.metavar.replace("|", "\\|")
+        lines.append(f"| `{row.name}` | `{row.option}` | `{value}` | {default_words(row)} | {words} |")
+    return "\n".join(lines)
+
+
+def default_words(row: Any) -> str:
+    """What a field is where nobody gives it."""
+    if row.is_required:
+        return "must be given"
+    if row.follows:
+        return f"that of `{row.follows}`"
+    return f"`{row.default}`" if row.default not in (None, ()) else "none"
 
 
 def kind_of(thing: Any) -> int:
