@@ -14,7 +14,7 @@ import workhold
 from workhold.kernels.base import built, compiling
 
 # What compiling takes of the kernels' base.
-BASE = ("__init__", "built", "compiling", "feature", "lean", "shallow", "sources", "storing")
+BASE = ("__init__", "built", "compiling", "feature", "lean", "storing")
 PROGRAM = """
 import numpy as np
 from workhold.kernels.base.distance import outline_distance
