@@ -25,7 +25,7 @@ from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import unfit
 from workhold.statics.quality import quality_of
 
-__all__ = ["best_marked", "figure_keys", "measured", "measured_as", "rank"]
+__all__ = ["best_marked", "figure_keys", "measured", "measured_as", "rank", "ranking_keys"]
 
 COARSE_DIGITS = 2
 

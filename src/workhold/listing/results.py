@@ -19,7 +19,7 @@ from workhold.contact.problem import Problem, Progress
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.identity import Identity, SetCount, identity_order
-from workhold.listing.ranking import best_marked, measured_as, rank
+from workhold.listing.ranking import best_marked, measured_as, rank, ranking_keys
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.search_report import (
@@ -181,6 +181,7 @@ class RankedTable:
     ----------
     query : what is asked.
     problem : the search of one direction of the clamp, for what all have in common.
+    has_dropped : whether some that cannot be among the best were left out, so that nobody counted all.
     """
 
     query: Query
@@ -188,6 +189,7 @@ class RankedTable:
     touched: Touched = field(init=False)
     count: SetCount = field(init=False)
     tables: list[FixtureTable] = field(init=False)
+    has_dropped: bool = field(default=False, init=False)
 
     def __attrs_post_init__(self) -> None:
         part, toolkit = self.query.workpiece, self.query.toolkit
@@ -208,6 +210,16 @@ class RankedTable:
             chosen = best_marked(together.quality, query.ranking, query.tolerance, most, ties=True)
             self.tables = [together.take(chosen)]
 
+    @property
+    def last(self) -> NDArray[np.float64] | None:
+        """The keys of the last of the best, infinite for NaN, once there are as many as are asked for."""
+        table, query = self.tables[0], self.query
+        if query.best is None or len(table) < query.best:
+            return None
+        keys = np.stack(ranking_keys(table.quality, query.ranking, query.tolerance), axis=1)
+        worst = keys[rank(table.quality, query.ranking, query.tolerance)[query.best - 1]]
+        return np.asarray(np.where(np.isnan(worst), np.inf, worst))
+
     def together(self) -> FixtureTable:
         """What is kept, in the order of identities."""
         everything = FixtureTable.joined(self.tables)
@@ -218,13 +230,21 @@ class RankedTable:
         """The result of all."""
         query, table = self.query, self.together()
         order = rank(table.quality, query.ranking, query.tolerance)[: query.best]
+        table, count, notes = table.take(order), self.count, list[str]()
+        if self.has_dropped:
+            # Only those that are listed are counted.
+            count = SetCount(self.count.identity)
+            count.add(table)
+            notes.append(best_note(query.best or 0))
+        if account.undecided:
+            notes.append(undecided_note(len(account.undecided)))
         return Result(
             query=query,
-            table=table.take(order),
-            found=self.count.by_type(self.count.found),
-            distinct=self.count.by_type(self.count.distinct),
+            table=table,
+            found=count.by_type(count.found),
+            distinct=count.by_type(count.distinct),
             complete=work.complete,
-            notes=(undecided_note(len(account.undecided)),) if account.undecided else (),
+            notes=tuple(notes),
             statistics=work.statistics,
             proof=proof_of(account, work),
         )

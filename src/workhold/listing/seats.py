@@ -336,7 +336,8 @@ class ClampedSeats:
     def result(self, account: Account, work: Work) -> Result:
         """The result of all."""
         account = evolve(account, undecided=(*account.undecided, *self.undecided))
-        return evolve(self.ranked.result(account, work), pairs=self.pairs, seats=self.seats)
+        result = self.ranked.result(account, work)
+        return result if self.ranked.has_dropped else evolve(result, pairs=self.pairs, seats=self.seats)
 
 
 def undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:

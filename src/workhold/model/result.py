@@ -168,7 +168,7 @@ class Result:
         compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
     proof : the account of the search, see :class:`workhold.model.search_report.Proof`; None for a result that came without.
     pairs, seats : of a toolkit with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
-        directions; None of others.
+        directions; None where only the best were sought and others left out uncounted, and of other toolkits.
     seating : of the first fixtures, as many as there are of these, what else their pegs can do with the part.
     """
 

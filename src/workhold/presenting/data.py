@@ -176,7 +176,7 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
         "distinct": {kind: int(number) for kind, number in result.distinct.items()},
         "listed": len(result),
         "unfit": shown.unfit,
-        **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
+        **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.needs_pairs else {}),
         "complete": bool(result.complete),
         "notes": list(result.notes),
         "proof": None if result.proof is None else proof_data(result.proof),

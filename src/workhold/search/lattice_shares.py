@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
+from itertools import pairwise
 from math import degrees, tau
 from threading import Event
 
@@ -22,9 +23,10 @@ from workhold.conventions import SAME_POSE
 from workhold.kernels.curves.two_and_two import CANDIDATES
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
-from workhold.listing.collector import Batches
+from workhold.listing.collector import Batches, blocks_of
 from workhold.listing.placing import at_angle
 from workhold.listing.results import Work, stage, summed
+from workhold.listing.seat_order import ordered_groups
 from workhold.listing.seats import ClampedSeats, Seats, seats_of
 from workhold.model.query import Query
 from workhold.model.search_report import no_pair_note
@@ -42,6 +44,8 @@ Array = NDArray[np.float64]
 BLOCKS_TOGETHER, MOST_RANGES = 48, 256
 # Of a range few cells are searched, which the threads are to share.
 BLOCKS_PER_HALF_TURN = 2 * LEAST_BLOCKS
+# So many contacts are looked at whole, and all is counted, even where only the best are asked for.
+COUNTED_WHOLE = 1 << 14
 # Radians beside a range that are searched as well, so that a seat on its edge is found whole from either
 # side.
 OVERLAP = 10 * SAME_POSE
@@ -84,10 +88,10 @@ class LatticeShares:
         """How many ranges there are."""
         return min(max(max(map(len, self.whole_turn)) // BLOCKS_TOGETHER, 1), MOST_RANGES)
 
-    def look(self, share: int, progress: Progress | None) -> tuple[Seats, bool]:
-        """The seats of a range."""
+    def look(self, share: int, progress: Progress | None) -> tuple[Iterator[Seats], bool]:
+        """The seats of a range, some at a time where only the best are asked for."""
         low, high = (np.linspace(0.0, tau, self.shares + 1) - SAME_POSE)[share : share + 2].tolist()
-        within, parts, is_whole = (degrees(low - OVERLAP), degrees(high + OVERLAP)), [], True
+        within, found, is_whole = (degrees(low - OVERLAP), degrees(high + OVERLAP)), list[Array](), True
         for place, search in enumerate(self.searches):
             part = stage(progress, place / len(self.searches), (place + 1) / len(self.searches))
             blocks = self.whole_turn[place]
@@ -103,16 +107,39 @@ class LatticeShares:
             )
             self.cells += sum(block.cells for block in done)
             is_whole = is_whole and len(done) == len(blocks)
-            direction = search.frame.toolkit.arrangements[0].direction or ""
-            parts.append(
-                contacts_of_candidates(self.proven(records, search.problem), search.problem, direction)
-            )
-        return seats_of(parts, self.searches[0].problem, (low, high)), is_whole
+            found.append(np.concatenate([Batches().rest(), *records]))
+        return self.seats(found, (low, high)), is_whole
 
-    def proven(self, records: Sequence[Array], problem: Problem) -> Candidates:
+    def seats(self, records: Sequence[Array], within: tuple[float, float]) -> Iterator[Seats]:
+        """The seats of contacts (N, 19) of each direction; where only the best are asked for, those first that
+        may be at them, and none that cannot."""
+        query, total = self.collector.query, sum(map(len, records))
+        if query.best is None or (self.shares == 1 and total <= COUNTED_WHOLE):
+            yield self.seats_among(records, within)
+            return
+        groups = ordered_groups(records, [search.problem for search in self.searches], query)
+        edges = np.cumsum([0, *map(len, records)])
+        for chosen in groups.batches(self.collector.ranked):
+            places = np.searchsorted(chosen, edges).tolist()
+            some = [
+                part[chosen[first:end] - start]
+                for part, start, (first, end) in zip(records, edges, pairwise(places), strict=False)
+            ]
+            yield self.seats_among(some, within)
+
+    def seats_among(self, records: Sequence[Array], within: tuple[float, float]) -> Seats:
+        """All seats of contacts (N, 19) of each direction."""
+        problems = [search.problem for search in self.searches]
+        directions = [search.frame.toolkit.arrangements[0].direction or "" for search in self.searches]
+        parts = [
+            contacts_of_candidates(self.proven(some, problem), problem, direction)
+            for some, problem, direction in zip(records, problems, directions, strict=True)
+        ]
+        return seats_of(parts, problems[0], within)
+
+    def proven(self, records: Array, problem: Problem) -> Candidates:
         """Contacts of three locators and a clamp that are proven, each once."""
-        course, batches = Course(sum(map(len, records)), cancel=self.cancel), Batches()
-        blocks = [*(block for array in records for block in batches.add(array)), batches.rest()]
+        course, blocks = Course(len(records), cancel=self.cancel), list(blocks_of([records]))
 
         def work(block: Array) -> tuple[Candidates, Account]:
             proven, account = decided(block, problem, course)

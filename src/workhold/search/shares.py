@@ -9,7 +9,7 @@ decided ahead of the rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from threading import Event
 from time import perf_counter
 from typing import Any, Protocol
@@ -115,9 +115,9 @@ class Locating(Protocol):
     def collector(self) -> Collector:
         """What takes the findings."""
 
-    def look(self, share: int, progress: Progress | None) -> tuple[Any, bool]:
-        """What is found in a share, as the collector takes it, if there is anything; and whether the share
-        was looked at to its end."""
+    def look(self, share: int, progress: Progress | None) -> tuple[Iterable[Any], bool]:
+        """What is found in a share, in parts as the collector takes them, each taken before the next is made;
+        and whether the share was looked at to its end."""
 
     def account(self) -> Account:
         """What became of all contacts so far."""
@@ -139,8 +139,8 @@ def answer_in_shares(
             break
         end = (number + 1) / locating.shares
         found, is_whole = locating.look(number, stage(progress, number / locating.shares, end))
-        if found is not None:
-            kept.add(found)
+        for part in found:
+            kept.add(part)
         done += is_whole
         if progress is not None and is_whole:
             progress(end, len(kept))

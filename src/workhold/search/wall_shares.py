@@ -74,7 +74,7 @@ class WallShares:
 
     def look(
         self, share: int, progress: Progress | None
-    ) -> tuple[list[WallFixtures | None] | Seats | None, bool]:
+    ) -> tuple[list[list[WallFixtures | None] | Seats], bool]:
         """The fixtures of each direction, or the seats, on a hull edge."""
         found: dict[WallSearch, list[WallFixtures]] = {search: [] for search in self.searches}
         is_whole = True
@@ -85,11 +85,11 @@ class WallShares:
                 break
         joined = {search: WallFixtures.joined(parts) for search, parts in found.items() if parts}
         if isinstance(self.collector, WallCollector):
-            return [joined.get(search) for search in self.searches], is_whole
+            return [[joined.get(search) for search in self.searches]], is_whole
         contacts = [
             contacts_on_wall(part, search.problem, direction_of(search)) for search, part in joined.items()
         ]
-        return seats_of(contacts, self.searches[0].problem) if contacts else None, is_whole
+        return [seats_of(contacts, self.searches[0].problem)] if contacts else [], is_whole
 
     def account(self) -> Account:
         """What became of all pairs of contacts so far."""
@@ -302,7 +302,7 @@ class LatticePairShares:
         """How many hull edges there are."""
         return len(self.edges)
 
-    def look(self, share: int, progress: Progress | None) -> tuple[FixtureTable | None, bool]:
+    def look(self, share: int, progress: Progress | None) -> tuple[list[FixtureTable], bool]:
         """Return the fixtures on a hull edge."""
         parts = []
         for pairs in self.search.fixtures(self.edges[share]):
@@ -311,9 +311,9 @@ class LatticePairShares:
                 return self.together(parts, share), False
         return self.together(parts, share), True
 
-    def together(self, parts: list[LatticePairs], share: int) -> FixtureTable | None:
+    def together(self, parts: list[LatticePairs], share: int) -> list[FixtureTable]:
         """Return the fixtures of some pairs on a hull edge, where there are any, each once."""
-        return self.search.placed(LatticePairs.joined(parts), self.edges[share]) if parts else None
+        return [self.search.placed(LatticePairs.joined(parts), self.edges[share])] if parts else []
 
     def account(self) -> Account:
         """Return what became of all pairs so far."""

@@ -235,6 +235,37 @@ class Touched:
         inverses += pair_inverses(points, normals, reactions, self.length)
         return ContactMatrices(points, normals, ends, edges, inverses, reactions)
 
+    def locators(self, points: Array, faces: NDArray[np.int64]) -> ContactMatrices:
+        """Contacts of the first carrier's pegs alone, with the inverses of the locators' wrenches; nothing closes.
+
+        Parameters
+        ----------
+        points : (N, 3, 2) peg centres in the part's frame about its centre, in mm.
+        faces : (N, 3) numbers of the faces touched.
+        """
+        count, each = points.shape[:2]
+        normals, ends, edges = (np.empty((count, each, *shape)) for shape in ((2,), (), ()))
+        inverses = np.zeros((count, 4, each))
+        contact_matrices_of(
+            points + self.center,
+            np.zeros((count, 3)),
+            np.zeros((count, each)),
+            np.zeros((count, 2)),
+            np.require(faces, np.int64, ["C", "W"]),
+            self.features,
+            self.starts,
+            self.center,
+            self.length,
+            np.empty_like(points),
+            normals,
+            ends,
+            edges,
+            inverses,
+            np.empty((each, 4)),
+        )
+        inverses[:, :LOCATORS] = locators_inverse(wrenches(points, normals, self.length))
+        return ContactMatrices(points, normals, ends, edges, inverses, np.zeros((count, each, 0)))
+
     def pushes(self, pose: Array, carriers: NDArray[np.integer[Any]]) -> Array:
         """The unit vectors (N, 2, 2) along which the two clamps of fixtures push, in the part's frame."""
         along = self.directions[np.asarray(carriers)[:, -2:]]

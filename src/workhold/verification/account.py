@@ -14,7 +14,8 @@ The identities, for each type apart where a number is given for each:
   examined some cells; of the algebra: no cells, candidates <= simultaneous_contacts once it is complete;
 - of a fence: cells = hull_edges, candidates = contacts_examined;
 - features >= faces touched;
-- of two clamps, where the best pair of each seat is listed: found = seats, and pairs = the sum of what those listed stand
+- of two clamps, where a note says that not all was counted: no pairs and seats, and found is what is listed;
+- else, where the best pair of each seat is listed: found = seats, and pairs = the sum of what those listed stand
   for, where all are; where every pair is: found = pairs, and seats = how many there are among those listed; at each there
   are as many as are derived, once the search is complete; each seat and pair of directions needs two contacts of locators,
   or wall and locator, and a clamp, each pair of clamps two of its own;
@@ -244,6 +245,12 @@ def pair_count_faults(listing: Listing) -> Iterator[str]:
     """Contradictions among pairs, seats and what is listed."""
     found, listed = sum(listing.found.values()), len(listing.fixtures)
     pairs, seats = listing.pairs, listing.seats
+    if is_uncounted(listing):
+        if pairs is not None or seats is not None:
+            yield f"a note says that not all was counted, but pairs says {pairs} and seats {seats}"
+        if found != listed:
+            yield f"a note says that not all was counted, but found says {found} fixtures, and {listed} are listed"
+        return
     if pairs is None or seats is None:
         yield "it does not say how many pairs of clamps there are, and at how many seats"
         return
@@ -260,10 +267,18 @@ def pair_count_faults(listing: Listing) -> Iterator[str]:
         yield f"pairs says {pairs}, but the fixtures listed stand for {stood_for}"
 
 
+def is_uncounted(listing: Listing) -> bool:
+    """Whether a note says that what cannot be among the best was left out uncounted."""
+    best = listing.query.best
+    return best is not None and best_note(best) in listing.notes
+
+
 def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
     """Where every pair of clamps is listed: another number of seats, or of pairs at one of them, than is derived."""
     query, found = listing.query, sum(listing.found.values())
     if not query.toolkit.needs_pairs or query.listing != "all" or found != len(listing.fixtures):
+        return
+    if is_uncounted(listing):
         return
     hardware = ToolkitRules(query.toolkit)
     seen, at_seat = Seen(hardware), Counter[int]()

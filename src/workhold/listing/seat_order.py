@@ -1,0 +1,292 @@
+r"""The order in which seats are looked at when only the best fixtures are asked for, and where the search may stop.
+
+Contacts of three locators and one clamp are grouped by seat before they are proven. What the locators alone say of a
+fixture bounds its rank from above, whatever its two clamps are:
+
+- location error and tilt are the seat's alone, the same for all its clamps;
+- the least distance to an end or an edge, and the smallest face, are those of five contacts, so no larger than those of
+  three; warnings of contacts near an edge are at least those of the locators;
+- points and warnings grow with the location error, with contacts near an edge, with tilt, with a strong peg and with a
+  small face; without the clamps' share they can only be fewer;
+- the closure margin is at most 1/5, for five shares sum to 1, and clamp freedom at most 90 degrees; forces are above zero.
+
+Rounding to digits never turns two numbers round. So key by key the bound is no worse than the fixture's own key, and so is
+the whole in lexicographic order. Seats are looked at in the order of their bounds. Once as many fixtures are kept as are
+asked for, and the next bound is worse than the last of them, no further seat holds one that is listed. Seats of equal
+bounds are looked at, for what ranks alike is listed in the order of holes.
+
+Seats are taken whole, with all contacts that may be theirs. A group is one of holes and orientation. Contacts whose
+orientation is not well known are put together with all others of the same holes. So a group holds every seat that it
+touches, and what is found at it does not depend on the others. Each place in a group is bounded by itself, and the best
+counts. A group with a contact whose place is not well known has no bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import inf, pi, tau
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Problem
+from workhold.conventions import SAME_PLACE, SAME_POSE, SQUARE_TILT
+from workhold.geometry.symmetry import rotated
+from workhold.kernels.base.feature import IS_ARC, RADIUS
+from workhold.kernels.contact import record
+from workhold.kernels.contact.quality import LOAD_LENGTH, figures
+from workhold.listing.canonical_form import candidates_of
+from workhold.listing.ranking import ranking_keys
+from workhold.listing.results import RankedTable
+from workhold.model.quality import (
+    CLAMP_FREEDOM,
+    CLOSURE_MARGIN,
+    EDGE_DISTANCE,
+    END_DISTANCE,
+    FIGURES,
+    LOCATION_ERROR,
+    PENALTY,
+    SMALLEST_FACE,
+    TILT,
+    WARNINGS,
+)
+from workhold.model.query import Query
+from workhold.statics.contact_matrix import Touched
+from workhold.statics.judging import Judging, is_astray, is_near_edge
+from workhold.statics.quality import extremes, face_sizes, main_direction, tilts
+
+__all__ = ["SeatGroups", "ordered_groups"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+LOCATORS = 3
+# Radians. Contacts whose orientation is known less well are put together with all others of the same holes, and bound
+# nothing; so are those that are this near to where orientations are counted from.
+WELL_KNOWN, AT_START = 1e-7, 1e-5
+# Radians. Orientations are counted from here, which is no angle that parts have for a reason.
+START = 0.123456789
+# Radians and mm. What is surely farther apart is two seats.
+APART = 4e-8
+# What mixes two coordinates to one number.
+ASIDE = 0.7548776662
+# Contacts of the first seats that are looked at together; then twice as many each time.
+FIRST_CONTACTS = 1 << 12
+# Mixing numbers of the holes of three locators: that two triples agree only puts them together.
+COLUMN_STEP = np.uint64(0x9E3779B97F4A7C15)
+MIXING = (np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB), np.uint64(0xD6E8FEB86659FD93))
+# What figures may be off by: as parts of one, and in degrees.
+SHARE, ANGLE = 1e-6, 1e-4
+# Bounds that are off by more than this part of one are none.
+MOST_SHARE = 0.01
+# mm. Contacts this near to an end may be at a joint, and be listed on the face beside it.
+NEAR_END = 1e-4
+# The best that figures can be which locators do not bound; of others infinity, or 0 where less is better.
+BEST = {CLOSURE_MARGIN: 0.2, CLAMP_FREEDOM: 90.0}
+
+
+@frozen(eq=False)
+class SeatGroups:
+    """Contacts of all directions in groups that hold whole seats, those first that may rank first.
+
+    Parameters
+    ----------
+    order : (M,) numbers of the contacts, counted through all directions, group by group.
+    ends : (G,) where each group ends in the order.
+    bounds : (G, R) keys to rank by, none of a fixture in the group being better, in lexicographic order.
+    """
+
+    order: IntArray
+    ends: IntArray
+    bounds: Array
+
+    def reach(self, last: Array | None) -> int:
+        """How many groups, the first ones, may hold a fixture that ranks no worse than keys (R,); all for None."""
+        if last is None:
+            return len(self.ends)
+        return len(self.ends) - int(is_worse(self.bounds, last).sum())
+
+    def batches(self, kept: RankedTable, together: int = FIRST_CONTACTS) -> Iterator[IntArray]:
+        """Yield numbers of contacts, sorted, of more and more groups, until what is kept cannot get better."""
+        first = 0
+        while first < (end := self.reach(kept.last)):
+            begin = int(self.ends[first - 1]) if first else 0
+            end = min(end, int(np.searchsorted(self.ends, begin + together)) + 1)
+            yield np.sort(self.order[begin : self.ends[end - 1]])
+            first, together = end, 2 * together
+        kept.has_dropped |= first < len(self.ends)
+
+
+def is_worse(keys: Array, last: Array) -> BoolArray:
+    """Which keys (N, R) come after others (R,) in lexicographic order."""
+    worse, equal = np.zeros(len(keys), np.bool_), np.ones(len(keys), np.bool_)
+    for values, one in zip(keys.T, last.tolist(), strict=True):
+        worse |= equal & (values > one)
+        equal &= values == one
+    return worse
+
+
+def ordered_groups(records: Sequence[Array], problems: Sequence[Problem], query: Query) -> SeatGroups:
+    """Groups of the contacts of each direction.
+
+    Parameters
+    ----------
+    records : (N, 19) of each direction.
+    problems : the search of each direction.
+    query : what is asked.
+    """
+    holes, theta, turn, place, off = (
+        np.concatenate(parts) for parts in zip(*map(seat_numbers, records, problems), strict=True)
+    )
+    unsure = ~(turn <= WELL_KNOWN) | (theta < AT_START) | (theta > tau - AT_START)
+    loose = np.isin(holes, holes[unsure]) if unsure.any() else unsure
+    theta[loose] = 0.0
+    order = np.lexsort([theta, holes])
+    fresh = np.ones(len(order), np.bool_)
+    fresh[1:] = (np.diff(holes[order]) != 0) | (np.diff(theta[order]) > 4 * SAME_POSE)
+    group = np.cumsum(fresh) - 1
+    order = order[np.lexsort([place[order], group])]
+    bounds = group_bounds(order, group, ((theta, turn), (place, off)), records, problems, query)
+    starts = np.flatnonzero(fresh)
+    unknown = loose | ~(off <= SAME_PLACE)
+    bounds[np.logical_or.reduceat(unknown[order], starts)] = -inf
+    by_bound = np.lexsort(bounds.T[::-1])
+    sizes = np.diff(starts, append=len(order))[by_bound]
+    ends = np.cumsum(sizes)
+    shifts = np.repeat(starts[by_bound] - (ends - sizes), sizes)
+    return SeatGroups(order[np.arange(len(order)) + shifts], ends, bounds[by_bound])
+
+
+def group_bounds(
+    order: IntArray,
+    group: IntArray,
+    known: tuple[tuple[Array, Array], tuple[Array, Array]],
+    records: Sequence[Array],
+    problems: Sequence[Problem],
+    query: Query,
+) -> Array:
+    """The keys (G, R) that no fixture of a group ranks before, the least of those of the places in it.
+
+    Parameters
+    ----------
+    order, group : (M,) numbers of contacts, group by group and in each by place, and those of the groups.
+    known : orientations and places, each (M,) with how far they may be off.
+    """
+    place, off = (values[order] for values in known[1])
+    fresh = np.ones(len(order), np.bool_)
+    leap = SAME_PLACE + 2.0 * np.maximum(off[1:], off[:-1])
+    fresh[1:] = (np.diff(group) > 0) | (np.diff(place) > leap)
+    starts = np.flatnonzero(fresh)
+    first = order[best_known(off, starts)]
+    edges = np.cumsum([0, *map(len, records)])
+    direction = np.searchsorted(edges, first, side="right") - 1
+    bounds = np.empty((len(first), len(query.ranking) + 1))
+    for number, (part, problem) in enumerate(zip(records, problems, strict=True)):
+        chosen = np.flatnonzero(direction == number)
+        bounds[chosen] = keys_bounding(part[first[chosen] - edges[number]], problem, query)
+    for values, doubts in known:
+        middle, radius = values[order], 2.0 * doubts[order]
+        low, high = np.minimum.reduceat(middle + radius, starts), np.maximum.reduceat(middle - radius, starts)
+        # One contact cannot stand for two seats.
+        bounds[high - low > APART] = -inf
+    whose = group[starts]
+    sorted_ = np.lexsort([*bounds.T[::-1], whose])
+    return bounds[sorted_[np.diff(whose[sorted_], prepend=-1) > 0]]
+
+
+def best_known(off: Array, starts: IntArray) -> IntArray:
+    """Places (G,) of the first of the least numbers (M,) in each group."""
+    least = np.repeat(np.minimum.reduceat(off, starts), np.diff(starts, append=len(off)))
+    chosen = np.flatnonzero(off <= least)
+    return np.asarray(chosen[np.searchsorted(chosen, starts)])
+
+
+def seat_numbers(records: Array, problem: Problem) -> tuple[NDArray[np.uint64], Array, Array, Array, Array]:
+    """What tells the seats of contacts (N, 19) apart, whatever the direction of the clamp.
+
+    Returns
+    -------
+    Five arrays (N,): a number for the holes of locators, the same wherever they are on the plate; orientations from
+    ``START`` on, and how far they may be off; a number for the place of the part beside the holes in mm, and how far that
+    may be off.
+    """
+    frame, pitch = problem.frame, problem.toolkit.carriers[0].pitch
+    columns, rows = (
+        [records[:, first + k].astype(np.int64) for k in range(LOCATORS)]
+        for first in (record.COLUMNS, record.ROWS)
+    )
+    holes = [frame.step_back(column, row) for column, row in zip(columns, rows, strict=True)]
+    lowest = [np.minimum(np.minimum(*values[:2]), values[2]) for values in zip(*holes, strict=True)]
+    holes = [(column - lowest[0], row - lowest[1]) for column, row in holes]
+    one, two, three = (
+        column.astype(np.uint64) * COLUMN_STEP + row.astype(np.uint64) for column, row in holes
+    )
+    low, high = np.minimum(one, two), np.maximum(one, two)
+    low, middle = np.minimum(low, three), np.maximum(low, three)
+    middle, high = np.minimum(middle, high), np.maximum(middle, high)
+    theta = frame.quarters * (pi / 2) - records[:, record.PSI]
+    x, y = rotated(records[:, record.TAIL_X], records[:, record.TAIL_Y], theta)
+    place = holes[0][0] * pitch[0] - x + ASIDE * (holes[0][1] * pitch[1] - y)
+    turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH])
+    off = records[:, record.LARGEST_RADIUS] + turn * problem.wrench_length
+    return low * MIXING[0] + middle * MIXING[1] + high * MIXING[2], (theta - START) % tau, turn, place, off
+
+
+def keys_bounding(records: Array, problem: Problem, query: Query) -> Array:
+    """Keys (N, R) that no fixture ranks before whose locators touch as those of records (N, 19) do."""
+    quality = best_figures(records, problem, query)
+    keys = np.stack(ranking_keys(quality, query.ranking, query.tolerance), axis=1)
+    return np.asarray(np.where(np.isnan(quality[:, LOCATION_ERROR, None]), -inf, keys))
+
+
+def best_figures(records: Array, problem: Problem, query: Query) -> Array:
+    """Figures of quality (N, F), none of a fixture with these locators being better; NaN where nothing is known."""
+    touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
+    c = candidates_of(records, problem)
+    faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)
+    found = touched.locators(np.ascontiguousarray(c.point[:, :LOCATORS]), faces)
+    out = np.empty((len(records), len(FIGURES)))
+    # The kernel takes four contacts or more. The last has no say, and no other touches its face.
+    four = [
+        np.ascontiguousarray(values[:, [0, 1, 2, 0]])
+        for values in (found.points, found.normals, found.ends, found.edges)
+    ]
+    inverses, alone = np.zeros((len(records), 4, 4)), np.full((len(records), 4), -1)
+    inverses[:, :, :LOCATORS], inverses[:, LOCATORS], alone[:, :LOCATORS] = found.inverses, 1.0, faces
+    tolerances = np.array([query.tolerance.peg, query.tolerance.face])
+    rest = (
+        touched.length,
+        tolerances,
+        *extremes(problem.workpiece),
+        np.zeros((0, LOAD_LENGTH)),
+        out,
+        np.empty((10, 3)),
+    )
+    figures(*four, inverses, alone, *rest)
+    ends, edges = found.ends, found.edges
+    norm = np.abs(inverses[:, :LOCATORS, :LOCATORS]).sum(axis=2).max(axis=1, initial=0.0)
+    # How far places may be off, and what that does to the inverse, to first order and generously.
+    rows = problem.rows[c.feature[:, :LOCATORS]]
+    curved = (1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)).max(axis=1, initial=0.0)
+    off = records[:, record.REACH] * touched.length + records[:, record.LARGEST_RADIUS]
+    place = 4.0 * SAME_PLACE + 16.0 * off
+    share = SHARE + 8.0 * norm * place * (1.0 / touched.length + curved)
+    known = (share < MOST_SHARE) & (ends.min(axis=1, initial=inf) > NEAR_END) & (place < NEAR_END)
+    error = out[:, LOCATION_ERROR] * (1.0 - share)
+    nearest, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
+    for number, figure in enumerate(FIGURES):
+        out[:, number] = BEST.get(number, inf if figure.more_is_better else 0.0)
+    out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = nearest, np.minimum(edge, touched.length)
+    theta = problem.frame.quarters * (pi / 2) - records[:, record.PSI]
+    tilt = tilts(theta, main_direction(problem.workpiece))
+    out[:, TILT] = np.where(tilt < SQUARE_TILT + ANGLE, 0.0, tilt - ANGLE)
+    out[:, SMALLEST_FACE] = face_sizes(problem.workpiece).take(faces).min(axis=1, initial=inf)
+    out[:, LOCATION_ERROR] = np.where(known, error, np.nan)
+    radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
+    judging = Judging.of(2 * (touched.length - radius), query.tolerance, None)
+    near = is_near_edge(edges + place[:, None]).sum(axis=1)
+    out[:, WARNINGS] = near + is_astray(error, judging.off)
+    out[:, PENALTY] = judging.penalty(out)
+    return out

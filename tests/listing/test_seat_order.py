@@ -1,0 +1,151 @@
+"""The best fixtures with two clamps are the first of the whole list, though most seats are never looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+import workhold
+from cad_parts import cad_part
+from toolkit_results import NOTCHED, part
+from workhold import Plate, Query, Result, answer
+from workhold.completeness import verify
+from workhold.listing import seat_order
+from workhold.listing.ranking import ranking_keys
+from workhold.listing.seat_order import SeatGroups, is_worse
+from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
+from workhold.model.requirements import Load, Restrictions, Tolerance
+from workhold.model.search_report import best_note
+from workhold.search import lattice_shares
+
+OF_LOADS = {FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key}
+
+
+@pytest.fixture(autouse=True)
+def few_contacts_are_left_out_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Searches of any size stop early."""
+    monkeypatch.setattr(lattice_shares, "COUNTED_WHOLE", 0)
+
+
+def queries(seed: int, count: int) -> Iterator[Query]:
+    """Questions about a part as it comes out of CAD: any plate, restriction, load, tolerance and ranking."""
+    random, workpiece = Random(seed), cad_part(seed)
+    plate = Plate(
+        pitch=random.choice([(20, 20), (25, 25), (30, 20), (16, 24)]),
+        peg_radius=random.choice([2, 3, 4]),
+        clamp_radius=random.choice([3, 5]),
+        travel=random.choice([(10, 40), (4, 30), None]),
+        columns=random.choice([None, 5]),
+        rows=random.choice([None, 6]),
+        clamps=2,
+        directions=random.choice([None, [("-x", "-y")], [("-x", "+x"), ("-y", "-y")], ["-x", "+y"]]),
+    )
+    x, y = workpiece.center
+    for _ in range(count):
+        loads = random.choice([(), (), (Load(points=((x + 3, y),), force=50, directions=(20, 80)),)])
+        figures = [figure.key for figure in FIGURES if loads or figure.key not in OF_LOADS]
+        restrictions = Restrictions(avoid=(random.randrange(len(workpiece.segments)),), angles=((0, 90),))
+        yield Query(
+            workpiece,
+            plate,
+            contact_margin=random.choice([0.0, 2.0]),
+            restrictions=random.choice([None, None, restrictions]),
+            ranking=random.choice([None, random.sample(figures, random.randint(1, 4))]),
+            tolerance=random.choice([None, Tolerance(peg=0.05, face=0.0)]),
+            loads=loads,
+            listing=random.choice(["best", "all"]),
+        )
+
+
+def assert_first(few: Result, whole: Result) -> None:
+    """A list of the best is the first part of the whole one; what is counted is counted right."""
+    assert few.table == whole.table.take(slice(0, few.query.best))
+    if few.pairs is None:
+        assert few.seats is None and few.notes[0] == best_note(few.query.best or 0)
+        assert few.found == few.counts and len(few) == few.query.best
+    else:
+        assert (few.pairs, few.seats, few.found) == (whole.pairs, whole.seats, whole.found)
+        assert (few.distinct, few.proof, few.notes) == (whole.distinct, whole.proof, whole.notes)
+
+
+@pytest.mark.parametrize(
+    "seed", [31, *(pytest.param(seed, marks=pytest.mark.prove) for seed in range(200) if seed != 31)]
+)
+def test_the_best_are_the_first_of_the_whole_list(seed: int) -> None:
+    for query in queries(seed, 2):
+        whole = answer(query, threads=1)
+        for best in (1, 7, 40, 400, len(whole) + 1):
+            assert_first(answer(evolve(query, best=best), threads=1), whole)
+
+
+def test_most_contacts_are_not_even_proven() -> None:
+    query = Query(part(NOTCHED), Plate((16, 12), 3, clamps=2))
+    few, whole = answer(evolve(query, best=5)), answer(query)
+    assert few.proof is not None and whole.proof is not None
+    assert few.pairs is None and 3 * few.proof.verified < whole.proof.verified
+    assert few.proof.candidates == whole.proof.candidates
+
+
+@pytest.mark.parametrize("listing", ["best", "all"])
+def test_what_is_left_out_does_not_depend_on_threads_and_verifies(listing: str, tmp_path: Any) -> None:
+    query = Query(cad_part(9), Plate(pitch=25, peg_radius=3, clamps=2), best=6, listing=listing)
+    texts = []
+    for threads in (1, 3):
+        workhold.save(result := answer(query, threads=threads), tmp_path / "r.json")
+        texts.append((tmp_path / "r.json").read_bytes())
+    assert texts[0] == texts[1] and b'"pairs": null, "seats": null' in texts[0].replace(b"\n", b" ")
+    again = workhold.open(tmp_path / "r.json")
+    assert (again.pairs, again.seats, again.notes) == (None, None, result.notes)
+    outcome = verify(again)
+    assert (outcome.proven, outcome.faults) == (6, ())
+
+
+def test_ranges_of_orientation_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    query = Query(part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2), best=9)
+    whole = answer(evolve(query, best=None))
+    monkeypatch.setattr(lattice_shares, "BLOCKS_TOGETHER", 3)
+    assert_first(answer(query), whole)
+
+
+def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The lemma on which the search stops."""
+    seen: list[tuple[Any, Any]] = []
+
+    def one_by_one(groups: SeatGroups, kept: Any, together: int = 0) -> Iterator[Any]:
+        first = 0
+        for end, bound in zip(groups.ends.tolist(), groups.bounds, strict=True):
+            if Random(end).random() < 0.1:
+                kept.tables = [kept.tables[0].take(slice(0))]
+                yield np.sort(groups.order[first:end])
+                table, query = kept.together(), kept.query
+                keys = np.stack(ranking_keys(table.quality, query.ranking, query.tolerance), axis=1)
+                seen.extend((bound, key) for key in keys)
+            first = end
+
+    monkeypatch.setattr(SeatGroups, "batches", one_by_one)
+    for ranking in (
+        None,
+        ["edge_distance", "tilt"],
+        ["location_error"],
+        ["end-distance"],
+        ["smallest_face", "penalty"],
+    ):
+        answer(Query(part(NOTCHED), Plate((20, 16), 3, clamps=2), ranking=ranking, listing="all", best=10**6))
+    assert len(seen) > 100
+    assert not any(is_worse(bound[None], key)[0] for bound, key in seen)
+
+
+def test_keys_are_compared_in_lexicographic_order() -> None:
+    keys = np.array([[0.0, 5.0], [1.0, 0.0], [1.0, 2.0], [1.0, 3.0], [2.0, 0.0]])
+    assert is_worse(keys, np.array([1.0, 2.0])).tolist() == [False, False, False, True, True]
+
+
+def test_a_group_holds_several_places_and_is_bounded_by_the_best() -> None:
+    """Contacts on the same holes at the same angle may be of two seats: neither stands for the other."""
+    off = np.array([3.0, 1.0, 1.0, 2.0, 2.0])
+    assert seat_order.best_known(off, np.array([0, 3])).tolist() == [1, 3]
