@@ -6,8 +6,8 @@ fixture bounds its rank from above, whatever its two clamps are:
 - location error and tilt are the seat's alone, the same for all its clamps;
 - the least distance to an end or an edge, and the smallest face, are those of five contacts, so no larger than those of
   three; warnings of contacts near an edge are at least those of the locators;
-- points and warnings grow with the location error, with contacts near an edge, with tilt, with a strong peg and with a
-  small face; without the clamps' share they can only be fewer;
+- points and warnings grow with location error, contacts near an edge, tilt, a strong peg and a small face. Without the
+  clamps' share they can only be fewer;
 - the closure margin is at most 1/5, for five shares sum to 1, and clamp freedom at most 90 degrees; forces are above zero.
 
 Rounding to digits never turns two numbers round. So key by key the bound is no worse than the fixture's own key, and so is
@@ -103,7 +103,7 @@ class SeatGroups:
     bounds: Array
 
     def reach(self, last: Array | None) -> int:
-        """How many groups, the first ones, may hold a fixture that ranks no worse than keys (R,); all for None."""
+        """The number of groups, the first ones, that may hold what ranks no worse than keys (R,); all for None."""
         if last is None:
             return len(self.ends)
         return len(self.ends) - int(is_worse(self.bounds, last).sum())

@@ -176,7 +176,7 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
         "distinct": {kind: int(number) for kind, number in result.distinct.items()},
         "listed": len(result),
         "unfit": shown.unfit,
-        **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.needs_pairs else {}),
+        **({} if result.query.listing is None else {"pairs": result.pairs, "seats": result.seats}),
         "complete": bool(result.complete),
         "notes": list(result.notes),
         "proof": None if result.proof is None else proof_data(result.proof),

@@ -95,7 +95,7 @@ def head(result: Result) -> dict[str, Any]:
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
         "complete": bool(result.complete),
         "notes": list(result.notes),
-        **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.needs_pairs else {}),
+        **({} if result.query.listing is None else {"pairs": result.pairs, "seats": result.seats}),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
 
