@@ -2,18 +2,37 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable
+from functools import cache
 from math import dist, pi, radians, tau
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 import check_result
-from workhold import Vise, Workpiece
+from workhold import Result, Vise, Workpiece, design
 from workhold.fixels.vise import OpeningVise
 from workhold.model.fixture import Fixture
 
 Listed = dict[str, Any]
+COMPLETE = Path(__file__).parent / "data" / "complete"
+# The sets that take longest; ``make prove`` compares them.
+LARGEST = ("small4Handle_10_10", "widget_8_1")
+SETS = [
+    pytest.param(path.stem, marks=pytest.mark.prove if path.stem in LARGEST else ())
+    for path in sorted(COMPLETE.glob("*.json"))
+]
+
+
+@cache
+def complete_set(name: str) -> tuple[dict[str, Any], Result]:
+    """A complete set and the search's result for its part and vise, which each process of the tests solves once."""
+    truth = json.loads((COMPLETE / f"{name}.json").read_text())
+    part = truth["workpiece"]
+    return truth, design(Workpiece.from_loops(part["name"], part["loops"]), vise_of(truth))
 
 
 def listed(fixtures: Iterable[Fixture]) -> list[Listed]:

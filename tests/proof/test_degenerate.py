@@ -182,7 +182,10 @@ TEE = Workpiece.from_loops(
     [
         (TEE, Plate(pitch=20, peg_radius=3, clamp_radius=5, clamps=2)),
         (ACROSS, Plate(pitch=20, peg_radius=3, clamp_radius=5)),
-        (GRAZED, Plate(pitch=20, peg_radius=3, clamp_radius=5, clamps=2)),
+        (GRAZED, Plate(pitch=20, peg_radius=3, clamp_radius=5)),
+        pytest.param(
+            GRAZED, Plate(pitch=20, peg_radius=3, clamp_radius=5, clamps=2), marks=pytest.mark.prove
+        ),
     ],
 )
 def test_nothing_about_a_symmetric_part_is_undecided(part: Workpiece, toolkit: Toolkit) -> None:

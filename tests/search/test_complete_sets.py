@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from math import dist
-from pathlib import Path
 
 import pytest
 
-from fixture_sets import Judge, listed, near_an_end, vise_of
-from workhold import Workpiece, design
-
-COMPLETE = sorted((Path(__file__).parent.parent / "data" / "complete").glob("*.json"))
+from fixture_sets import SETS, Judge, complete_set, listed, near_an_end
 
 
-@pytest.mark.parametrize("path", COMPLETE, ids=lambda path: path.stem)
-def test_complete_set_is_reproduced(path: Path) -> None:
+@pytest.mark.parametrize("name", SETS)
+def test_complete_set_is_reproduced(name: str) -> None:
     """Every fixture that is not marginal is listed once, and nothing else is; every one passes the checker. The search's own
     account adds up, with nothing undecided."""
-    truth = json.loads(path.read_text())
-    workpiece = Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"])
-    vise = vise_of(truth)
-    judge = Judge(workpiece, vise)
-    result = design(workpiece, vise)
+    truth, result = complete_set(name)
+    judge = Judge(result.workpiece, result.toolkit)
     proof = result.proof
     assert proof is not None
     assert proof.undecided == ()
@@ -54,12 +46,10 @@ def test_complete_set_is_reproduced(path: Path) -> None:
                 assert near or marginal, (key, theta)
 
 
-@pytest.mark.parametrize("path", COMPLETE, ids=lambda path: path.stem)
-def test_no_listed_contact_is_at_an_end(path: Path) -> None:
+@pytest.mark.parametrize("name", SETS)
+def test_no_listed_contact_is_at_an_end(name: str) -> None:
     """A peg wedged in a corner or standing on one is not listed: only its own face holds it (these sets have no tangent
     joints that a contact falls on)."""
-    truth = json.loads(path.read_text())
-    workpiece = Workpiece.from_loops(truth["workpiece"]["name"], truth["workpiece"]["loops"])
-    vise = vise_of(truth)
-    judge = Judge(workpiece, vise)
-    assert not any(near_an_end(judge, fixture, 1e-10) for fixture in listed(design(workpiece, vise)))
+    _, result = complete_set(name)
+    judge = Judge(result.workpiece, result.toolkit)
+    assert not any(near_an_end(judge, fixture, 1e-10) for fixture in listed(result))

@@ -35,10 +35,10 @@ def assert_found(first_seed: int, plants: int) -> set[str]:
     return kinds
 
 
-@pytest.mark.parametrize("first_seed", [10_000])
-def test_planted_fixtures_are_found(first_seed: int) -> None:
-    """Each of 12 planted fixtures is listed, over lines, convex and concave arcs and both types."""
-    assert assert_found(first_seed, 12) == {"I", "II"}
+@pytest.mark.parametrize("plants", [7, pytest.param(12, marks=pytest.mark.prove)])
+def test_planted_fixtures_are_found(plants: int) -> None:
+    """Each of some planted fixtures is listed, over lines, convex and concave arcs and both types."""
+    assert assert_found(10_000, plants) == {"I", "II"}
 
 
 @pytest.mark.prove

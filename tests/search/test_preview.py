@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from io import StringIO
 from typing import Any
 
@@ -31,26 +32,34 @@ def text(result: Result) -> str:
     return stream.getvalue()
 
 
+WIDGET, VISE = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
+
+
+@cache
+def everything() -> Result:
+    """All fixtures, searched once."""
+    return design(WIDGET, VISE)
+
+
 @pytest.mark.parametrize("best", [None, 20])
 def test_previews_are_some_of_the_fixtures(monkeypatch: pytest.MonkeyPatch, best: int | None) -> None:
     monkeypatch.setattr(shares, "PAUSE", 0.0)
     monkeypatch.setattr(shares, "SHARE", 0.0)
-    widget, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
     shown: list[Result] = []
-    result = design(widget, vise, best=best, preview=shown.append, threads=1)
-    everything = {identity(fixture) for fixture in design(widget, vise)}
+    result = design(WIDGET, VISE, best=best, preview=shown.append, threads=1)
+    found = {identity(fixture) for fixture in everything()}
     assert len(shown) > 3
     before: set[Any] = set()
     for some in shown:
         now = {identity(fixture) for fixture in some}
-        assert before <= now <= everything and len(now) == len(some)
+        assert before <= now <= found and len(now) == len(some)
         assert not some.complete and some.query == result.query
         before = now
-    assert text(result) == text(design(widget, vise, best=best))
+    assert text(result) == text(everything() if best is None else design(WIDGET, VISE, best=best))
 
 
 def test_a_short_search_shows_nothing_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shares, "PAUSE", 1000.0)
     shown: list[Result] = []
-    design(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), preview=shown.append)
+    design(WIDGET, VISE, preview=shown.append)
     assert shown == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import hypot
 
 import numpy as np
@@ -22,10 +23,16 @@ def vise(**changes: object) -> Vise:
     return Vise(**({"pitch": 10.0, "columns": 2, "peg_radius": 3.0} | changes))
 
 
-@pytest.fixture(scope="module")
+@cache
+def unrestricted(rows: int | None) -> Result:
+    """The widget without restrictions on jaws of so many rows, searched once."""
+    return design(load("widget"), vise(rows=rows))
+
+
+@pytest.fixture
 def free() -> Result:
     """The widget without restrictions."""
-    return design(load("widget"), vise())
+    return unrestricted(None)
 
 
 def triangle() -> Workpiece:
@@ -127,7 +134,7 @@ def test_no_peg_stands_in_a_blocked_hole(free: Result, rows: int | None, names: 
                 (peg.carrier, peg.column) == (h.carrier, h.column) and h.row in (None, peg.row)
                 for h in blocked
             ), fixture
-    unblocked = design(free.workpiece, vise(rows=rows))
+    unblocked = unrestricted(rows)
     chosen = [can_stand(fixture, unblocked.toolkit, blocked) for fixture in unblocked]
     assert sum(chosen) > 0
     assert identities(limited) == identities(unblocked, chosen)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from math import cos, radians, sin, sqrt
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import pytest
 from flint import ctx
 from hypothesis import given, settings
 
-from fixture_sets import vise_of
+from fixture_sets import SETS, complete_set
 from strategies import outlines, vises
 from workhold import Fixture, Peg, Pose, Result, Vise, Workpiece, design, load
 from workhold.files.result.writer import write_result
@@ -36,7 +35,6 @@ NOTCHED = [
         [20, 39, 0],
     ]
 ]
-COMPLETE = Path(__file__).parent.parent / "data" / "complete"
 WEDGE = [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]
 
 
@@ -103,11 +101,10 @@ def test_a_contact_exactly_at_a_tangent_joint_is_proven() -> None:
     assert outcome.proven == outcome.fixtures > 0
 
 
-@pytest.mark.parametrize("name", sorted(path.stem for path in COMPLETE.glob("*.json")))
+@pytest.mark.parametrize("name", SETS)
 def test_complete_sets_are_proven(name: str) -> None:
     """Everything found for the parts and vises of the complete sets."""
-    truth = json.loads((COMPLETE / f"{name}.json").read_text())
-    result = design(Workpiece.from_loops(name, truth["workpiece"]["loops"]), vise_of(truth))
+    _, result = complete_set(name)
     outcome = verify(result)
     assert outcome.proven == len(result) > 10
     assert (outcome.refuted, outcome.undecided, outcome.faults) == (0, 0, ())
