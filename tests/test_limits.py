@@ -19,9 +19,9 @@ import pytest
 
 from workhold import Vise, Workpiece, answer, load
 from workhold.cli.values import optional_force
-from workhold.errors import InputError
+from workhold.errors import InputError, lacks_memory
 from workhold.files.part.load import read_workpiece
-from workhold.limits import lacks_memory, thread_count
+from workhold.limits import thread_count
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
 from workhold.statics.loads import load_cases
@@ -54,18 +54,19 @@ TRYING = """
 import json, sys
 from workhold import Workpiece, design
 from workhold.contact.problem import Problem
-from workhold.errors import InputError
+from workhold.errors import InputError, lacks_memory
 from workhold.model.requirements import Load
 from workhold.model.query import Query
 from workhold.model.requirements import Tolerance
 from workhold.limits import thread_count
 from workhold.statics.loads import load_cases
-from workhold.files.input_forms import checked
+from workhold.files.input_forms import checked_toolkit
 from workhold.files.toolkit_file import described_toolkit
 
 for searched, loops, vise in json.load(sys.stdin):
     try:
-        part, held = Workpiece.from_loops("part", loops), described_toolkit("vise", checked({"unit": "mm", **vise})).toolkit
+        part = Workpiece.from_loops("part", loops)
+        held = described_toolkit("vise", checked_toolkit({"unit": "mm", **vise})).toolkit
         print(len(design(part, held)) if searched else Problem.of(Query(part, held)))
     except InputError as error:
         print(error)

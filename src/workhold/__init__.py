@@ -1,8 +1,9 @@
-"""workhold finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence and a stop.
+"""workhold finds every way to hold a flat part: in a vise, on a plate with clamps, or against a fence.
 
-The public face is small: :func:`load` reads a part, :class:`Vise`, :class:`Plate` and :class:`Fence` describe what holds
-it, :func:`design` finds all fixtures and returns a :class:`Result`, which :func:`save` writes and :func:`open` reads.
-Names are imported on first use, so that ``import workhold`` costs next to nothing.
+The public face is small. The function :func:`load` reads a part; :class:`Vise`, :class:`Plate` and
+:class:`Fence` describe what holds it. The function :func:`design` finds all fixtures and returns a
+:class:`Result`; :func:`save` writes it, and :func:`open` reads it. Names are imported on first use, so
+``import workhold`` costs next to nothing.
 """
 
 from __future__ import annotations
@@ -36,9 +37,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Fence",
-    "FlatJaw",
     "Fixture",
-    "WorkholdError",
+    "FlatJaw",
     "InputError",
     "Load",
     "OpeningVise",
@@ -50,6 +50,7 @@ __all__ = [
     "Result",
     "Tolerance",
     "Vise",
+    "WorkholdError",
     "Workpiece",
     "answer",
     "answer_to_file",
@@ -95,7 +96,7 @@ HOMES = {
 }
 
 
-# What methods of the model's classes end in, see ``delegates``.
+# The functions that methods of the model's classes call, see ``delegates``.
 DELEGATES = {
     "fixture_picture": "workhold.presenting.papers",
     "preset_fields": "workhold.presenting.presets",
@@ -110,7 +111,7 @@ DELEGATES = {
 
 
 def imported(name: str, home: str) -> Any:
-    """An object of a module, which is imported now; a home is a module, or a module and the object's own name there."""
+    """Imports an object; ``home`` is its module, and behind a colon its name there if that is another."""
     module, _, known_as = home.partition(":")
     return getattr(import_module(module), known_as or name)
 

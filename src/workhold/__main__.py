@@ -10,14 +10,14 @@ __all__ = ["run"]
 
 
 def open_closed_streams() -> None:
-    """Open those of the three standard streams that are closed to nowhere; the next file opened would be one of them."""
+    """Opens every closed standard stream to nowhere; the next file opened would take its place."""
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), "w" if number else "r"))
 
 
 def run() -> NoReturn:
-    """Run the command line; Ctrl-C while it is being loaded ends it as it does later."""
+    """Runs the command line; Ctrl-C while it is being loaded ends it as it does later."""
     open_closed_streams()
     try:
         end_on_signals()

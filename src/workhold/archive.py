@@ -1,11 +1,12 @@
-"""An archive of columns: an uncompressed ZIP of NumPy arrays (.npy) and one text, which ``numpy.load`` opens too.
+"""An archive of columns: an uncompressed ZIP of NumPy arrays (.npy) and one text.
 
-The arrays all have the same number of rows and begin at multiples of 64 bytes, so that they can be mapped into memory:
-opening reads the directory and the text, whatever the number of rows. No times are written, so the same content gives the
-same bytes.
+``numpy.load`` opens such an archive too. The arrays all have the same number of rows and begin at multiples
+of 64 bytes, so that they can be mapped into memory. Opening reads only the directory and the text. No times
+are written, so the same content gives the same bytes.
 
-Formats: PKWARE, "APPNOTE.TXT - .ZIP File Format Specification", version 6.3.10, sections 4.3.7 to 4.3.16 and 4.5.3 (sizes of
-64 bits); NumPy, "NEP 1 - A simple file format for NumPy arrays".
+The formats are those of two documents. PKWARE, "APPNOTE.TXT - .ZIP File Format Specification", version
+6.3.10, has them in sections 4.3.7 to 4.3.16 and 4.5.3 (sizes of 64 bits). NumPy's is "NEP 1 - A simple file
+format for NumPy arrays".
 
 Glossary
 --------
@@ -32,7 +33,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 
-__all__ = ["ArchiveWriter", "Columns", "Column", "is_archive", "mapped_archive"]
+__all__ = ["ArchiveWriter", "Column", "Columns", "is_archive", "mapped_archive"]
 
 FIRST_BYTES = b"PK\x03\x04"
 ALIGNMENT = 64
@@ -51,7 +52,7 @@ MOST_DIRECTORY, MOST_HEADER, MOST_TEXT = 1 << 20, 1 << 12, 200_000_000
 
 @frozen
 class Column:
-    """What a column holds: NumPy's name of the type of its numbers, such as ``<f8``, and the shape of a row."""
+    """The contents of a column: NumPy's name of their type, such as ``<f8``, and the shape of a row."""
 
     kind: str
     shape: tuple[int, ...] = ()
@@ -73,7 +74,7 @@ Columns = Mapping[str, Column]
 
 
 @define(eq=False)
-class Member:
+class ArchiveMember:
     """A member on its way into the file: its name, where it begins, and so much of it as is known."""
 
     name: bytes
@@ -124,7 +125,7 @@ class ArchiveWriter:
     stream: BinaryIO
     columns: Mapping[str, Column]
     rows: int
-    members: list[Member] = field(factory=list, init=False)
+    members: list[ArchiveMember] = field(factory=list, init=False)
     done: int = field(default=0, init=False)
 
     def __attrs_post_init__(self) -> None:
@@ -132,18 +133,18 @@ class ArchiveWriter:
         for name, column in self.columns.items():
             header = column.header(self.rows)
             size = len(header) + self.rows * column.row_bytes
-            member = Member(f"{name}.npy".encode(), start, size, crc32(header))
+            member = ArchiveMember(f"{name}.npy".encode(), start, size, crc32(header))
             self.put(member.content, header)
             self.members.append(member)
             start = member.content + size
 
     def put(self, place: int, content: Any) -> None:
-        """Write bytes at a place."""
+        """Writes bytes at a place."""
         self.stream.seek(place)
         self.stream.write(content)
 
     def add(self, block: Sequence[NDArray[Any]]) -> None:
-        """Write the next rows, an array for each column in their order."""
+        """Writes the next rows, an array for each column in their order."""
         for member, column, values in zip(self.members, self.columns.values(), block, strict=True):
             content = np.ascontiguousarray(values, column.kind).reshape(-1).view(np.uint8).data
             self.put(member.content + member.size - (self.rows - self.done) * column.row_bytes, content)
@@ -151,7 +152,7 @@ class ArchiveWriter:
         self.done += len(block[0])
 
     def shorten(self) -> None:
-        """Have the headers say how many rows there are; they are as long as before, for any number of rows."""
+        """Writes the number of rows there are into the headers, whose length does not depend on it."""
         for member, column in zip(self.members, self.columns.values(), strict=True):
             said, header = column.header(self.rows), column.header(self.done)
             size = self.done * column.row_bytes
@@ -161,10 +162,10 @@ class ArchiveWriter:
         self.rows = self.done
 
     def close(self, name: str, text: str, mark: str) -> None:
-        """Write the text under its name, the directory and the mark."""
+        """Writes the text under its name, the directory and the mark."""
         content = text.encode()
         last = self.members[-1]
-        member = Member(name.encode(), last.content + last.size, len(content), crc32(content))
+        member = ArchiveMember(name.encode(), last.content + last.size, len(content), crc32(content))
         if self.done < self.rows:
             self.shorten()
         self.put(member.content, content)
@@ -184,8 +185,9 @@ class ArchiveWriter:
 
 
 def followed_by(difference: int, size: int) -> int:
-    """By what the checksums of two contents differ that have so many bytes in common at their end, from the difference of
-    the checksums of what is before: it is multiplied by x to the power of the bits, modulo the polynomial.
+    """The difference (XOR) of two checksums after ``size`` equal bytes, from their difference before.
+
+    Each bit that follows multiplies the difference by x, modulo the polynomial.
 
     Reference: M. Adler, zlib, ``crc32_combine``.
     """
@@ -226,7 +228,7 @@ class CarefulFile(io.FileIO):
     """A file of which a directory of a sensible size can be read."""
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """Read so many bytes, or those to the end.
+        """Reads so many bytes, or those to the end.
 
         Raises
         ------
@@ -243,12 +245,13 @@ def mapped_archive(
 ) -> tuple[str, dict[str, NDArray[Any]]]:
     """The text of an archive and its columns, which are read only where they are looked at.
 
-    Nothing in the file is trusted: members must be stored as they are, apart from each other and inside the file, and an
-    array's header must be just that of so many rows as there is room for.
+    Nothing in the file is trusted. Members must be stored uncompressed, apart from each other and inside the
+    file. An array's header must give just as many rows as there is room for.
 
     Parameters
     ----------
-    columns : what each must hold, by name, or what tells it from the text; further members are left alone.
+    columns : what each must hold, by name, or a function that derives it from the text; further members are
+        ignored.
     name : of the text.
     whole : read the columns once, to compare their checksums.
 
@@ -288,7 +291,7 @@ def mapped_archive(
 
 
 def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple[int, int]]) -> None:
-    """Refuse members that are missing, there twice, or not apart from each other.
+    """Refuses members that are missing, there twice, or not apart from each other.
 
     Raises
     ------

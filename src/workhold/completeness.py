@@ -1,7 +1,7 @@
 """Verification of a result, and the search of its query once more, for what a file alone cannot show.
 
-It stands above both the verification and the engines, which share nothing: fixtures are compared as the
-verification tells them apart (``verification.repeats``).
+This module stands above both the verification and the engines, which share nothing. Two fixtures are the
+same where the verification says so (``verification.repeats``).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from workhold.model.result import Result
 from workhold.model.search_report import Proof, Undecided, kept_note
 from workhold.verification.account import is_by_algebra
 from workhold.verification.listing import Listing, listing_of, read_listing
-from workhold.verification.repeats import Seen
+from workhold.verification.repeats import KnownFixtures
 from workhold.verification.verify import Verification, no_progress, verify_listing
 
 __all__ = ["completed", "verify"]
@@ -62,27 +62,26 @@ def verify(
     >>> outcome.holds, outcome.is_compared
     (True, True)
     """
-    tell = no_progress if progress is None else progress
+    report = no_progress if progress is None else progress
     listing = listing_of(source) if isinstance(source, Result) else read_listing(source)
     if not complete:
-        return verify_listing(listing, tell)
-    outcome = verify_listing(listing, lambda fraction, count: tell(fraction / 2, count))
+        return verify_listing(listing, report)
+    outcome = verify_listing(listing, lambda fraction, count: report(fraction / 2, count))
     return completed(
         outcome,
         listing,
         threads=threads,
         cancel=cancel,
-        progress=lambda done, count: tell((1 + done) / 2, count),
+        progress=lambda done, count: report((1 + done) / 2, count),
     )
 
 
 def completed(
     outcome: Verification, listing: Listing, *, threads: int | None = None, **watching: Any
 ) -> Verification:
-    """A verification with what the search of the listing's query finds wrong with it; as it was when that is
-    cancelled.
+    """A verification with the faults that a new search of the listing's query finds.
 
-    Parameters
+    When the search is cancelled, the verification is returned unchanged.Parameters
     ----------
     watching : ``progress`` and ``cancel``, see :func:`workhold.answer`.
     """
@@ -103,11 +102,12 @@ def completed(
 
 
 def differences(listing: Listing, result: Result) -> Iterator[str]:
-    """What a listing says otherwise than the search of its query, one sentence each, without a full stop.
+    """The differences between a listing and a new search of its query, one sentence each, without a full
+    stop.
 
     A listing that says it is incomplete may lack fixtures, and its account is that of a part of the work.
     """
-    seen = Seen(listing.hardware)
+    seen = KnownFixtures(listing.hardware)
     for index, fixture in enumerate(listing.fixtures):
         seen.add(index, fixture)
     listed, found = len(listing.fixtures), sum(listing.found.values())
@@ -117,7 +117,10 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
     matches = [(fixture, seen.find(fixture)) for fixture in expected]
     surplus = sorted(set(range(listed)) - {match for _, match in matches})
     if surplus:
-        yield f"a search does not find {counted(len(surplus))} of it, the first of them fixture {surplus[0] + 1}"
+        yield (
+            f"a search does not find {counted(len(surplus))} of it, the first of them fixture "
+            f"{surplus[0] + 1}"
+        )
     if not listing.complete:
         for kind, number in result.found.items():
             if listing.found[kind] > number:
@@ -125,7 +128,10 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
         return
     missing = [fixture for fixture, match in matches if match is None]
     if missing:
-        yield f"a search finds {counted(len(missing))} that it does not list, the first of them {in_words(missing[0])}"
+        yield (
+            f"a search finds {counted(len(missing))} that it does not list, the first of them "
+            f"{in_words(missing[0])}"
+        )
     for name in ("found", "distinct"):
         yield from other_numbers(name, getattr(listing, name), getattr(result, name))
     for name in ("pairs", "seats"):
@@ -148,7 +154,7 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
 
 
 def first_other(written: Any, derived: Any, key: str = "") -> str:
-    """The key of the first value that is another one, as far as numbers are known; empty where all agree."""
+    """The key of the first value that differs by more than ``SAME_SEATING``; empty where all agree."""
     if isinstance(derived, dict):
         pairs = [(key or name, written.get(name), value) for name, value in derived.items()]
         return next((other for name, a, b in pairs if (other := first_other(a, b, name))), "")
@@ -180,7 +186,7 @@ def numbers_of(proof: Proof) -> dict[str, int]:
 
 
 def other_numbers(name: str, written: Any, derived: Any) -> Iterator[str]:
-    """A fault for each number that is another one in a search."""
+    """A fault for each number for which a search comes to another one."""
     for key, number in derived.items():
         if written.get(key) != number:
             yield f"{name} says {written.get(key)} for {key}, and a search comes to {number}"
@@ -195,4 +201,7 @@ def other_entries(written: Proof, derived: Proof) -> Iterator[str]:
 
     one, other = ({key(entry) for entry in proof.undecided} for proof in (written, derived))
     if one != other:
-        yield f"the proof names {len(one - other)} undecided candidates that a search decides, and lacks {len(other - one)}"
+        yield (
+            f"the proof names {len(one - other)} undecided candidates that a search decides, and lacks "
+            f"{len(other - one)}"
+        )

@@ -1,8 +1,8 @@
-"""Functions of higher layers that the model's methods end in: pictures, papers, tables and presets.
+"""Functions of higher layers that methods of the model call: pictures, papers, tables and presets.
 
-The model imports none of those layers. The package hands their functions over when it is imported, before any
-module of it, so that a method works whatever was imported first. Each is handed over as what imports it, so
-that it costs nothing unused.
+The model imports none of those layers. The package registers their functions when it is imported, before any
+of its modules, so a method works whatever was imported first. Each is registered as a function that imports
+it, so it costs nothing unused.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ IMPORTERS: dict[str, Callable[[], Callable[..., Any]]] = {}
 
 
 def hand_over(importers: Mapping[str, Callable[[], Callable[..., Any]]]) -> None:
-    """Takes what imports functions, by the names that methods ask for."""
+    """Registers functions that import the delegates, by the names that methods ask for."""
     IMPORTERS.update(importers)
 
 
 def delegate(name: str) -> Callable[..., Any]:
-    """The function that was handed over under a name."""
+    """The function that was registered under a name."""
     return IMPORTERS[name]()

@@ -1,13 +1,12 @@
-"""How numbers given are taken, and how large they may be.
+"""How numbers from outside are converted, and how large they may be.
 
-A number of a few bytes must not ask for all memory, or for arithmetic that says nothing. The limits hold alike for files,
-Python and the page. What a file or a request may be in bytes, segments and seconds is said where these are read
-(``files.part.load``, ``web.guard``).
+A number of a few bytes must not ask for all memory, or for arithmetic that says nothing. The limits hold
+alike for files, Python and the page. What a file or a request may be in bytes, segments and seconds is said
+where these are read (``files.part.load``, ``web.guard``).
 """
 
 from __future__ import annotations
 
-import errno
 import os
 from math import inf, nan
 from typing import Any
@@ -16,7 +15,6 @@ from workhold.errors import InputError
 
 __all__ = [
     "MOST_BLOCKED",
-    "MOST_CHORDS",
     "MOST_FORCE",
     "MOST_FRICTION",
     "MOST_HOLES",
@@ -24,10 +22,7 @@ __all__ = [
     "MOST_PEG_PAIRS",
     "MOST_RADIUS",
     "MOST_STEPS",
-    "MOST_THREADS",
-    "NO_ROOM",
     "counting_number",
-    "lacks_memory",
     "real",
     "refuse_little_space",
     "refuse_long",
@@ -38,9 +33,9 @@ __all__ = [
 
 
 def real(value: Any) -> float:
-    """A number as a float: infinite when it is a whole number beyond all floats, NaN when it is no number.
+    """A number as a float: infinite for a whole number too large for a float, NaN for what is no number.
 
-    So that what refuses numbers that are not finite refuses these as well.
+    A check that refuses numbers that are not finite then refuses these as well.
 
     Examples
     --------
@@ -73,37 +68,38 @@ def counting_number(name: str, value: Any) -> int | None:
     raise InputError(f"{name} {value} is not a positive whole number: give 1 or more.")
 
 
-# Coordinates and lengths in mm: a double of this size is known to 1e-10 mm, a tenth of the width of a rule's edge.
+# Coordinates and lengths in mm: a double of this size is known to 1e-10 mm, a tenth of the width of a rule's
+# edge.
 MOST_LENGTH = 1e6
-# Radii in mm: the centre of such an arc, and so each point reckoned from it, is known to no better than points that touch.
+# Radii in mm: the centre of such an arc, and so each point reckoned from it, is known to no better than
+# points that touch.
 MOST_RADIUS = 1e9
-# Forces in N and moments in N mm: more than any machine has, and far from where products of them are no numbers.
+# Forces in N and moments in N mm: more than any machine has, and far from where products of them are no
+# numbers.
 MOST_FORCE = 1e9
 # Coefficients of friction.
 MOST_FRICTION = 100.0
-# Holes of one carrier, rows without end counted once: what is drawn, and looked through for pairs of free holes.
+# Holes of one carrier, rows without end counted once: what is drawn, and looked through for pairs of free
+# holes.
 MOST_HOLES = 25_000
 # Holes and columns that are blocked, which every fixture is held against.
 MOST_BLOCKED = 20_000
-# Lattice steps between two pegs of one carrier, and these times the features: from each feature a step reaches some ten, and
-# each chord takes some 200 bytes. The largest search measured (100 faces, 40 columns) has 650,000, and takes under 1 GiB.
+# Lattice steps between two pegs of one carrier, and these times the features: from each feature a step
+# reaches some ten, and each chord takes some 200 bytes. The largest search measured (100 faces, 40 columns)
+# has 650,000, and takes under 1 GiB.
 MOST_STEPS = 250_000
 MOST_CHORDS = 5_000_000
-# Peg pairs of the paper's algebra, each with 360 sectors of orientation for each piece of a feature: some 6,000 bytes.
+# Peg pairs of the paper's algebra, each with 360 sectors of orientation for each piece of a feature: some
+# 6,000 bytes.
 MOST_PEG_PAIRS = 500_000
 # Threads of one search.
 MOST_THREADS = 1_000
 
-# A full disk, a used up quota, a limit of the size of files.
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-# What the system's loader, libraries and threads say where there is no memory for them.
-NO_MEMORY = ("failed to map segment", "annot allocate memory", "can't start new thread")
-
 
 def refuse_little_space(needed: int, what: str, remedy: str) -> None:
-    """Refuse work for which this process may have too little address space, where libraries would end it without a word.
+    """Refuses work that needs more address space than this process may have.
 
-    Parameters
+    Libraries would end the process without a message.Parameters
     ----------
     needed : bytes.
 
@@ -119,13 +115,13 @@ def refuse_little_space(needed: int, what: str, remedy: str) -> None:
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if limit != resource.RLIM_INFINITY and limit < needed:
         raise InputError(
-            f"{what} takes {needed / 1e6:,.0f} MB of address space, and this process is limited to {limit / 1e6:,.0f} MB "
-            f"(ulimit -v): {remedy}."
+            f"{what} takes {needed / 1e6:,.0f} MB of address space, and this process is limited to "
+            f"{limit / 1e6:,.0f} MB (ulimit -v): {remedy}."
         )
 
 
 def refuse_long(name: str, value: float) -> None:
-    """Refuse a length in mm that is too large.
+    """Refuses a length in mm that is too large.
 
     Raises
     ------
@@ -137,7 +133,7 @@ def refuse_long(name: str, value: float) -> None:
 
 
 def refuse_strong(name: str, value: float, unit: str = "N") -> None:
-    """Refuse a force in N or a moment in N mm that is too large.
+    """Refuses a force in N or a moment in N mm that is too large.
 
     Raises
     ------
@@ -151,7 +147,7 @@ def refuse_strong(name: str, value: float, unit: str = "N") -> None:
 def refuse_many_steps(
     pitch: tuple[float, float], columns: int | None, rows: int | None, diameter: float, features: int
 ) -> None:
-    """Refuse a lattice on which two pegs can be placed in too many ways.
+    """Refuses a lattice on which two pegs can be placed in too many ways.
 
     Parameters
     ----------
@@ -172,21 +168,10 @@ def refuse_many_steps(
     most = min(MOST_STEPS, MOST_CHORDS // features)
     if steps > most:
         raise InputError(
-            f"two pegs {diameter:.6g} mm apart or less, on a pitch of {pitch[0]:g} x {pitch[1]:g} mm, can stand in "
-            f"{steps:.3g} ways, more than the {most:,} this program takes for a part of {features} faces: use a larger "
-            "pitch, or fewer columns and rows."
+            f"two pegs {diameter:.6g} mm apart or less, on a pitch of {pitch[0]:g} x {pitch[1]:g} mm, can "
+            f"stand in {steps:.3g} ways, more than the {most:,} this program takes for a part of {features} "
+            "faces: use a larger pitch, or fewer columns and rows."
         )
-
-
-def lacks_memory(error: BaseException | None) -> bool:
-    """Whether an error comes of too little memory; libraries and threads tell it in words of their own."""
-    while error is not None:
-        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
-            return True
-        if any(words in str(error) for words in NO_MEMORY):
-            return True
-        error = error.__cause__ or error.__context__
-    return False
 
 
 def thread_count(threads: int | None) -> int:

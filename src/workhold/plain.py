@@ -1,4 +1,4 @@
-"""Text made fit to be shown: that of others, such as the name of a part or a layer, and words in a sentence."""
+"""Text made fit to be shown: names from files, such as those of parts and layers, and lists in sentences."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ CUT = " ... "
 
 
 def plain(text: str) -> str:
-    """Text without what could steer a terminal, turn the direction of writing or break a line or a file's string.
-
+    """Text without letters that steer a terminal, turn the direction of writing, or break a line or string.
     Examples
     --------
     >>> plain("a\\x1b]0;b\\u202ec\\td")

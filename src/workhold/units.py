@@ -1,4 +1,4 @@
-"""Units of length and the force that goes with each: the program reckons in mm and N; people use others as well."""
+"""Units of length and the force that goes with each; inside, all numbers are in mm and N."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ class Unit:
     name : what users call it.
     abbreviation : what stands behind a number.
     millimetres : millimetres in one unit.
-    decimals : with which a length that has to be set is written: a micrometre, or a ten-thousandth of an inch (2.5 µm).
+    decimals : with which a length that has to be set is written: a micrometre, or a ten-thousandth of an inch
+        (2.5 µm).
     force, newtons : abbreviation of the unit of force on paper of this unit of length, and N in one of it.
     """
 
@@ -38,8 +39,8 @@ class Unit:
     def length(self, number: float) -> float:
         """The length in mm that a number of this unit means.
 
-        Rounded at 1e-12 mm, so that 1.5 inch is the 38.1 mm that a metric drawing says, not its neighbour in floating
-        point: coincidences of part and vise stay exact.
+        Rounded at 1e-12 mm, so that 1.5 inch is the 38.1 mm that a metric drawing says, not its neighbour in
+        floating point: coincidences of part and vise stay exact.
 
         >>> INCH.length(1.5), 1.5 * 25.4
         (38.1, 38.099999999999994)
@@ -80,7 +81,7 @@ class Unit:
         return text.rstrip("0").rstrip(".") if "." in text else text
 
     def force_words(self, force: float) -> str:
-        """A force in N in whole units of force, or with three figures when it is small, and the unit behind it.
+        """A force in N in whole units of force, or with three figures when it is small, and the unit.
 
         >>> MILLIMETRE.force_words(1234.5), MILLIMETRE.force_words(0.01234), INCH.force_words(1000.0)
         ('1234 N', '0.0123 N', '225 lbf')
@@ -99,7 +100,7 @@ class Unit:
         return f"{value:.3g} {'lbf in' if inches else 'N m'}".replace("-", "−")
 
     def force_above(self, force: float) -> str:
-        """A force in N as a whole number of the unit of force, rounded up so that nothing is promised that does not hold.
+        """A force in N as a whole number of the unit of force, rounded up to stay on the safe side.
 
         >>> MILLIMETRE.force_above(1234.2), MILLIMETRE.force_above(0.0), INCH.force_above(1000.0)
         ('1235', '0', '225')

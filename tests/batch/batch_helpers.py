@@ -44,7 +44,7 @@ class Onlooker:
     def ended(self, worker: str) -> None:
         pass
 
-    def told(self, sentence: str) -> None:
+    def notify(self, sentence: str) -> None:
         self.sentences.append(sentence)
 
 

@@ -36,7 +36,7 @@ def test_curve_plan_and_file(
     run: Any, drawings: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / "f.json"
-    monkeypatch.setattr("workhold.cli.tables.width_of", lambda stream: 80)
+    monkeypatch.setattr("workhold.cli.table.width_of", lambda stream: 80)
     outcome = run("family", drawings, *VISE, "--setups", 2, "--out", out)
     assert outcome.exit_code == 0, outcome.stderr
     assert "disc.json is left out: it has no fixture in this vise." in outcome.stderr

@@ -13,7 +13,7 @@ from attrs import evolve
 import workhold
 from workhold import OpeningVise, Plate, Vise, Workpiece
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.seating_words import SeatingSentences
 from workhold.seating.clamping import WHY
 from workhold.seating.contact_forces import WAS_NOT_FOUND
 from workhold.seating.solver import Solver
@@ -53,7 +53,7 @@ def test_it_says_where_nothing_is_known_of_how_a_part_is_caught(run: Any, tmp_pa
     assert "Beware: from where on the part is caught is not known." in " ".join(
         run("show", path, 1).stdout.split()
     )
-    words = SeatingWords(untold, result[0], result.toolkit, LengthUnit.suiting(MILLIMETRE, 20.0))
+    words = SeatingSentences(untold, result[0], result.toolkit, LengthUnit.suiting(MILLIMETRE, 20.0))
     assert "is not known" in words.steps(WEDGE)[0] and "is not known" in words.cautions()[0][1]
 
 

@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 from fakes import fake_result
-from workhold.cli.table import Table
-from workhold.cli.tables import width_of
+from workhold.cli.table import Table, width_of
 from workhold.files.result.writer import write_result
 
 

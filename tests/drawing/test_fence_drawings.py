@@ -18,7 +18,7 @@ from workhold.drawing.bench import contact_of
 from workhold.drawing.fixture_pictures import draw_fixture
 from workhold.drawing.result_sheet import result_sheet
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.seats import draw_seats
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list, result_csv_text
@@ -143,7 +143,7 @@ def test_a_seat_like_a_fixture_is_said_to_lie_flush() -> None:
     picture = texts(draw_seats([own, seat], fixture, result.workpiece, result.toolkit))
     assert picture.count("flush") == 2 and "four pegs" not in picture
     lengths = LengthUnit.suiting(MILLIMETRE, 10.0)
-    gauge = SeatingWords(None, fixture, result.toolkit, lengths).gauge  # type: ignore[arg-type]
+    gauge = SeatingSentences(None, fixture, result.toolkit, lengths).gauge  # type: ignore[arg-type]
     table = seat_table([own, seat], gauge, MILLIMETRE)
     assert [row[-1] for row in table.rows] == ["right", "flush on the fence"]
 

@@ -14,7 +14,7 @@ import workhold
 from workhold import Fence, Plate, Vise, Workpiece
 from workhold.drawing.result_sheet import result_cautions, result_sheet
 from workhold.drawing.scene import UNITS_PER_MM, LengthUnit
-from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_facts import SheetDetails
 from workhold.model.clamps import order_words
@@ -41,9 +41,9 @@ def told(result: Result) -> list[Seating]:
     return workhold.seatings(result, 4)
 
 
-def words_for(result: Result, told: Seating, number: int = 0, unit: Unit = MILLIMETRE) -> SeatingWords:
+def words_for(result: Result, told: Seating, number: int = 0, unit: Unit = MILLIMETRE) -> SeatingSentences:
     """The words of a fixture."""
-    return SeatingWords(told, result[number], result.toolkit, LengthUnit.suiting(unit, 20.0))
+    return SeatingSentences(told, result[number], result.toolkit, LengthUnit.suiting(unit, 20.0))
 
 
 def with_seats(told: Seating, wrong: int) -> Seating:

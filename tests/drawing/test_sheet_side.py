@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from strategies import outlines
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.sheet_blocks import Mark, marks_of, side_words, telling_marks
+from workhold.drawing.sheet_blocks import Mark, distinguishing_marks, marks_of, side_words
 from workhold.geometry.symmetry import is_own_mirror_image
 from workhold.model.fixture import Pose
 from workhold.model.workpiece import Workpiece
@@ -59,7 +59,7 @@ def test_known_mirror_images(loops: list[list[list[float]]], same: bool) -> None
 @settings(max_examples=60)
 def test_marks_run_round_the_other_way_in_a_part_turned_over(part: Workpiece) -> None:
     """Each of the two marks is found once in the part turned over, and there they run round its middle the other way."""
-    marks = telling_marks(part)
+    marks = distinguishing_marks(part)
     if marks is None:
         return
     twins = [[other for other in marks_of(mirrored(part)) if other.is_like(mark)] for mark in marks]

@@ -22,7 +22,8 @@ from sheet_reading import collisions
 from svg_reading import NAMESPACE, by_class, matrix, texts
 
 from workhold.cli.fixture_commands import load_tables
-from workhold.cli.tables import fixture_tables, print_tables, quality_table
+from workhold.cli.table import print_tables
+from workhold.cli.tables import fixture_tables, quality_table
 from workhold.drawing import draw_fixture, draw_thumbnails
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.scene import Box

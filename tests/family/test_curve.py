@@ -11,18 +11,18 @@ import pytest
 from numpy.typing import NDArray
 
 from workhold.family.covering import Cover
-from workhold.family.curve import Point, Search, Table, curve_of, points_of
+from workhold.family.curve import LossTable, Point, Search, curve_of, points_of
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
 
-def table_from(losses: NDArray[np.float64]) -> Table:
+def table_from(losses: NDArray[np.float64]) -> LossTable:
     """The table of losses (P, M), NaN where a pattern does not hold a member; patterns are named by their numbers."""
     pattern, member = np.nonzero(~np.isnan(losses))
     loss = losses[pattern, member]
     order = np.argsort(loss, kind="stable")
     number = np.arange(len(losses))
-    return Table(losses.shape[1], number[:, None], number, pattern[order], member[order], loss[order])
+    return LossTable(losses.shape[1], number[:, None], number, pattern[order], member[order], loss[order])
 
 
 def random_losses(random: Random, patterns: int, members: int) -> NDArray[np.float64]:

@@ -227,7 +227,7 @@ def test_a_plan_is_made_of_all_fixtures_whatever_a_list_would_show(toolkit: Tool
     """Of two clamps of every pair, too."""
     part = TWENTY[:1]
     every = answer(
-        asked(part, toolkit, **({"listing": "all"} if toolkit.needs_pairs else {}))[0].query, threads=1
+        asked(part, toolkit, **({"listing": "all"} if toolkit.travels > 1 else {}))[0].query, threads=1
     )
     member = family_of(asked(part, toolkit, best=1), threads=1).members[0]
     assert member.fixtures == len(every) > 1

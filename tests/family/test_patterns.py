@@ -36,7 +36,7 @@ HELD: dict[str, tuple[Workpiece, Toolkit]] = {
 def results() -> dict[str, Result]:
     """All fixtures of each part in its toolkit."""
     return {
-        name: answer(Query(part, toolkit, listing="all" if toolkit.needs_pairs else None), threads=1)
+        name: answer(Query(part, toolkit, listing="all" if toolkit.travels > 1 else None), threads=1)
         for name, (part, toolkit) in HELD.items()
     }
 

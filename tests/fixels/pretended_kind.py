@@ -16,7 +16,7 @@ from workhold.fixels.carrier import Carrier, Travel
 from workhold.fixels.fields import MIN_GAP, PEG_RADIUS, PITCH
 from workhold.fixels.making import made_from_table, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
-from workhold.fixels.table import Label, Table
+from workhold.fixels.table import FieldTable, PageLabel
 from workhold.fixels.toolkit import Arrangement, Change, Symmetry, Toolkit, Wording
 from workhold.units import Unit
 
@@ -26,10 +26,10 @@ class Press(Toolkit):
     """A press whose bed is a plate with three pegs, and whose ram carries one: they hold what lies between."""
 
     kind: ClassVar[str] = "press"
-    table: ClassVar[Table] = Table(
+    table: ClassVar[FieldTable] = FieldTable(
         "press",
         "A press with pegs on its bed and its ram",
-        (PITCH, PEG_RADIUS, MIN_GAP.shown(Label("Smallest gap", "pitch"))),
+        (PITCH, PEG_RADIUS, MIN_GAP.shown(PageLabel("Smallest gap", "pitch"))),
     )
     noun: ClassVar[str] = "press"
     locked: ClassVar[str] = "a press, its ram"

@@ -42,7 +42,7 @@ def carried(table: FixtureTable, angle: float) -> FixtureTable:
 def test_what_is_turned_has_the_same_smallest_image(name: str, corners: int) -> None:
     """Whatever rotation a fixture is carried by: the set it makes is the same, and so is the number of sets."""
     toolkit = TOOLKITS[name]
-    query = Query(polygon(corners), toolkit, listing="all" if toolkit.needs_pairs else None)
+    query = Query(polygon(corners), toolkit, listing="all" if toolkit.travels > 1 else None)
     result = answer(query)
     table, identity = result.table, Identity(toolkit, query.workpiece)
     assert len(identity.rotations) == corners

@@ -18,7 +18,7 @@ import pytest
 import workhold
 from seating_examples import solved
 from workhold import InputError, OpeningVise, Plate, Query, Result, Vise, Workpiece
-from workhold.files.result.fixture_forms import figures_told
+from workhold.files.result.fixture_forms import seating_figures_of
 from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.search_report import by_hand_note
@@ -122,7 +122,7 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
         untold.warnings == ("from where on the part is caught is not known",)
         and untold.figures["placing"] == 0.0
     )
-    assert figures_told(untold.as_fields())["placing"] == 0.0
+    assert seating_figures_of(untold.as_fields())["placing"] == 0.0
     free = attrs.evolve(one, capture_opening=None)
     assert not free.warnings and free.catches(1e9) and free.figures["capture_opening"] == inf
     assert not one.catches(one.capture_opening or 0.0) and one.catches(0.999 * (one.capture_opening or 0.0))

@@ -27,8 +27,7 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.obstacles import clearances
 from workhold.kernels.seating.slides import slides_blocked
-from workhold.seating import equilibria as equilibria_module
-from workhold.seating import two_contact_curves
+from workhold.seating import subset_equilibria, two_contact_curves
 from workhold.seating.closing import filled
 from workhold.seating.equilibria import Equilibria, equilibria
 from workhold.seating.obstacle_boundary import ObstacleBoundary
@@ -79,7 +78,7 @@ def test_nothing_depends_on_what_was_solved_before():
         count += len(subsets_of(patterns()[number]))
     [boundary] = solver.boundaries.values()
     assert (
-        len(boundary.once(equilibria_module.SubsetCache.empty).found) < 0.8 * count
+        len(boundary.once(subset_equilibria.SubsetCache.empty).found) < 0.8 * count
         and len(boundary.once(two_contact_curves.curves_of_jaws)) < count
     )
 
@@ -87,7 +86,7 @@ def test_nothing_depends_on_what_was_solved_before():
 def test_what_is_forgotten_is_found_again(monkeypatch):
     """With room for three groups, which one pattern has more of, and the cells of one or two jaws, the same; and no more are
     kept than those of a pattern."""
-    monkeypatch.setattr(equilibria_module, "MOST_KEPT", 3)
+    monkeypatch.setattr(subset_equilibria, "MOST_KEPT", 3)
     monkeypatch.setattr(two_contact_curves, "MOST_KEPT", 1500)
     solver = Solver(STEP, VISE)
     for pattern, known in zip(patterns()[:2], by_themselves()[:2], strict=True):
@@ -95,7 +94,7 @@ def test_what_is_forgotten_is_found_again(monkeypatch):
     for boundary in (one for drawn in solver.boundaries.values() for one in (drawn, drawn.turned_over)):
         assert (
             0
-            < len(boundary.once(equilibria_module.SubsetCache.empty).found)
+            < len(boundary.once(subset_equilibria.SubsetCache.empty).found)
             <= len(subsets_of(patterns()[1]))
         )
         assert (
@@ -185,8 +184,8 @@ def test_slides_end_where_a_third_peg_of_the_jaw_touches():
     held = two_contact_curves.TwoContactCurves.of(boundary, group.pattern)
     stopped = filled(CANDIDATE_LENGTH, 256, slides_blocked, held.slides, held.given)
     assert len(stopped) > 2
-    kept = equilibria_module.SubsetCache()
-    own = equilibria_module.equilibria_of_subset(kept, boundary, group, size)
+    kept = subset_equilibria.SubsetCache()
+    own = subset_equilibria.equilibria_of_subset(kept, boundary, group, size)
     every, told = np.split(kept.candidates[own.first : own.end], [-len(stopped)])
     assert np.array_equal(told, stopped)
     for row in stopped:

@@ -39,7 +39,7 @@ def test_the_jaws_of_a_vise(kind: type[Vise]) -> None:
         (3, 7, 2, 2.5)
     }
     assert [(holes.column, holes.row) for holes in left.blocked] == [(1, 2)] and right.blocked == ()
-    assert (hardware.clamps, hardware.wall, hardware.from_lowest) == (0, None, ())
+    assert (hardware.clamps, hardware.walls, hardware.from_lowest) == (0, [], ())
     assert hardware.largest_radius == 2 and hardware.names == ("peg 1", "peg 2", "peg 3", "peg 4")
 
 
@@ -65,7 +65,7 @@ def test_clamps_on_a_plate_and_beside_a_fence(wall: float | None, clamps: int) -
         assert way(toolkit, f"clamp {direction}") == expected and way(toolkit, "plate") == (0.0, 0.0)
         (lattice,), tip = hardware.lattices, hardware.tips[direction]
         assert (lattice.columns, lattice.rows, lattice.peg_radius, tip.peg_radius) == (7, 5, 3, 2.5)
-        assert hardware.stroke.span == (4, 26) and (hardware.wall is not None) == (wall is not None)
+        assert hardware.stroke.span == (4, 26) and bool(hardware.walls) == (wall is not None)
         assert hardware.from_lowest == (("column", "row") if wall is None else ("column",))
         still = ("locator 1", "locator 2", "locator 3")
         if wall is not None:

@@ -291,7 +291,7 @@ def test_a_foot_beyond_the_ends_that_are_told_is_found() -> None:
     assert list(flush_findings("fence", whole, pose, outline)) == []
     short = [("left", pegs[0], left), ("right", pegs[2], inner)]
     (found, *_) = flush_findings("fence", short, pose, outline)
-    assert "lies on the fence at face 7, beyond the ends that are told" in found.reason
+    assert "lies on the fence at face 7, beyond its stated ends" in found.reason
     one_foot = [("left", pegs[0], left), ("right", pegs[0], left)]
     assert "the part does not lie flush on the fence" in [
         f.reason for f in flush_findings("fence", one_foot, pose, outline)

@@ -18,7 +18,7 @@ from workhold.listing.seats import undecided_pairs
 from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.search_report import Undecided, no_pair_note
 from workhold.verification import Verification, verify, verify_fixture
-from workhold.verification.repeats import Seen
+from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.undecided import undecided_faults
 
@@ -141,7 +141,7 @@ def plus(values: Any, place: Any, by: float) -> None:
         (lambda f: plus(f["pegs"][0], "row", 1), "the y of the locator"),
         (lambda f: f["pegs"][1].update(segment=f["pegs"][0]["segment"]), "clamp 1 is"),
         (lambda f: plus(f["pegs"][2], "y", 3e-6), "clamp 2"),
-        (lambda f: f["pegs"][2].update(hole=None), "clamp 2 is not told by the hole in which it is bolted"),
+        (lambda f: f["pegs"][2].update(hole=None), "clamp 2 is not named by the hole in which it is bolted"),
     ],
 )
 def test_what_is_broken_by_hand_is_named(edited: Any, edit: Edit, words: str) -> None:
@@ -158,7 +158,7 @@ def test_what_is_broken_by_hand_is_named(edited: Any, edit: Edit, words: str) ->
         (lambda f: f["wall"].pop("forces"), "the forces of its wall are not two pairs"),
         (lambda f: f["wall"].update(forces=[0.5, 0.5]), "forces of its wall is 0.5, not two numbers"),
         (lambda f: f["wall"].update(to=None), "the to of its wall is not two numbers"),
-        (lambda f: f.update(wall=[]), "its wall is not told by places"),
+        (lambda f: f.update(wall=[]), "its wall is not given by places"),
         (lambda f: f.pop("wall"), "it does not have five pegs"),
         (lambda f: f.update(type="clamp2"), "its type is not edge2"),
     ],
@@ -181,7 +181,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
     assert "it has the seat and the directions of fixture 1" in again
     assert "the one before it" in told(edited(lambda content: content["fixtures"].reverse()))
     every = results["all"]
-    seen, less = Seen(ToolkitRules(every.toolkit)), len(every) - 1
+    seen, less = KnownFixtures(ToolkitRules(every.toolkit)), len(every) - 1
     second = next(index for index, fixture in enumerate(every) if seen.add(index, fixture) is not None)
     table = every.table.take(np.delete(np.arange(len(every)), second))
     short = evolve(every, table=table, found={"edge2": less}, distinct={"edge2": less}, pairs=less)
@@ -193,7 +193,7 @@ def test_the_account_is_held_to_what_is_listed(results: dict[str, Result], edite
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen, refuted = Seen(ToolkitRules(best.toolkit)), 0
+    seen, refuted = KnownFixtures(ToolkitRules(best.toolkit)), 0
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     for place in range(0, len(every), 3):

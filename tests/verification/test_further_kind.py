@@ -23,7 +23,7 @@ from workhold.geometry.segment import Line, distance_to_segment
 from workhold.verification import Ruling, verify_fixture
 from workhold.verification.judging import rank
 from workhold.verification.reading import fixtures_of
-from workhold.verification.repeats import Seen, stance
+from workhold.verification.repeats import KnownFixtures, stance
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seating_contacts import stop_of
 
@@ -120,7 +120,7 @@ def on_faces(item: Data, workpiece: Workpiece) -> Data:
 
 def test_every_true_fixture_is_proven(known: Known) -> None:
     """At the lowest precision, and no two are the same."""
-    seen = Seen(ToolkitRules(known.toolkit))
+    seen = KnownFixtures(ToolkitRules(known.toolkit))
     for number, item in enumerate(known.items):
         ruling = known.ruling(item)
         assert (ruling.verdict, ruling.bits) == ("proven", 128), (number, ruling)
@@ -270,7 +270,7 @@ def test_the_part_lies_on_the_wall_and_off_the_pegs(known: Known) -> None:
 def test_the_same_fixture_is_known_again(known: Known) -> None:
     """With both pegs moved by whole holes, the jaw with them, or their names exchanged; not turned half way round."""
     hardware, (pitch, _) = ToolkitRules(known.toolkit), known.toolkit.pitch
-    seen = Seen(hardware)
+    seen = KnownFixtures(hardware)
     for number, item in enumerate(known.items):
         seen.add(number, known.read(item))
     for number, item in enumerate(known.items):

@@ -25,7 +25,7 @@ from workhold.verification import Verification, verify, verify_file, verify_fixt
 from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.judging import rank
-from workhold.verification.repeats import Seen
+from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.undecided import undecided_faults
 
@@ -138,7 +138,7 @@ BROKEN: list[tuple[Callable[[Data], object], str]] = [
     (lambda f: f["pegs"][3].update(y=f["pegs"][3]["y"] + 2e-6), "the y of the clamp is"),
     (lambda f: f["pegs"][3].update(x=f["pegs"][3]["x"] + 3e-6), "the clamp is"),
     (lambda f: f["pegs"][3].update(x=f["pegs"][3]["x"] + 0.5), "the clamp is"),
-    (lambda f: f["pegs"][3].update(hole=None), "the clamp is not told by the hole in which it is bolted"),
+    (lambda f: f["pegs"][3].update(hole=None), "the clamp is not named by the hole in which it is bolted"),
     (lambda f: shifted(f, 1, 0), "its lowest column is 1, and not 0"),
     (lambda f: shifted(f, 0, 1), "its lowest row is 1, and not 0"),
     (lambda f: shifted(f, -1, 0), "is in column -1 of a plate with 7 columns"),
@@ -183,7 +183,7 @@ TOOLKITS: list[tuple[Data, str]] = [
     ({"clamp_radius": 4.001}, "the clamp is -0.001 mm away from touching face"),
     ({"directions": ["-x"]}, "its clamp moves in +y, which is not asked for"),
     ({"directions": ["+y"]}, "its clamp moves in -x, which is not asked for"),
-    ({"travel": None}, "the clamp is not told by the line alone, since it has no travel"),
+    ({"travel": None}, "the clamp is not named by the line alone, since it has no travel"),
     ({"travel": [25.9, 26.0]}, "nearer than the 25.9 mm of its stroke"),
     ({"travel": [4.0, 4.1]}, "beyond the 4.1 mm of its stroke"),
     ({"travel": [0.0, 26.0]}, "the clamp could be bolted one hole nearer"),
@@ -359,7 +359,7 @@ def loops_of(loop: list[list[float]]) -> list[list[list[float]]]:
 
 def test_the_half_turn_and_other_names_are_the_same(result: Result) -> None:
     """A fixture moved by whole holes, with its locators renamed, or on the plate turned half way round, is the same."""
-    seen = Seen(ToolkitRules(result.toolkit))
+    seen = KnownFixtures(ToolkitRules(result.toolkit))
     for index, fixture in enumerate(result):
         assert seen.add(index, fixture) is None
     opposite = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}

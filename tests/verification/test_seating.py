@@ -19,7 +19,7 @@ from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, claim_of, read_listing
 from workhold.verification.repeats import pattern_faults, stance
-from workhold.verification.seating import Judged, SeatingJudge
+from workhold.verification.seating import SeatingJudge, StatedSeating
 from workhold.verification.seating_contacts import FloatOutline, stop_of, touching_wall
 from workhold.verification.verify import not_shown
 
@@ -68,13 +68,13 @@ def fault(listing: Listing, judge: SeatingJudge, change: Callable[[Fields], Any]
     fixture = listing.fixtures[index]
     fields = deepcopy(dict(fixture.seating.fields))
     change(fields)
-    claim = attrs.evolve(fixture.seating, fields=fields, told=told(fields, fixture))
+    claim = attrs.evolve(fixture.seating, fields=fields, seating=told(fields, fixture))
     return judge.fault(attrs.evolve(fixture, seating=claim))
 
 
 def told(fields: Fields, fixture: Any) -> Any:
     """The seating of fields."""
-    return type(fixture.seating.told).of_fields(fields, fixture.pose)
+    return type(fixture.seating.seating).of_fields(fields, fixture.pose)
 
 
 @pytest.mark.parametrize("form", ["json", "npz"])
@@ -138,11 +138,11 @@ def test_every_number_that_is_off_a_little_is_refuted(part: Workpiece, toolkit: 
 
 def test_words_and_whole_parts_that_are_off_are_refuted(listing: Listing, judge: SeatingJudge) -> None:
     fields = listing.fixtures[0].seating.fields
-    own = next(k for k, seat in enumerate(listing.fixtures[0].seating.told.seats) if seat.is_own)
+    own = next(k for k, seat in enumerate(listing.fixtures[0].seating.seating.seats) if seat.is_own)
     other = next(k for k, seat in enumerate(fields["seats"]) if k != own and seat["kind"] == "fixture")
     opening = fields["capture_opening"]
     for change, words in (
-        (lambda f: f["seats"].pop(own), "it tells 0 seats in the fixture's own pose"),
+        (lambda f: f["seats"].pop(own), "it has 0 seats in the fixture's own pose"),
         (lambda f: f["seats"].append(f["seats"][own]), "2 seats"),
         (lambda f: f["seats"][other].update(kind="corner"), "is called corner"),
         (lambda f: f["seats"][other].update(kind="unsettled"), "is unsettled, and unsettled does not say so"),
@@ -216,8 +216,8 @@ def test_what_stands_on_the_same_pegs_is_told_of_every_toolkit(part: Workpiece, 
 def test_the_order_is_that_of_the_seating(listing: Listing) -> None:
     """Two fixtures with different warnings exchanged, and one told only behind others."""
     fixtures = list(listing.fixtures)
-    hardly = attrs.evolve(fixtures[0].seating.told, capture_opening=0.5)
-    worse = attrs.evolve(fixtures[0], seating=attrs.evolve(fixtures[0].seating, told=hardly))
+    hardly = attrs.evolve(fixtures[0].seating.seating, capture_opening=0.5)
+    worse = attrs.evolve(fixtures[0], seating=attrs.evolve(fixtures[0].seating, seating=hardly))
     assert "is better than" in next(order_faults([worse, *fixtures[1:]], listing.query, listing.hardware))
     untold = [attrs.evolve(fixtures[0], seating=None), *fixtures[1:]]
     assert "not that of all before it" in next(order_faults(untold, listing.query, listing.hardware))
@@ -254,18 +254,18 @@ def test_rules_and_counts_of_the_first_must_agree(result: Result, tmp_path: Path
     workhold.save(result, path)
     text = path.read_text()
     for count, words in (
-        (3, "the seating of more fixtures is told than of the 3"),
-        (2, "the seating of more fixtures is told than of the 2"),
+        (3, "the seating of more fixtures is stated than of the 3"),
+        (2, "the seating of more fixtures is stated than of the 2"),
     ):
         path.write_text(text.replace('"seating": 4,', f'"seating": {count},', 1))
         assert any(words in fault for fault in workhold.verify(path).faults)
     fewer = attrs.evolve(result, seating=result.seating[:3])
     workhold.save(fewer, path)
-    assert any("asked for, but it is told of 3" in fault for fault in workhold.verify(path).faults)
+    assert any("asked for, but it is stated of 3" in fault for fault in workhold.verify(path).faults)
     ruled = attrs.evolve(fewer, query=attrs.evolve(result.query, foolproof=True))
     workhold.save(ruled, path)
     faults = workhold.verify(path).faults
-    assert any("are listed for their seating, but it is told of 3" in fault for fault in faults)
+    assert any("are listed for their seating, but it is stated of 3" in fault for fault in faults)
     assert any("the note is missing" in fault for fault in faults)
 
 
@@ -278,7 +278,7 @@ def test_a_seat_with_a_peg_in_the_part_is_refuted(tmp_path: Path) -> None:
     seat = {"kind": "loose", "pose": pose, "difference": 7.496592209, "mirrored": False, "same_place": False}
     seat |= {"jaw_separation": 23.742741256, "contacts": contacts, "forces": []}
     # On the pegs of one of the two, which are the same part held twice, turned by half.
-    found = [list(Judged(judge, one, one.seating).seat_faults(seat, own)) for one in listing.fixtures]
+    found = [list(StatedSeating(judge, one, one.seating).seat_faults(seat, own)) for one in listing.fixtures]
     assert ["has a peg in the part"] in found
 
 
@@ -288,11 +288,11 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
     judge, fixture = SeatingJudge(listing.query), listing.fixtures[0]
     fields = fixture.seating.fields
     own = next(
-        seat for seat, told in zip(fields["seats"], fixture.seating.told.seats, strict=True) if told.is_own
+        seat for seat, told in zip(fields["seats"], fixture.seating.seating.seats, strict=True) if told.is_own
     )
 
     def faults(**changes: Any) -> list[str]:
-        return list(Judged(judge, fixture, fixture.seating).seat_faults(own | changes, own))
+        return list(StatedSeating(judge, fixture, fixture.seating).seat_faults(own | changes, own))
 
     assert not faults()
     for off in (-1e-3, 1e-3):

@@ -15,7 +15,7 @@ from workhold import Fence, OpeningVise, Plate, Query, Result, Vise, Workpiece, 
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import centroid_of_joints, rotations_onto_itself
 from workhold.verification import verify
-from workhold.verification.repeats import Turning
+from workhold.verification.repeats import PartRotations
 
 PARTS = symmetric_parts()
 PLATE = Plate(pitch=(20, 24), peg_radius=3, clamp_radius=4, travel=(6, 40), columns=3, rows=3)
@@ -35,9 +35,9 @@ TOOLKITS: dict[str, Toolkit] = {
 CASES = [
     (name, kind, listing)
     for name, (kind, toolkit) in product(PARTS, TOOLKITS.items())
-    for listing in (("best", "all") if toolkit.needs_pairs else (None,))
+    for listing in (("best", "all") if toolkit.travels > 1 else (None,))
     # Two clamps about half circles have very many double roots.
-    if not (name == "slot" and toolkit.needs_pairs)
+    if not (name == "slot" and toolkit.travels > 1)
 ]
 
 
@@ -99,7 +99,7 @@ def test_rotations_are_those_that_the_part_was_made_with(name: str) -> None:
     """Found by the search and by the verification, apart from each other, with the point that they keep."""
     case = PARTS[name]
     faces = [face.segment for face in case.part.faces]
-    turning, rotations = Turning.of(case.part), rotations_onto_itself(faces)
+    turning, rotations = PartRotations.of(case.part), rotations_onto_itself(faces)
     assert turning.is_certain and turning.order == len(rotations) == case.order
     assert turning.angles == pytest.approx([rotation.angle for rotation in rotations[1:]])
     for point in (turning.center, centroid_of_joints(faces)):
@@ -114,7 +114,7 @@ def test_a_symmetry_that_a_drawing_nearly_has_is_no_fault_either_way(
 ) -> None:
     """A corner that is off by a thousandth of a micrometre may be meant or not, so nothing is said of the sets."""
     part = Workpiece.from_loops("box", [[(0, 0, 0), (50 + off, 0, 0), (60, 30, 0), (10, 30, 0)]])
-    turning = Turning.of(part)
+    turning = PartRotations.of(part)
     assert (turning.order, turning.is_certain) == (order, is_certain)
     result = answer(Query(part, TOOLKITS["vise"]))
     counts = ({**result.distinct, "I": result.found["I"] - fewer} for fewer in (1, 0))

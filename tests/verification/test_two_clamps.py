@@ -27,11 +27,11 @@ from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallContact
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.listing import listing_of
-from workhold.verification.repeats import Seen
+from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import WAYS, Stroke, clamp_place
 from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
-from workhold.verification.seat_clamps import SeatClamp, Standing
+from workhold.verification.seat_clamps import SeatClamp, SeatOnPlate
 from workhold.verification.undecided import undecided_faults
 
 Data = dict[str, Any]
@@ -158,7 +158,7 @@ BROKEN: list[tuple[Callable[[Data], object], str]] = [
     (lambda f: f["pegs"].__setitem__(1, dict(f["pegs"][0])), "two locators are in the same hole"),
     (lambda f: f["pegs"][3].update(x=f["pegs"][3]["x"] + 0.5), "clamp 1 is"),
     (lambda f: f["pegs"][4].update(y=f["pegs"][4]["y"] + 3e-6), "clamp 2 is"),
-    (lambda f: f["pegs"][4].update(hole=None), "clamp 2 is not told by the hole in which it is bolted"),
+    (lambda f: f["pegs"][4].update(hole=None), "clamp 2 is not named by the hole in which it is bolted"),
     (lambda f: f["pegs"][2].update(segment=f["pegs"][3]["segment"]), "locator 3 is"),
     (lambda f: f["pose"].update(theta_deg=f["pose"]["theta_deg"] + 3e-6), "away from touching face"),
 ]
@@ -243,7 +243,7 @@ def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
     """With all counts adjusted: the pairs of each seat are derived."""
     result = results["all"]
     rules = ToolkitRules(result.toolkit)
-    seen = Seen(rules)
+    seen = KnownFixtures(rules)
     again = [index for index, fixture in enumerate(result) if seen.add(index, fixture) is not None]
     kept = np.delete(np.arange(len(result)), again[0])
     less = len(result) - 1
@@ -263,7 +263,7 @@ def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]
-    seen = Seen(ToolkitRules(best.toolkit))
+    seen = KnownFixtures(ToolkitRules(best.toolkit))
     for index, fixture in enumerate(best):
         seen.add(index, fixture)
     refuted = 0
@@ -283,14 +283,14 @@ def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) ->
     assert refuted > 3
 
 
-def standing(fixture: Fixture, workpiece: Workpiece, toolkit: Plate) -> Standing:
+def standing(fixture: Fixture, workpiece: Workpiece, toolkit: Plate) -> SeatOnPlate:
     """The seat of a fixture, at its pose as it is written."""
     rules, outline = ToolkitRules(toolkit), BallOutline.of(workpiece)
     pose = Balls.of(
         arb(fixture.pose.theta_deg) * arb.pi() / 180, arb(fixture.pose.x), arb(fixture.pose.y), arb(0)
     )
     locators = [rules.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs[:3]]
-    return Standing.of(fixture, locators, pose, Query(workpiece, toolkit), rules, outline)
+    return SeatOnPlate.of(fixture, locators, pose, Query(workpiece, toolkit), rules, outline)
 
 
 def with_clamps(fixture: Fixture, *clamps: SeatClamp) -> Fixture:

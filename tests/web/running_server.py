@@ -12,7 +12,7 @@ import httpx
 from attrs import define
 
 from workhold.files.part.load import load
-from workhold.web.guard import Hosts, Limits
+from workhold.web.guard import Hosts, ServerLimits
 from workhold.web.serve import Server, bound_socket, make_server
 from workhold.web.state import ServerState
 
@@ -105,7 +105,7 @@ def running_server(
     """A server with one worker of each kind, ready for requests."""
     listening = threading.Event()
     socket = bound_socket("127.0.0.1", 0)
-    given = Limits(**{"searches": 1, "desks": 1, "desk_seconds": PATIENCE, **limits})
+    given = ServerLimits(**{"searches": 1, "desks": 1, "desk_seconds": PATIENCE, **limits})
     server = make_server(given, hosts or Hosts(), listening.set, proxies, token)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
     thread.start()

@@ -18,8 +18,8 @@ from running_server import LONG, PATIENCE, RunningServer, arriving, request, run
 
 from workhold.cli.main import app
 from workhold.web import serve
-from workhold.web.guard import Hosts, Limits, usual_memory
-from workhold.web.pool import BusyError, Pool, Task
+from workhold.web.guard import Hosts, ServerLimits, usual_memory
+from workhold.web.pool import BusyError, Pool, PoolTask
 
 T = TypeVar("T")
 OTHER = "127.0.0.2"
@@ -37,7 +37,7 @@ def order_of_turns(clients: list[str], size: int) -> list[str]:
 
     async def play() -> list[str]:
         pool = Pool("search", size, 1 << 30, len(clients) + 1)
-        pool.waiting = [Task("x", None, 1.0, client) for client in clients]
+        pool.waiting = [PoolTask("x", None, 1.0, client) for client in clients]
         order, running = [], []
         while pool.waiting:
             if pool.turn() is None:
@@ -72,10 +72,10 @@ def test_nobody_has_all_workers() -> None:
 
     async def play() -> None:
         pool = Pool("search", 3, 1 << 30, 64)
-        pool.waiting = [Task("x", None, 1.0, "greedy") for _ in range(5)]
+        pool.waiting = [PoolTask("x", None, 1.0, "greedy") for _ in range(5)]
         mine = [await pool.next_task() for _ in range(2)]
         assert pool.turn() is None
-        pool.waiting.append(Task("x", None, 1.0, "other"))
+        pool.waiting.append(PoolTask("x", None, 1.0, "other"))
         assert (await pool.next_task()).client == "other"
         assert pool.turn() is None
         pool.free(mine[0])
@@ -89,9 +89,9 @@ def test_some_places_in_the_queue_are_kept_from_each_client() -> None:
 
     async def play() -> None:
         pool = Pool("search", 1, 1 << 30, 8)
-        pool.waiting = [Task("x", None, 1.0, "greedy") for _ in range(5)]
+        pool.waiting = [PoolTask("x", None, 1.0, "greedy") for _ in range(5)]
         pool.refuse_more("greedy")
-        pool.waiting.append(Task("x", None, 1.0, "greedy"))
+        pool.waiting.append(PoolTask("x", None, 1.0, "greedy"))
         with pytest.raises(BusyError):
             pool.refuse_more("greedy")
         pool.refuse_more("other")
@@ -242,7 +242,7 @@ def test_whoever_lets_others_in_is_told_what_that_means(monkeypatch: pytest.Monk
 
 def test_searches_share_the_machines_memory() -> None:
     """No search is given more than its share of what there is, and never less than one can work with."""
-    assert Limits().memory_bytes == 4 << 30
+    assert ServerLimits().memory_bytes == 4 << 30
     shares = [usual_memory(searches) for searches in (1, 2, 4, 8, 64)]
     assert shares == sorted(shares, reverse=True)
     assert all(1 << 30 <= share <= 4 << 30 for share in shares)

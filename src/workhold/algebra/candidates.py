@@ -130,8 +130,8 @@ class PegPairs:
     ----------
     tail, head : (N,) features of the first and the second peg.
     column, row : (N,) the step between them.
-    tails : (N, P, SECTORS) whether the first peg can be on a piece of its feature at an orientation; P is the largest
-        number of pieces of a feature.
+    tails : (N, P, SECTORS) whether the first peg can be on a piece of its feature at an orientation; P is the
+        largest number of pieces of a feature.
     low, high : (N, SECTORS, 2) bounds in mm on where the first peg is along the frame's x and y.
     """
 
@@ -183,7 +183,7 @@ def wedge_sectors(
 
 
 def tail_bounds(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]:
-    """Bounds (SECTORS, 2) on the first peg along x and y at each orientation, inf and -inf where there is none."""
+    """Bounds (SECTORS, 2) on the first peg along x and y at each orientation; inf, -inf where it has none."""
     seen = one.middle[:, None] * np.exp(-1j * CENTERS)
     slack = (one.radius + np.abs(one.middle) * HALF_SECTOR + WEDGE_SLACK)[:, None]
     low, high = np.empty((SECTORS, 2)), np.empty((SECTORS, 2))
@@ -219,8 +219,8 @@ def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
                     continue
                 if len(whole) == MOST_PEG_PAIRS:
                     raise InputError(
-                        f"two pegs fit the part in more than {MOST_PEG_PAIRS:,} ways, too many for the paper's algebra: use "
-                        "a larger pitch, or the other engine."
+                        f"two pegs fit the part in more than {MOST_PEG_PAIRS:,} ways, too many for the "
+                        "paper's algebra: use a larger pitch, or the other engine."
                     )
                 low, high = tail_bounds(one, found)
                 whole.append((a, b, column, row))
@@ -245,8 +245,8 @@ class Systems:
 
     Parameters
     ----------
-    feature, column, row : (N, 4) or (N, 3); rows count from the first peg, columns from the first peg of the same jaw.
-        The left pegs come first.
+    feature, column, row : (N, 4) or (N, 3); rows count from the first peg, columns from the first peg of the
+        same jaw. The left pegs come first.
     sectors : (N, SECTORS) orientations not excluded.
     """
 
@@ -269,10 +269,10 @@ class Facings:
 
     Parameters
     ----------
-    left, right : (F, SECTORS) whether a feature can be pushed so as to clamp by a left peg, or by a right peg, at an
-        orientation. These are the two parts of the valid orientations (section 3.2).
-    resists : (F, SECTORS) whether a feature has a normal within a quarter turn of a direction. Four features can close
-        only if every direction is resisted by one of them (section 3).
+    left, right : (F, SECTORS) whether a feature can be pushed so as to clamp by a left peg, or by a right
+        peg, at an orientation. These are the two parts of the valid orientations (section 3.2).
+    resists : (F, SECTORS) whether a feature has a normal within a quarter turn of a direction. Four features
+        can close only if every direction is resisted by one of them (section 3).
     """
 
     left: BoolArray
@@ -294,10 +294,10 @@ def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
 
 
 def jaw_ranks(pairs: PegPairs, rows: Array) -> IntArray:
-    """A rank (N,) of each peg pair that is the same for the pair with its features exchanged, higher with more arcs.
+    """A rank (N,) of each peg pair, the same with its features exchanged, higher with more arcs.
 
-    Half a turn of the toolkit exchanges the jaws and each pair's features. So it is enough to look at quartets whose left
-    pair ranks at least as high as the right one.
+    Half a turn of the toolkit exchanges the jaws and each pair's features. So it is enough to look at
+    quartets whose left pair ranks at least as high as the right one.
     """
     arcs = (rows[pairs.tail, 0] != 0.0).astype(np.int64) + (rows[pairs.head, 0] != 0.0)
     first, second = np.minimum(pairs.tail, pairs.head), np.maximum(pairs.tail, pairs.head)
@@ -352,7 +352,7 @@ def with_rows(pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, frame
 
 
 def type_two_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
-    """Triples of left pegs, those with parallel lines among them too; the fourth peg follows the pose (section 3.5).
+    """Triples of left pegs, also on parallel lines; the fourth peg follows the pose (section 3.5).
 
     The third peg lies in the wedges from the first and from the second peg.
     """

@@ -1,8 +1,8 @@
-"""The test of simultaneous contacts: ends of features, the gap rule, force closure, clamping (paper, section 3).
+"""The test of simultaneous contacts: ends of features, gap rule, force closure, clamping (section 3).
 
-The conditions are those of the model, each met as far as a contact may be off; so nothing is excluded that the closing steps
-would not exclude. What passes is written as records, in the layout of the compiled kernels, for those steps, which both
-engines share and which decide.
+The conditions are those of the model, each met as far as a contact may be off; so nothing is excluded that
+the closing steps would not exclude. What passes is written as records, in the layout of the compiled kernels,
+for those steps, which both engines share and which decide.
 """
 
 from __future__ import annotations
@@ -77,7 +77,8 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
 
     Parameters
     ----------
-    rows : (..., 12) feature rows, the last two entries how far in mm a contact may lie past the low and the high end.
+    rows : (..., 12) feature rows, the last two entries how far in mm a contact may lie past the low and the
+        high end.
     center, radius : (...) peg centres and how far they may be off in mm.
     """
     off = (center - rows[..., X] - 1j * rows[..., Y]) * (rows[..., AXIS_X] - 1j * rows[..., AXIS_Y])
@@ -153,7 +154,7 @@ def may_close(
 
 
 def wrench_minors(points: Array, normals: Array, length: float) -> Array:
-    """Null vectors of four contacts' wrenches (n, (q - c) x n / L), not scaled: their signed 3x3 minors (Cramer's rule).
+    """Null vectors of wrenches (n, (q - c) x n / L), not scaled: signed 3x3 minors (Cramer's rule).
 
     Not ``kernels.contact.rules.minors``: the algebra is a second opinion and asks for closure by itself.
 

@@ -5,7 +5,7 @@ each or with three and one. Its left and right pegs, Types I and II are those of
 
 A system is undecided when its resultant vanishes at every orientation although no known reason applies
 (``sliding_pairs``), or when its roots cannot be separated at 1,024 bits. Only fixtures with these pegs on
-these faces may then be missing, and the user is told of them.
+these faces may then be missing, and a note names them.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ class ResultantSolver:
 
 
 def arcs_first(systems: Systems, rows: Array) -> Systems:
-    """Pegs of each jaw reordered so that arcs come before lines; the first peg is the characteristic point."""
+    """Pegs of each jaw with arcs before lines; the first peg is the characteristic point."""
     line = (rows[systems.feature, 0] == 0.0).astype(np.int64)
     jaw = (np.arange(line.shape[1]) >= 2) * (line.shape[1] == 4)
     order = np.argsort(2 * jaw + line, axis=1, kind="stable")
@@ -225,7 +225,8 @@ def refuse_unlike(frame: Frame) -> None:
     one, other = ((c.columns, c.rows, c.peg_radius, c.body_radius, c.flat) for c in frame.carriers)
     if one != other or not (frame.swapped or all(each.pegs == (3, 1) for each in frame.toolkit.arrangements)):
         raise InputError(
-            f"the paper's polynomials do not serve a {frame.toolkit.kind}: its carriers are not alike; search with curves."
+            f"the paper's polynomials do not serve a {frame.toolkit.kind}: its carriers are not alike; "
+            "search with curves."
         )
 
 
@@ -250,16 +251,17 @@ def answer_by_algebra(
 
     Parameters
     ----------
-    query : what is asked but its seating, see ``search.seated``; all fixtures are found also where only the best are.
+    query : what is asked but its seating, see ``search.seated``; all fixtures are found also where only the
+        best are.
     progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
 
     Returns
     -------
     Result
-        As ``workhold.answer`` lists them; ``statistics`` counts features, systems solved, orientations, simultaneous
-        contacts, and systems that their resultants leave undecided (none in any part tried). Of these, ``notes`` name
-        faces and holes.
+        As ``workhold.answer`` lists them; ``statistics`` counts features, systems solved, orientations,
+        simultaneous contacts, and systems that their resultants leave undecided (none in any part tried). Of
+        these, ``notes`` name faces and holes.
 
     Raises
     ------

@@ -1,8 +1,9 @@
 """Resultants as polynomials over complex balls, for systems whose roots double precision cannot separate.
 
-Nearly sliding pairs (equal arcs almost as far apart as their pegs) crowd up to eight roots together. The formulas are those
-of ``constraints`` and ``resultants``, on Laurent polynomials in z whose coefficients are balls of python-flint. Doubles
-are exact rationals, so the resultant belongs to the very same system at any precision, and its roots are isolated.
+Nearly sliding pairs (equal arcs almost as far apart as their pegs) crowd up to eight roots together. The
+formulas are those of ``constraints`` and ``resultants``, on Laurent polynomials in z whose coefficients are
+balls of python-flint. Doubles are exact rationals, so the resultant belongs to the very same system at any
+precision, and its roots are isolated.
 """
 
 from __future__ import annotations
@@ -102,7 +103,7 @@ class System:
         )
 
     def start(self, k: int) -> tuple[Laurent, Laurent]:
-        """E: from feature k to peg k when the first peg is in the middle of the characteristic circle, and its conjugate."""
+        """E, from feature k to peg k with the first peg in the characteristic circle's middle, and E*."""
         between = self.middle[0] - self.middle[k]
         e = binomial(between, 0, self.point[k], 1)
         return e, binomial(self.point[k].conjugate(), -1, between.conjugate(), 0)
@@ -181,7 +182,7 @@ def without_separation(
 
 
 def with_square(ring: LaurentTriple, double: list[Laurent]) -> Laurent:
-    """Resultant in w of a trigonometric polynomial and one with coefficients of w^2 ... w^-2 (see ``resultants``)."""
+    """Resultant in w of a trigonometric polynomial and coefficients of w^2 ... w^-2 (see ``resultants``)."""
     a, b, low = ring
     both, square = a * low, b * b
     powers = [
@@ -219,11 +220,13 @@ def exact_resultant(
 
 
 def spread(polynomial: acb_poly, precision: int) -> acb_poly:
-    """A polynomial without the outermost coefficients that vanish, the others changed in their later binary digits; nothing
-    when all may vanish.
+    """A polynomial without vanishing outermost coefficients, later binary digits of the others changed.
 
-    Symmetric parts have poses in pairs at one orientation: double roots, which no precision isolates. Coefficients changed
-    by a part 2^(-precision / 2) of the largest have single roots, and even eightfold ones move by no more than some 2^-32.
+    It is empty when all coefficients may vanish.
+
+    Symmetric parts have poses in pairs at one orientation: double roots, which no precision isolates.
+    Coefficients changed by a part 2^(-precision / 2) of the largest have single roots, and even eightfold
+    ones move by no more than some 2^-32.
     """
     values = list(polynomial.coeffs())
     if not any(value.abs_lower() > 0 for value in values):

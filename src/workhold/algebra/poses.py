@@ -72,9 +72,9 @@ PRECISIONS = (64, 128, 256, 512)
 def sectors_with_roots(values: ComplexArray, size: Array) -> tuple[BoolArray, BoolArray]:
     """Sectors of orientations in which roots cannot be excluded, and those where rounding may hide them.
 
-    By Taylor's theorem \\|f(c + h) - f(c) - h f'(c)\\| <= h^2 / 2 max \\|f''\\|, and max \\|f''\\| is at most the sum of the
-    sizes of its coefficients. Far more than rounding is allowed for. Where the polynomial and its first derivatives are
-    tiny, roots are crowded, and rounding moves them far.
+    By Taylor's theorem \\|f(c + h) - f(c) - h f'(c)\\| <= h^2 / 2 max \\|f''\\|, and max \\|f''\\| is at most
+    the sum of the sizes of its coefficients. Far more than rounding is allowed for. Where the polynomial and
+    its first derivatives are tiny, roots are crowded, and rounding moves them far.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def companion_roots(values: ComplexArray) -> ComplexArray:
 
 
 def vanishing_ends(values: ComplexArray, largest: Array) -> IntArray:
-    """How many coefficients vanish at either end of polynomials (N, 2 d + 1), (N,); both ends are conjugates."""
+    """(N,) numbers of coefficients that vanish at either end of polynomials (N, 2 d + 1)."""
     bound = values.shape[1] // 2
     size = np.maximum(np.abs(values), np.abs(values[:, ::-1]))[:, :bound]
     return np.asarray((np.maximum.accumulate(size, axis=1) <= VANISHING * largest[:, None]).sum(axis=1))
@@ -137,7 +137,7 @@ def near_circle(roots: ComplexArray) -> BoolArray:
 
 
 def hard_roots(contacts: ContactSystems, case: tuple[int, int], values: ComplexArray) -> ComplexArray | None:
-    """Roots of the resultant of one system (a set of one) in ball arithmetic, None if they cannot be isolated."""
+    """Roots of one system's resultant (a set of one) in ball arithmetic; None if they are not isolated."""
     if case[0] == 0:
         kept = np.flatnonzero(np.abs(values) > VANISHING * np.abs(values).max())
         return ball_roots(values[kept[0] : kept[-1] + 1])
@@ -145,7 +145,7 @@ def hard_roots(contacts: ContactSystems, case: tuple[int, int], values: ComplexA
 
 
 def nearly_sliding(contacts: ContactSystems) -> BoolArray:
-    """Which systems have pairs of arcs on one jaw that nearly slide, but do not, so that roots are crowded."""
+    """Which systems have pairs of arcs on one jaw that nearly slide, which crowds the roots."""
     product = np.ones(len(contacts.rows))
     for k, m in ((0, 1), (2, 3)) if contacts.rows.shape[1] == 4 else ((0, 1), (0, 2), (1, 2)):
         misfit = contacts.misfit(k, m)
@@ -204,8 +204,8 @@ def orientations(
 
 
 ROUNDS = 24
-# A refined pose may be off by this many of the last steps. At a double solution steps halve and are all that is left;
-# elsewhere the last ones are rounding.
+# A refined pose may be off by this many of the last steps. At a double solution steps halve and are all that
+# is left; elsewhere the last ones are rounding.
 LAST_STEPS = 16.0
 
 
@@ -243,7 +243,7 @@ def peg_centers(contacts: ContactSystems, poses: Poses) -> Complex:
 
 
 def distances(contacts: ContactSystems, poses: Poses) -> tuple[Array, Complex, Complex]:
-    """Signed distances (N, K) of the pegs from their lines or circles, the directions across, and the peg centres."""
+    """Signed distances (N, K) of pegs from their lines or circles, directions across, and peg centres."""
     center = peg_centers(contacts, poses)
     off = center - contacts.middle[poses.owner]
     straight = contacts.rows[poses.owner][..., 0] == 0.0
@@ -259,7 +259,7 @@ def residuals(contacts: ContactSystems, poses: Poses) -> Array:
 
 
 def refined(contacts: ContactSystems, poses: Poses) -> Poses:
-    """Newton's method on the contact equations; poses that do not converge, and double solutions, are dropped.
+    """Newton's method on the contact equations; drops divergent poses and double solutions.
 
     Lengths are in parts of the part's size.
     """
@@ -281,7 +281,7 @@ def refined(contacts: ContactSystems, poses: Poses) -> Poses:
 
 
 def linearized(contacts: ContactSystems, poses: Poses) -> tuple[Array, Array]:
-    """Distances (N, K) of the pegs from their lines or circles, and their Jacobian over psi, place and separation."""
+    """Distances (N, K) of pegs from lines or circles; their Jacobian over psi, place and separation."""
     pegs = contacts.rows.shape[1]
     off, across, center = distances(contacts, poses)
     columns = [(np.conj(across) * 1j * (center - poses.place[:, None])).real, across.real, across.imag]
@@ -300,7 +300,7 @@ def angles_of(ring: TrigPolynomial) -> tuple[Complex, Complex]:
 
 
 def separations(contacts: ContactSystems, case: tuple[int, int], psi: Array, w: Complex) -> list[Array]:
-    """The values that the separation may have at orientations (N, 1) and phi (N, 1), from the right pegs' constraints."""
+    """Possible separations at orientations (N, 1) and phi (N, 1), from the right pegs' constraints."""
     if case[1] == -1:
         return [np.zeros(w.shape)]
     if case[1] == 0:
@@ -317,7 +317,7 @@ def separations(contacts: ContactSystems, case: tuple[int, int], psi: Array, w: 
 
 
 def straight_poses(contacts: ContactSystems, owner: IntArray, psi: Array) -> Poses:
-    """Poses on lines alone: at an orientation the place and the separation solve linear equations (straight-line form)."""
+    """Poses on lines alone: linear equations for place and separation at an orientation."""
     pegs = contacts.rows.shape[1]
     normal = contacts.normal[owner]
     z = np.exp(1j * psi)[:, None]

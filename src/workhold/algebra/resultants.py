@@ -1,4 +1,4 @@
-"""Contact constraints and their resultants, whose roots are the orientations (paper, sections 4 to 4.4 and 5.2).
+"""Contact constraints and their resultants, whose roots are the orientations (sections 4 to 4.4 and 5.2).
 
 The points (pegs) are mapped onto the features. They are turned by the orientation psi and moved so that the
 characteristic point, the first peg, stays on the characteristic circle, the first feature, at the angle phi.
@@ -65,7 +65,7 @@ BoolArray = NDArray[np.bool_]
 
 @define(frozen=True, eq=False)
 class TrigPolynomial:
-    """middle + 2 Re(first w): a trigonometric polynomial of degree one in phi, one at each of (N, M) values of z."""
+    """middle + 2 Re(first w), trigonometric polynomials of degree one in phi at (N, M) values of z."""
 
     middle: Array
     first: Complex
@@ -110,7 +110,8 @@ class ContactSystems:
     def misfit(self, k: int, m: int) -> Array:
         """How far arcs k and m are from sliding, (N,); infinite where one of them is a line.
 
-        It is by how much their radii differ, or by how much their centres' distance differs from their pegs' distance.
+        It is by how much their radii differ, or by how much their centres' distance differs from their pegs'
+        distance.
         """
         arcs = (self.rows[:, k, 0] != 0.0) & (self.rows[:, m, 0] != 0.0)
         apart = np.abs(self.middle[:, m] - self.middle[:, k])
@@ -121,16 +122,19 @@ class ContactSystems:
     def sliding_pairs(self, k: int, m: int) -> BoolArray:
         """Which systems have equal arcs k and m whose centres are exactly as far apart as their pegs, (N,).
 
-        There is one orientation, z0, at which one of the two contacts implies the other. Both sides of the constraint
-        between them then have the factor z - z0.
+        There is one orientation, z0, at which one of the two contacts implies the other. Both sides of the
+        constraint between them then have the factor z - z0.
         """
         return np.asarray(self.misfit(k, m) <= COINCIDENT)
 
     def centers_apart(self, k: int, m: int, psi: Array) -> tuple[Array, Complex]:
-        """z x + D of pegs k and m, as length (N, M) times direction: x the step from k to m, D from centre m to centre k.
+        """z x + D of pegs k and m, as length (N, M) times direction.
 
-        Where the arcs slide, the length (with a sign) and the direction are exact right through the coincidence.
-        There z x + D = x (z - z0), and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) / 2).
+        x is the step from k to m, D the vector from centre m to centre k.
+
+        Where the arcs slide, the length (with a sign) and the direction are exact right through the
+        coincidence. There z x + D = x (z - z0), and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) /
+        2).
         """
         step = (self.point[:, m] - self.point[:, k])[:, None]
         between = (self.middle[:, k] - self.middle[:, m])[:, None]
@@ -159,7 +163,7 @@ def line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Array
 
 
 def circle_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[TrigPolynomial, TrigPolynomial]:
-    """g (equation 3) or g_sigma (equation 5) of peg k on a circle: (factor of the separation, the rest); its square: 1."""
+    """g (equation 3) or g_sigma (5) of peg k on a circle: factors of the separation (its square has 1)."""
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
     start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
     linear = TrigPolynomial(2.0 * (np.conj(z) * start).real, radius * np.conj(z))
@@ -170,7 +174,7 @@ def circle_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Tri
 
 
 def pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynomial:
-    """h or g of peg k of the first peg's jaw, where all N features k are of one kind; z - z0 is divided out of g."""
+    """h or g of peg k of the first peg's jaw, N features of one kind; z - z0 is divided out of g."""
     if contacts.rows[0, k, 0] == 0.0:
         return line_constraint(contacts, k, psi)[1]
     length, apart = contacts.centers_apart(0, k, psi)
@@ -183,7 +187,7 @@ def pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynom
 
 
 def circle_difference(contacts: ContactSystems, k: int, m: int, psi: Array) -> tuple[Array, TrigPolynomial]:
-    """g_sigma of peg m less that of peg k: the square of the separation cancels, so that it is linear in it like h_sigma.
+    """g_sigma of peg m less that of peg k, linear in the separation like h_sigma: its square cancels.
 
     Returns
     -------
@@ -263,10 +267,11 @@ def without_separation(
 def resultant_with_square(
     ring: TrigPolynomial, double: tuple[Array, Complex, Complex]
 ) -> tuple[Array, Array]:
-    """Resultant in w of a trigonometric polynomial and of c0 + 2 Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
+    """Resultant in w of a trigonometric polynomial and c0 + 2 Re(c1 w + c2 w^2), and its terms' size.
 
-    It is \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, without division. The
-    roots' product is a* / a, and a^n times the sum of their n-th powers is the n-th of ``powers`` below.
+    It is \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, without
+    division. The roots' product is a* / a, and a^n times the sum of their n-th powers is the n-th of
+    ``powers`` below.
     """
     a, b = ring.first, ring.middle
     low = np.conj(a)
@@ -315,7 +320,8 @@ def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tu
     Parameters
     ----------
     contacts : arcs before lines on each jaw, the left jaw with no fewer arcs than the right one.
-    case : (arcs on the left, arcs on the right), or (arcs on the left, -1) for the three left pegs of Type II.
+    case : (arcs on the left, arcs on the right), or (arcs on the left, -1) for the three left pegs of Type
+        II.
     psi : in radians.
     """
     left, right = case
@@ -331,7 +337,8 @@ def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tu
         second, without_separation(factor, rest, *circle_constraint(contacts, 2, psi))
     )
     free = have_no_separation(contacts)[:, None] & (right == 2)
-    # Where the separation is not in the difference at all, the difference alone takes the place of the resultant in it.
+    # Where the separation is not in the difference at all, the difference alone takes the place of the
+    # resultant in it.
     plain_value, plain_size = resultant_of_rings(second, rest)
     return np.where(free, plain_value, value), np.where(free, plain_size, size)
 
@@ -361,7 +368,7 @@ def have_no_separation(contacts: ContactSystems) -> NDArray[np.bool_]:
 def coefficients(
     contacts: ContactSystems, case: tuple[int, int], bound: int | None = None
 ) -> tuple[Complex, Array]:
-    """Coefficients of the resultants: (N, 2 d + 1) of z^-d ... z^d, and (N,) the size of the terms they come from."""
+    """Coefficients of the resultants, (N, 2 d + 1) of z^-d ... z^d, and their terms' sizes (N,)."""
     bound = degree_bound(case) if bound is None else bound
     count = 2 * bound + 1
     psi = GRID_START + tau * np.arange(count) / count

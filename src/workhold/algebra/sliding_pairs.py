@@ -1,16 +1,19 @@
 r"""Peg pairs at which the resultant says nothing: the orientation is fixed and the part slides.
 
-Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactly as far apart as the pegs, fix the
-orientation by themselves. Along the lines, or around the arcs, the part is free, and the other pegs stop it. In the
-resultant such a pair is a factor that carries no information about the others, and is divided out. So the orientation is
-taken from the pair, and the rest of the pose from the other contacts at that orientation: two circles or lines met at a
-time. One measure, ``ContactSystems.misfit``, decides what is divided out and what is listed here.
+Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactly as far apart as the pegs,
+fix the orientation by themselves. Along the lines, or around the arcs, the part is free, and the other pegs
+stop it. In the resultant such a pair is a factor that carries no information about the others, and is divided
+out. So the orientation is taken from the pair, and the rest of the pose from the other contacts at that
+orientation: two circles or lines met at a time. One measure, ``ContactSystems.misfit``, decides what is
+divided out and what is listed here.
 
-Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture together.
+Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture
+together.
 
-The resultant of Type I also says nothing when both jaws hold the same two lines or circles with the same step, level with
-each other. Pegs in the same place (separation 0) fit at every orientation. The fixtures among these have the jaws' pegs in
-the two different places that an orientation allows, which are level at a few orientations only.
+The resultant of Type I also says nothing when both jaws hold the same two lines or circles with the same
+step, level with each other. Pegs in the same place (separation 0) fit at every orientation. The fixtures
+among these have the jaws' pegs in the two different places that an orientation allows, which are level at a
+few orientations only.
 """
 
 from __future__ import annotations
@@ -49,8 +52,8 @@ __all__ = [
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Arcs are listed up to this many times the misfit at which they are divided out, so that the rounding of a misfit that
-# lies on that edge cannot lose a pair.
+# Arcs are listed up to this many times the misfit at which they are divided out, so that the rounding of a
+# misfit that lies on that edge cannot lose a pair.
 SPARE = 2.0
 
 
@@ -123,8 +126,10 @@ def reach_of(sliding_pair: SlidingPair, row: Array, point: Complex, step: comple
 
 
 def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
-    """Points of feature a's line or circle whose shifted image is on feature b's, none, one or two, and how much each moves
-    when either does."""
+    """Points of feature a's line or circle whose shifted image is on feature b's, and how far they move.
+
+    There are none, one or two; they move when either line or circle does.
+    """
     one, two = complex(a[X], a[Y]), complex(b[X], b[Y]) - shift
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         turn = a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]
@@ -157,7 +162,7 @@ def steepness(size: float, across: float) -> float:
 def line_meets_circle(
     point: complex, tangent: complex, center: complex, radius: float
 ) -> list[tuple[complex, float]]:
-    """Where a line through a point meets a circle; a tangent one does not (a double contact carries no force)."""
+    """Where a line through a point meets a circle; none for a tangent, which carries no force."""
     off = (point - center) * tangent.conjugate()
     if abs(off.imag) >= radius:
         return []
@@ -202,10 +207,10 @@ def two_and_two_sliding_pairs(
 
 
 def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArray, Complex, Array]:
-    """Rows of the first right peg, places of the first left peg on its feature, and how much these places move.
+    """Rows of the first right peg, places of the first left peg on its feature, and how far they move.
 
-    Rows are counted from the first left peg. Places move when the height or the orientation does. ``height`` is the place of
-    the first right peg along the frame's y axis in mm.
+    Rows are counted from the first left peg. Places move when the height or the orientation does. ``height``
+    is the place of the first right peg along the frame's y axis in mm.
     """
     middle = ((row[X] + 1j * row[Y]) * np.exp(-1j * psi)).imag
     tangent = ((row[AXIS_X] + 1j * row[AXIS_Y]) * np.exp(-1j * psi)).imag
@@ -223,7 +228,7 @@ def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArr
 def three_and_one_sliding_pairs(
     pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: Frame
 ) -> list[SimultaneousContacts]:
-    """Left pairs that slide, stopped by a third left peg; the third peg may be anywhere in the order of pegs."""
+    """Left pairs that slide, stopped by a third left peg anywhere in the order of pegs."""
     found = []
     most = frame.standing.column_count - 1
     for sliding_pair in sliding_pairs:
@@ -253,7 +258,7 @@ def three_and_one_sliding_pairs(
 
 
 def third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
-    """Features and steps (columns, rows) of pegs that can stand beside a peg on a feature, before or after it."""
+    """Features and steps (columns, rows) of pegs that can stand beside a peg, before or after it."""
     after = [
         (int(h), int(k), int(m))
         for t, h, k, m in zip(pairs.tail, pairs.head, pairs.column, pairs.row, strict=True)
@@ -268,7 +273,7 @@ def third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
 
 
 def alike(contacts: ContactSystems) -> NDArray[np.bool_]:
-    """Which systems of four pegs have the same lines or circles and the same step on both jaws, at one level, (N,)."""
+    """Which systems (N,) have the same lines or circles and the same step on both jaws, at one level."""
     rows, point = contacts.rows, contacts.point
     same = np.abs(point[:, 2]) + np.abs(point[:, 3] - point[:, 1]) <= COINCIDENT
     for k in range(2):
@@ -286,9 +291,10 @@ def alike(contacts: ContactSystems) -> NDArray[np.bool_]:
 def alike_orientations(contacts: ContactSystems) -> tuple[IntArray, Array]:
     """Orientations at which the two places of such a pair are level: (indices of systems, psi in radians).
 
-    The places are mirror images in the line (second peg) or in the line through the circles' centres (pegs brought
-    together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D / z) = 0. There x is
-    the step, and D the vector from the second centre to the first. Lines alone have one place, and so no fixture.
+    The places are mirror images in the line (second peg) or in the line through the circles' centres (pegs
+    brought together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D
+    / z) = 0. There x is the step, and D the vector from the second centre to the first. Lines alone have one
+    place, and so no fixture.
     """
     first = np.flatnonzero(contacts.rows[:, 0, IS_ARC] != 0.0)
     line = first[contacts.rows[first, 1, 0] == 0.0]

@@ -1,9 +1,10 @@
-"""The paper's Table 2: degrees of the resultants, found on random data, beside the paper's and the least possible.
+"""The paper's Table 2: degrees of the resultants, found on random data, and the least possible.
 
-The degree in t = tan(psi / 2) is read off the coefficients themselves, which are taken over a longer span than the formulas
-can fill. A resultant whose degree equals the number of complex solutions of a general system has no spurious root: no
-elimination can be of lower degree. Those numbers (``resultants.TRUE_DEGREES``) are known from Groebner bases over finite
-fields. Every complex root is isolated in ball arithmetic, and every real one must lead to one pose.
+The degree in t = tan(psi / 2) is read off the coefficients themselves, which are taken over a longer span
+than the formulas can fill. A resultant whose degree equals the number of complex solutions of a general
+system has no spurious root: no elimination can be of lower degree. Those numbers
+(``resultants.TRUE_DEGREES``) are known from Groebner bases over finite fields. Every complex root is isolated
+in ball arithmetic, and every real one must lead to one pose.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ class Row:
 
 
 def random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSystems:
-    """Random systems of a case (see ``resultants.resultant``), arcs first on each jaw, with a real pose each."""
+    """Random systems of a case (see ``resultants.resultant``), arcs first on each jaw, a real pose each."""
     random = np.random.default_rng(seed)
     left, right = case
     pegs = 3 if right < 0 else 4

@@ -1,8 +1,8 @@
-"""A queue on a cluster of Dask (``dask.distributed``): a scheduler hands tasks to workers on any number of machines.
+"""A queue on a cluster of Dask: a scheduler hands tasks to workers on any number of machines.
 
-Workers need this program and nothing else: a task is sent whole, and its record comes back, or goes where it is kept. What a
-lost worker had in hand goes to another one, as far as there are any; when the scheduler is lost, the run ends with what
-there is.
+Workers need this program and nothing else: a task is sent whole, and its record comes back, or goes where it
+is kept. What a lost worker had in hand goes to another one, as far as there are any; when the scheduler is
+lost, the run ends with what there is.
 
 M. Rocklin, "Dask: Parallel Computation with Blocked algorithms and Task Scheduling", SciPy 2015.
 """
@@ -27,8 +27,8 @@ from workhold.errors import InputError
 
 __all__ = ["ClusterWorkers"]
 
-# Seconds between looks at whether to stop, between counts of the workers, and without any worker, or on this machine with
-# too few, before something is done about it.
+# Seconds between looks at whether to stop, between counts of the workers, and without any worker, or on this
+# machine with too few, before something is done about it.
 LOOK, COUNT, PATIENCE = 0.1, 2.0, 20.0
 # Seconds for a scheduler to answer.
 ANSWER = 20
@@ -46,7 +46,7 @@ class ClusterWorkers:
 
     Parameters
     ----------
-    watcher : is told what happens.
+    watcher : is notified of what happens.
     address : of a scheduler, such as ``tcp://10.0.0.5:8786``; None starts a cluster on this machine.
     count : of worker processes of a cluster on this machine.
     store : where workers put records themselves; None lets them come back.
@@ -69,7 +69,7 @@ class ClusterWorkers:
         from distributed import Client, LocalCluster
 
         at: Any = None if self.address is None else checked_address(self.address)
-        # What Dask has to say of what is lost is told in sentences of this program's own.
+        # What Dask has to say of what is lost is said in sentences of this program's own.
         self.stack.callback(logging.disable, logging.root.manager.disable)
         logging.disable(logging.CRITICAL)
         try:
@@ -89,7 +89,8 @@ class ClusterWorkers:
                 words = " ".join(str(error).split())
                 raise InputError(f"a cluster cannot be started on this machine: {words}.") from error
             raise InputError(
-                f"no scheduler answers at {self.address}: start one with dask scheduler, or correct the address."
+                f"no scheduler answers at {self.address}: start one with dask scheduler, or correct the "
+                "address."
             ) from error
         self.client.subscribe_topic("all", self.hear)
         return self
@@ -101,18 +102,19 @@ class ClusterWorkers:
             self.stack.close()
 
     def hear(self, event: tuple[float, Any]) -> None:
-        """Take note of what the scheduler tells of its workers; runs in a thread of the client's."""
-        told = event[1]
-        if isinstance(told, dict) and told.get("action") == "remove-worker":
-            busy = told.get("processing-tasks") or {}
+        """Takes note of what the scheduler reports of its workers; runs in a thread of the client's."""
+        report = event[1]
+        if isinstance(report, dict) and report.get("action") == "remove-worker":
+            busy = report.get("processing-tasks") or {}
             again = f" {len(busy)} tasks it had in hand are given to others." if busy else ""
-            self.watcher.told(f"The worker at {told.get('worker')} is lost.{again}")
+            self.watcher.notify(f"The worker at {report.get('worker')} is lost.{again}")
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """See :class:`workhold.batch.tasks.Queue`."""
+        """Outcomes of tasks as they come; see :class:`workhold.batch.tasks.Queue`."""
         finished: SimpleQueue[Any] = SimpleQueue()
         pending: dict[str, tuple[Any, Task]] = {}
-        # Given up by the scheduler, perhaps only because of what the same workers had in hand: tried once more, each alone.
+        # Given up by the scheduler, perhaps only because of what the same workers had in hand: tried once
+        # more, each alone.
         suspects: deque[Task] = deque()
         # Lost with their workers before they were fetched: others make them anew.
         remade: list[Any] = []
@@ -160,8 +162,11 @@ class ClusterWorkers:
         return future
 
     def count_threads(self) -> int:
-        """How many threads the workers have, as counted lately. After a while without any that is told; on this machine what
-        is missing is started again."""
+        """Number of threads that the workers were last counted to have.
+
+        After a while without any, a warning says so; workers that are missing on this machine are started
+        again.
+        """
         now = monotonic()
         if now < self.counted_at + COUNT or self.gone:
             return self.threads
@@ -176,9 +181,10 @@ class ClusterWorkers:
         elif now > self.idle_since + PATIENCE:
             self.idle_since = now
             if self.own is None:
-                self.watcher.told("The cluster has no worker: the run waits for one.")
+                self.watcher.notify("The cluster has no worker: the run waits for one.")
             else:
-                # Dask gives up a worker that takes long to come back, as one does where much else is going on.
+                # Dask gives up a worker that takes long to come back, as one does where much else is going
+                # on.
                 self.own.scale(self.count)
         return self.threads
 
@@ -191,10 +197,13 @@ class ClusterWorkers:
             error = future.exception()
             if is_killed(future):
                 times = error.allowed_failures + 1
-                self.watcher.told(
+                self.watcher.notify(
                     f"{times} workers ended while they had {task.title} in hand; it is given up."
                 )
-                words = f"{times} workers ended while they had this in hand: it may need more memory than they have."
+                words = (
+                    f"{times} workers ended while they had this in hand: "
+                    "it may need more memory than they have."
+                )
                 return Outcome(task.name, None, words)
             words = " ".join(str(error).split())
             return Outcome(task.name, None, f"The cluster refused this ({type(error).__name__}: {words}).")
@@ -204,10 +213,10 @@ class ClusterWorkers:
     def give_up(self, stop: Event) -> None:
         """End the run: there is no scheduler any more."""
         self.gone = (
-            f"the scheduler at {self.address or 'this machine'} is lost; what is done is kept: start it, and then the same "
-            "command again to go on."
+            f"the scheduler at {self.address or 'this machine'} is lost; what is done is kept: start it, "
+            "and then the same command again to go on."
         )
-        self.watcher.told(f"T{self.gone[1:]}")
+        self.watcher.notify(f"T{self.gone[1:]}")
         stop.set()
 
 
@@ -240,7 +249,7 @@ def checked_address(address: str) -> str:
 
 
 def done_there(task: Task, store: Store | None) -> Outcome:
-    """Do a task in a worker of a cluster, and put its record where it belongs."""
+    """Does a task in a worker of a cluster, and put its record where it belongs."""
     from distributed import get_worker
 
     outcome = done(task, str(get_worker().address))

@@ -5,7 +5,7 @@ lattice offers between two pegs on a part of that size. Constants and exponents 
 runs (``benchmarks/batch_estimate.py``); docs/benchmarks.md says how near it comes. Only the order and the
 shares count: how fast a machine is shows while it runs.
 
-What tasks took is a file of lines beside the records, which tells nothing about whether a task is done.
+What tasks took is a file of lines beside the records, which does not say whether a task is done.
 Records are the same bytes wherever and however fast they came to be, so this is kept apart from them. Each
 line is appended at once, so that two runs can write one file; a line cut short by the end of a run is passed
 over.
@@ -96,7 +96,7 @@ class Measured:
                     continue
 
     def add(self, outcome: Outcome) -> None:
-        """Write down what a task took.
+        """Writes down what a task took.
 
         Raises
         ------

@@ -32,7 +32,7 @@ __all__ = ["Report", "Summary", "write_results"]
 
 # Rows on the page, and pictures among them; the tables have everything.
 MOST_ROWS, MOST_PICTURES = 5000, 400
-# What is told of a first choice: heading, column of the table of results, decimals.
+# What stands about a first choice: heading, column of the table of results, decimals.
 FIGURES = (
     ("location error mm", "location_error", 3),
     ("clamp amplification", "clamp_amplification", 2),
@@ -53,18 +53,24 @@ BAD = ("unreadable", "refused", "failed")
 
 HEAD = """<!DOCTYPE html>
 <!-- workhold -->
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<html lang="en"><head><meta charset="utf-8">\
+<meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy"
  content="default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'">
 <title>workhold batch</title><style>
 body{font:14px/1.45 "DejaVu Sans",Verdana,Arial,sans-serif;color:#1a1a1a;margin:24px;background:#fff}
 h1{font-size:24px;margin:0 0 4px}h2{font-size:18px;margin:28px 0 8px}p{margin:4px 0;max-width:60em}
-table{border-collapse:collapse}th,td{padding:5px 7px;border-bottom:1px solid #d5d9df;vertical-align:middle;text-align:left}
-.box{overflow-x:auto}th{background:#eef1f5;position:sticky;top:0}th button{all:unset;cursor:pointer;font-weight:bold}
+table{border-collapse:collapse}\
+th,td{padding:5px 7px;border-bottom:1px solid #d5d9df;vertical-align:middle;text-align:left}
+.box{overflow-x:auto}th{background:#eef1f5;position:sticky;top:0}\
+th button{all:unset;cursor:pointer;font-weight:bold}
 th button:focus-visible{outline:2px solid #0b3a82}th[aria-sort=ascending] button::after{content:" \\25B2"}
-th[aria-sort=descending] button::after{content:" \\25BC"}td.n{text-align:right;font-variant-numeric:tabular-nums}
-td.bad{color:#b3122a}td.once{white-space:nowrap}small{display:block;color:#5f6670;min-width:8em;max-width:26em}
-td code{white-space:normal;display:block;max-width:26em}img{display:block;width:160px;height:120px}code{font-size:12px}
+th[aria-sort=descending] button::after{content:" \\25BC"}\
+td.n{text-align:right;font-variant-numeric:tabular-nums}
+td.bad{color:#b3122a}td.once{white-space:nowrap}\
+small{display:block;color:#5f6670;min-width:8em;max-width:26em}
+td code{white-space:normal;display:block;max-width:26em}\
+img{display:block;width:160px;height:120px}code{font-size:12px}
 input{font:inherit;padding:4px 8px;width:22em;max-width:90%;margin:6px 0}
 </style></head><body>
 """
@@ -80,12 +86,14 @@ table.tHead.addEventListener("click",event=>{
  const rows=[...body.rows].map((row,number)=>[key(row),row,number]);
  rows.sort(([a,,i],[b,,j])=>{
   if((a==="")!==(b===""))return a===""?1:-1;
-  const x=Number(a),y=Number(b),way=Number.isNaN(x)||Number.isNaN(y)?a.localeCompare(b,"en",{numeric:true}):x-y;
+  const x=Number(a),y=Number(b),\
+way=Number.isNaN(x)||Number.isNaN(y)?a.localeCompare(b,"en",{numeric:true}):x-y;
   return way===0?i-j:up?way:-way;});
  body.append(...rows.map(entry=>entry[1]));});
 document.getElementById("filter").addEventListener("input",event=>{
  const words=event.target.value.toLowerCase().split(/\\s+/).filter(Boolean);
- for(const row of body.rows){const text=row.textContent.toLowerCase();row.hidden=!words.every(word=>text.includes(word));}});
+ for(const row of body.rows){const text=row.textContent.toLowerCase();\
+row.hidden=!words.every(word=>text.includes(word));}});
 </script></body></html>
 """
 
@@ -129,7 +137,7 @@ class Report:
     left_out: int = field(default=0, init=False)
 
     def add(self, job: JobRow, sheet: Path | None = None) -> None:
-        """Take a row; ``sheet`` is the setup sheet of its first choice, where there is one."""
+        """Takes a row; ``sheet`` is the setup sheet of its first choice, where there is one."""
         row = job.row
         self.states[row["state"]] += 1
         if row["state"] in BAD and len(self.bad) < MOST_ROWS:
@@ -150,7 +158,9 @@ class Report:
         result = job.result(self.store)
         svg = draw_thumbnail(result[0], result.workpiece, result.toolkit)
         words = f"First choice for {row['part']} in {row['toolkit']}"
-        return f'<img alt="{told(words)}" src="data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}">'
+        return (
+            f'<img alt="{escaped(words)}" src="data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}">'
+        )
 
     def line(self, row: Row, picture: str, sheet: Path | None) -> str:
         """The HTML of a row."""
@@ -158,9 +168,11 @@ class Report:
         why = " ".join(filter(None, (row["reason"], row["remarks"])))
         cells = [
             cell(picture, key=""),
-            cell(told(row["part"]) + self.ways_on(row, sheet), key=told(row["part"])),
-            cell(told(row["toolkit"]), name="once"),
-            cell(state + (f"<small>{told(why)}</small>" if why else ""), key=state, bad=row["state"] in BAD),
+            cell(escaped(row["part"]) + self.ways_on(row, sheet), key=escaped(row["part"])),
+            cell(escaped(row["toolkit"]), name="once"),
+            cell(
+                state + (f"<small>{escaped(why)}</small>" if why else ""), key=state, bad=row["state"] in BAD
+            ),
             figure(row["fixtures"], 0),
             *(figure(row[key], decimals) for _, key, decimals in FIGURES),
             figure(row["seconds"], 2),
@@ -174,27 +186,27 @@ class Report:
             return ""
         if "://" in row["record"]:
             # In an object store: no command opens it there.
-            return f"<small>{told(row['record'])}</small>"
+            return f"<small>{escaped(row['record'])}</small>"
         record = Path(row["record"])
         link = (
-            f'<a href="{told(record.relative_to(self.folder).as_posix())}">the best</a>'
+            f'<a href="{escaped(record.relative_to(self.folder).as_posix())}">the best</a>'
             if self.holds(record)
             else ""
         )
         if sheet is not None:
-            return f'<small>{link} <a href="{told(sheet.relative_to(self.folder).as_posix())}">setup sheet</a></small>'
+            place = escaped(sheet.relative_to(self.folder).as_posix())
+            return f'<small>{link} <a href="{place}">setup sheet</a></small>'
         name = Path(row["part"]).stem
         line = f"workhold sheet {quote(str(record))} 1 --part-name {quote(name)} -o {quote(f'{name}.pdf')}"
-        return (
-            f"<small>{link}<details><summary>setup sheet</summary><code>{told(line)}</code></details></small>"
-        )
+        code = f"<code>{escaped(line)}</code>"
+        return f"<small>{link}<details><summary>setup sheet</summary>{code}</details></small>"
 
     def holds(self, path: Path) -> bool:
         """Whether a file stands beside the page."""
         return path.is_relative_to(self.folder)
 
     def write(self, path: Path, summary: Summary) -> None:
-        """Write the page.
+        """Writes the page.
 
         Raises
         ------
@@ -211,13 +223,13 @@ class Report:
         ]
         headings += ["seconds", "predicted s"]
         with text_file(path) as stream:
-            stream.write(f"{HEAD}<h1>{told(summary.headline)}</h1>\n")
+            stream.write(f"{HEAD}<h1>{escaped(summary.headline)}</h1>\n")
             for sentence in (self.counts, *summary.sentences):
-                stream.write(f"<p>{told(sentence)}</p>\n")
+                stream.write(f"<p>{escaped(sentence)}</p>\n")
             if self.left_out:
                 stream.write(f"<p>{self.left_out:,} further jobs are in the table of results only.</p>\n")
             if summary.events:
-                items = "".join(f"<li>{told(event)}</li>\n" for event in summary.events)
+                items = "".join(f"<li>{escaped(event)}</li>\n" for event in summary.events)
                 stream.write(f"<h2>What happened on the way</h2>\n<ul>\n{items}</ul>\n")
             if self.bad:
                 stream.write(f"<h2>What failed, and why</h2>\n{self.failures()}")
@@ -225,7 +237,7 @@ class Report:
                 '<h2>All jobs</h2>\n<label>Only rows with <input id="filter" type="search"></label>\n'
             )
             heads = "".join(
-                f'<th scope="col"><button type="button">{told(words)}</button></th>' for words in headings
+                f'<th scope="col"><button type="button">{escaped(words)}</button></th>' for words in headings
             )
             stream.write(f'<div class="box"><table id="jobs"><thead><tr>{heads}</tr></thead><tbody>\n')
             stream.writelines(self.rows)
@@ -242,7 +254,8 @@ class Report:
     def failures(self) -> str:
         """What failed, as HTML."""
         rows = "".join(
-            f"<tr><td>{told(part)}</td><td>{told(', '.join(toolkits))}</td><td>{told(reason)}</td></tr>\n"
+            f"<tr><td>{escaped(part)}</td><td>{escaped(', '.join(toolkits))}</td>"
+            f"<td>{escaped(reason)}</td></tr>\n"
             for (part, reason), toolkits in self.bad.items()
         )
         heads = "".join(f'<th scope="col">{words}</th>' for words in ("part", "in", "why"))
@@ -251,7 +264,7 @@ class Report:
         )
 
 
-def told(words: Any) -> str:
+def escaped(words: Any) -> str:
     """Words as HTML, whatever they hold."""
     return escape(plain(str(words)))
 
@@ -283,7 +296,7 @@ def write_results(
     summary: Summary,
     sheets: Path | None,
 ) -> Report:
-    """Write tables and report of all jobs into a folder, and the sheet of each first choice into another, if one is named.
+    """Writes tables and report of all jobs into a folder, and sheets of the first choices into another.
 
     Parameters
     ----------
@@ -304,7 +317,7 @@ def write_results(
 
 
 def sheet_of(row: JobRow, store: Store, folder: Path) -> Path | None:
-    """The setup sheet of a job's first choice, which is written if it is not there; None where there is no fixture.
+    """The setup sheet of a job's first choice, written if it is not there; None without a fixture.
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 A job is a part and what it shall be held in.
 
-What is done is passed over, what is not is given out, longest first. Nothing but records tells what is done.
+What is done is passed over, what is not is given out, longest first. Records alone say what is done.
 A run that ends, in whatever way, leaves whole records, and the next one goes on.
 """
 
@@ -47,7 +47,7 @@ class HeldIn:
 
     @cached_property
     def entry(self) -> dict[str, Any]:
-        """What is asked as it is written, which tells it from anything else that could be.
+        """What is asked as it is written, which distinguishes it from anything else that could be.
 
         Raises
         ------
@@ -86,7 +86,7 @@ class Part:
     refusal : why it cannot be read; empty where it can.
     content : hash of what was read; empty before.
     faces, size : how many faces it has, and its width and height in mm.
-    remarks : what there is to tell about the drawing.
+    remarks : what to say about the drawing.
     """
 
     request: Request
@@ -116,7 +116,7 @@ class Part:
         return reading_of(self.request)
 
     def take(self, record: Mapping[str, Any]) -> None:
-        """Take note of what was read."""
+        """Takes note of what was read."""
         self.refusal = record["refusal"]
         if not self.refusal:
             self.content = name_of(record["loops"], record["departure"])
@@ -166,7 +166,7 @@ class Job:
         return f"{self.part.request.listed.name} in {self.held_in.name}"
 
     def answering(self, record: bytes, best: int) -> Answering:
-        """Its task, from the record of its part."""
+        """Task of a job, from the record of its part."""
         assert isinstance(self.held_in.query, Query)
         return Answering(self.name, self.title, record, self.held_in.query, best)
 
@@ -178,7 +178,7 @@ class Counting(Protocol):
     """Who counts along."""
 
     def stage(self, doing: str, count: int, seconds: float) -> None:
-        """So many tasks are to be done, which will take a processor so long, as far as that can be told."""
+        """So many tasks are to be done, which are estimated to take a processor so long."""
 
     def one_done(self, seconds: float) -> None:
         """One of them is done, for which so many seconds were reckoned."""
@@ -211,7 +211,7 @@ class Work:
     store : where records are kept.
     queue : which has the workers.
     measured : what tasks took.
-    counting : is told how far it is.
+    counting : is notified of progress.
     stop : when set, the run ends soon.
     """
 
@@ -224,7 +224,7 @@ class Work:
     def do(
         self, doing: str, items: Sequence[T], seconds: Callable[[T], float], task_of: Callable[[T], Task]
     ) -> tuple[dict[str, Outcome], int]:
-        """Do the tasks of items that are not done, longest first, each name once.
+        """Does the tasks of items that are not done, longest first, each name once.
 
         Returns
         -------
@@ -270,7 +270,7 @@ class Work:
         return outcomes, len(by_name) - len(reckoned)
 
     def keep(self, outcome: Outcome) -> None:
-        """Keep the record of a task, unless its worker has, and what it took.
+        """Keeps the record of a task, unless its worker has, and what it took.
 
         Raises
         ------
@@ -289,7 +289,7 @@ GO_ON = "What is done is kept: make room, and start the same command again to go
 
 
 def run_batch(requests: Iterable[Request], best: int, work: Work) -> Batch:
-    """Read all parts and answer all jobs, as far as that is not done.
+    """Reads all parts and answer all jobs, as far as that is not done.
 
     Parameters
     ----------
@@ -322,7 +322,7 @@ def run_batch(requests: Iterable[Request], best: int, work: Work) -> Batch:
 
 
 def read_parts(batch: Batch, work: Work) -> None:
-    """Read the parts that are not read yet, and take note of all."""
+    """Reads the parts that are not read yet, and take note of all."""
     parts = [part for part in batch.parts if part.name]
 
     def seconds(part: Part) -> float:

@@ -2,7 +2,7 @@
 
 The record of an answer is a result file (``files.result.writer``) of the best fixtures, which every command
 that takes one can open. That of a drawing holds the part in the form that ``files.part.data`` reads, and what
-there is to tell about it. What cannot be read or asked is a record too: it would be refused again.
+is to be said about it. What cannot be read or asked is a record too: it would be refused again.
 
 A folder keeps each record in a file under its task's name, written whole or not at all. Two runs may use one
 folder at a time: a record that both write has the same bytes, and takes its name at once. An object store or
@@ -100,7 +100,7 @@ class Store(Protocol):
         """The record of a task; None where there is none."""
 
     def write(self, name: str, record: bytes) -> None:
-        """Keep a record.
+        """Keeps a record.
 
         Raises
         ------
@@ -152,7 +152,7 @@ class FolderStore:
         yield self.path(name)
 
     def write(self, name: str, record: bytes) -> None:
-        """Keep a record; see :meth:`Store.write`."""
+        """Writes a record; see :meth:`Store.write`."""
         path = self.path(name)
         with plain_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -195,7 +195,7 @@ class UrlStore:
         return content if is_whole(content) else None
 
     def write(self, name: str, record: bytes) -> None:
-        """Keep a record; see :meth:`workhold.batch.store.Store.write`. One that is cut short is none."""
+        """Keeps a record; see :meth:`workhold.batch.store.Store.write`. One that is cut short is none."""
         system, path = self.at(name)
         try:
             system.makedirs(path.rpartition("/")[0], exist_ok=True)

@@ -1,7 +1,7 @@
 """The two tables of a batch: a row for each job, and a row for each of the fixtures that are kept.
 
-As Parquet where pyarrow is installed, else as comma-separated values with the same columns; where nothing is known a cell is
-empty. Lengths are in mm, angles in degrees, forces in N.
+As Parquet where pyarrow is installed, else as comma-separated values with the same columns; where nothing is
+known a cell is empty. Lengths are in mm, angles in degrees, forces in N.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[
 
 
 def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> list[Row]:
-    """Fill in a row from the record of its answer; the rows of its fixtures."""
+    """Fills in a row from the record of its answer; the rows of its fixtures."""
     if record["refusal"]:
         row |= {"state": "refused", "reason": record["refusal"]}
         return []
@@ -122,16 +122,16 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
 
 
 def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
-    """What a table tells of a fixture of a result file."""
+    """Columns of a table on a fixture of a result file."""
     from workhold.files.result.reader import peg_place
 
     assert isinstance(job.held_in.query, Query)
     carriers = {carrier.name: carrier for carrier in job.held_in.query.toolkit.carriers}
-    pair = fixture.get("directions")
-    direction = fixture.get("direction") if pair is None else " ".join(pair)
+    directions = fixture.get("directions")
+    direction = fixture.get("direction") if directions is None else " ".join(directions)
     holes = []
     for peg in fixture["pegs"]:
-        carrier, column, row = peg_place(peg, direction if pair is None else peg.get("direction"))
+        carrier, column, row = peg_place(peg, direction if directions is None else peg.get("direction"))
         holes.append(carriers[carrier].place_name(column, row))
     return {
         "type": fixture["type"],
@@ -145,14 +145,13 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
     }
 
 
-def seating_figures(told: Mapping[str, Any] | None) -> Row:
-    """What a table tells of the seating of a fixture of a result file: infinite where there is no end, and nothing where
-    it is not told."""
-    if told is None:
+def seating_figures(seating: Mapping[str, Any] | None) -> Row:
+    """Columns on the seating of a fixture in a result file: infinite without an end, empty where unknown."""
+    if seating is None:
         return {}
-    from workhold.files.result.fixture_forms import figures_told
+    from workhold.files.result.fixture_forms import seating_figures_of
 
-    return figures_told(told)
+    return seating_figures_of(seating)
 
 
 def has_parquet() -> bool:
@@ -170,11 +169,11 @@ class Rows(Protocol):
     """What takes rows of a table."""
 
     def add(self, rows: Sequence[Row]) -> None:
-        """Write some rows."""
+        """Writes some rows."""
 
 
 def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
-    """Write both tables of a folder, which take their names when the rows have ended; the rows go on to the caller.
+    """Writes both tables of a folder and passes the rows on; files take their names at the end.
 
     Raises
     ------
@@ -197,7 +196,7 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
 
 
 def add_all(waiting: list[JobRow], results: Rows, best: Rows) -> None:
-    """Write the rows that wait."""
+    """Writes the rows that wait."""
     results.add([one.row for one in waiting])
     best.add([row for one in waiting for row in one.best])
     waiting.clear()
@@ -210,7 +209,7 @@ class CsvRows:
     writer: Any
 
     def add(self, rows: Sequence[Row]) -> None:
-        """Write some rows; see :class:`Rows`."""
+        """Writes some rows; see :class:`Rows`."""
         self.writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
 
 
@@ -237,7 +236,7 @@ class ParquetRows:
     writer: Any
 
     def add(self, rows: Sequence[Row]) -> None:
-        """Write some rows; see :class:`Rows`."""
+        """Writes some rows; see :class:`Rows`."""
         import pyarrow
 
         if rows:

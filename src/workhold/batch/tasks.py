@@ -3,7 +3,7 @@
 A task comes in, its record goes out.
 
 A worker needs nothing but the task and this program. Outcomes depend on nothing but the task, to the byte;
-only what they took is told beside them. A name is the hash of all that an outcome depends on, so that the
+only what they took is kept beside them. A name is the hash of all that an outcome depends on, so that the
 same work has the same name wherever it is done. A queue takes tasks, gives them to workers, and hands over
 what came of them.
 """
@@ -25,8 +25,7 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 
 from workhold.batch.store import part_record, plain_record, refusal_record, workpiece_of
-from workhold.errors import InputError, WorkholdError
-from workhold.limits import NO_ROOM, lacks_memory
+from workhold.errors import NO_ROOM, InputError, WorkholdError, lacks_memory
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 from workhold.version import __version__
@@ -53,7 +52,7 @@ LETTERS = 32
 
 @cache
 def program() -> str:
-    """The version of the program, and a hash of its sources that have a say in an outcome: the same on every machine."""
+    """The program's version, and a hash of the sources that decide outcomes: equal on every machine."""
     digest = sha256()
     for path in sorted(PACKAGE.rglob("*.py")):
         place = path.relative_to(PACKAGE)
@@ -92,7 +91,7 @@ class Task:
     program: str = field(factory=program, kw_only=True)
 
     def prepare(self) -> None:
-        """Load what the work needs.
+        """Loads what the work needs.
 
         Raises
         ------
@@ -102,7 +101,7 @@ class Task:
         raise NotImplementedError
 
     def record(self) -> bytes:
-        """Do the work.
+        """Does the work.
 
         Raises
         ------
@@ -114,11 +113,11 @@ class Task:
 
 @frozen
 class Reading(Task):
-    """Read a drawing.
+    """Reads a drawing.
 
     Parameters
     ----------
-    ending : of its file's name, which tells what it is.
+    ending : of its file's name, which shows what it is.
     content : of the file.
     options : keyword arguments of ``files.part.load.read_workpiece``.
     """
@@ -128,7 +127,7 @@ class Reading(Task):
     options: Mapping[str, Any]
 
     def prepare(self) -> None:
-        """Load the readers' kernels."""
+        """Loads the readers' kernels."""
         import workhold.geometry.loop
         import workhold.kernels.base.distance  # noqa: F401
 
@@ -148,7 +147,7 @@ class Reading(Task):
 
 @frozen
 class Answering(Task):
-    """Find the fixtures of a part in a toolkit.
+    """Finds the fixtures of a part in a toolkit.
 
     Parameters
     ----------
@@ -162,7 +161,7 @@ class Answering(Task):
     best: int
 
     def prepare(self) -> None:
-        """Load the search."""
+        """Loads the search."""
         import workhold.search.design  # noqa: F401
 
     def record(self) -> bytes:
@@ -183,14 +182,14 @@ class Answering(Task):
 
 @define(eq=False)
 class FirstFixtures:
-    """Takes the fixtures of an answer, and keeps the first few of them; the others are never in memory all at once.
+    """Takes the fixtures of an answer in blocks, and keeps the first few, to save memory.
 
     Parameters
     ----------
     most : how many to keep.
     folder : where there is room for what is being sorted.
     table : those kept.
-    result : that they are of, with the seating that is told of them.
+    result : that they are of, with their seating, where it is known.
     """
 
     most: int
@@ -199,7 +198,7 @@ class FirstFixtures:
     result: Result | None = None
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Take them, best first."""
+        """Takes them, best first."""
         self.result = evolve(result, seating=result.seating[: self.most])
         for table in tables:
             first = table.take(np.arange(min(self.most - self.count, len(table))))
@@ -220,8 +219,8 @@ class Outcome:
     Parameters
     ----------
     name : of the task.
-    record : to keep; None where there is none, because the task failed in a way that may not come again, or because the
-        worker has put it where it belongs.
+    record : to keep; None where there is none, because the task failed in a way that may not come again, or
+        because the worker has put it where it belongs.
     failure : why there is none, in a sentence; empty otherwise.
     seconds : that the work took.
     worker : who did it.
@@ -237,7 +236,7 @@ class Outcome:
 
 
 def done(task: Task, worker: str = "") -> Outcome:
-    """Do a task, whatever comes of it."""
+    """Does a task, whatever comes of it."""
     start = perf_counter()
     record, failure, has_no_room = None, "", False
     try:
@@ -249,7 +248,10 @@ def done(task: Task, worker: str = "") -> Outcome:
         failure = str(error)
     except Exception as error:
         if lacks_memory(error):
-            failure = "This needs more memory than its worker may take: give it to fewer workers, or to a larger machine."
+            failure = (
+                "This needs more memory than its worker may take: "
+                "give it to fewer workers, or to a larger machine."
+            )
         elif isinstance(error, OSError):
             failure = f"The system refused something the work needs: {error.strerror or error}."
             has_no_room = error.errno in NO_ROOM
@@ -274,8 +276,8 @@ def make_ready(task: Task) -> None:
     """
     if task.program != program():
         raise UnfitWorkerError(
-            f"The worker has another workhold than the one that asks ({program()} and {task.program}): install the same on "
-            "both."
+            f"The worker has another workhold than the one that asks ({program()} and {task.program}): "
+            "install the same on both."
         )
     try:
         task.prepare()
@@ -296,15 +298,15 @@ class Watcher(Protocol):
     def ended(self, worker: str) -> None:
         """A worker has nothing to do, or is no more."""
 
-    def told(self, sentence: str) -> None:
-        """Something happened that is to be told, such as the death of a worker."""
+    def notify(self, sentence: str) -> None:
+        """Passes on a sentence about what happened, such as the death of a worker."""
 
 
 class Queue(Protocol):
     """What gives tasks to workers."""
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """Do tasks, which are taken in their order when there is a worker for them; outcomes come as they do.
+        """Does tasks, taken in their order when there is a worker for them; outcomes come as they do.
 
         Parameters
         ----------

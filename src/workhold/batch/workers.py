@@ -1,7 +1,7 @@
-"""Workers on this machine: processes that are kept ready, each doing one task after the other on one processor.
+"""Workers on this machine: processes kept ready, each doing one task after the other.
 
-They are started anew, not forked, hear no Ctrl-C, which is for who started them, and end when the pipe to them does: so none
-is left behind, however this process ends (``web.worker``).
+They are started anew, not forked, and hear no Ctrl-C. They end when the pipe to them does: so none is left
+behind, however this process ends (``web.worker``).
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def processor_count() -> int:
 
 
 def memory_share(workers: int) -> int:
-    """Bytes that each of some workers may take: an equal share of this machine's memory, but enough to work with."""
+    """Bytes for each of some workers: an equal share of this machine's memory, but enough to work with."""
     try:
         whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
@@ -52,7 +52,7 @@ def memory_share(workers: int) -> int:
 
 
 def do_task(task: Task, order: Order) -> Outcome:
-    """Do a task in a worker."""
+    """Does a task in a worker."""
     return done(task)
 
 
@@ -86,7 +86,7 @@ class LocalWorkers:
     Parameters
     ----------
     count : how many.
-    watcher : is told what happens.
+    watcher : is notified of what happens.
     memory_bytes : that each may take; None is an equal share of this machine's.
     """
 
@@ -104,7 +104,7 @@ class LocalWorkers:
             self.workers.pop().end()
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """See :class:`workhold.batch.tasks.Queue`."""
+        """Outcomes of tasks as they come; see :class:`workhold.batch.tasks.Queue`."""
         waiting: deque[Task] = deque()
         deaths = Counter[str]()
         while not stop.is_set():
@@ -121,12 +121,12 @@ class LocalWorkers:
                         waiting.appendleft(one.task)
                 if outcome is not None:
                     yield outcome
-        # What was begun is given up; its worker could not be told to stop at once.
+        # What was begun is given up; its worker could not be stopped at once.
         for one in [one for one in self.workers if one.task is not None]:
             self.drop(one)
 
     def hand_out(self, waiting: deque[Task]) -> None:
-        """Give what waits to the workers that are ready, and start some where there are too few of them."""
+        """Gives what waits to the workers that are ready, and start some where there are too few of them."""
         for one in self.workers:
             if waiting and one.is_ready and one.task is None:
                 self.give(one, waiting.popleft())
@@ -142,7 +142,7 @@ class LocalWorkers:
         )
 
     def started(self, title: str) -> Worker:
-        """Start a worker."""
+        """Starts a worker."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         memory = memory_share(self.count) if self.memory_bytes is None else self.memory_bytes
@@ -153,7 +153,7 @@ class LocalWorkers:
         return Worker(title, process, ours)
 
     def give(self, one: Worker, task: Task) -> None:
-        """Give a task to a worker; that a dead one cannot take it shows when it is heard."""
+        """Gives a task to a worker; that a dead one cannot take it shows when it is heard."""
         one.task = task
         self.watcher.begun(one.title, task.title)
         with suppress(OSError):
@@ -185,13 +185,13 @@ class LocalWorkers:
         return evolve(outcome, worker=one.title)
 
     def drop(self, one: Worker) -> None:
-        """Let go of a worker."""
+        """Closes the pipe to a worker, which ends it."""
         self.workers.remove(one)
         one.end()
         self.watcher.ended(one.title)
 
     def refuse_failed_starts(self, one: Worker) -> None:
-        """Refuse to go on when one worker after the other ends before it is ready.
+        """Raises an error when one worker after the other ends before it is ready.
 
         Raises
         ------
@@ -201,20 +201,23 @@ class LocalWorkers:
         self.failed_starts += 1
         if self.failed_starts >= MOST_FAILED_STARTS:
             raise InputError(
-                f"worker processes cannot be started: {self.failed_starts} in a row ended {ended_by(one)} before they were "
-                "ready; give them more memory, or fewer of them."
+                f"worker processes cannot be started: {self.failed_starts} in a row ended {ended_by(one)} "
+                "before they were ready; give them more memory, or fewer of them."
             )
 
     def lost(self, one: Worker, task: Task, times: int) -> Outcome | None:
-        """Tell of a worker that died with a task in hand; the failure of the task where it was not the first time."""
+        """Reports a worker that died during a task, and fails the task if it has been tried before."""
         how = ended_by(one)
         if times < MOST_TRIES:
-            self.watcher.told(
+            self.watcher.notify(
                 f"{one.title} ended {how} while it worked on {task.title}, which is tried again."
             )
             return None
-        self.watcher.told(f"{one.title} ended {how} while it worked on {task.title}, for the second time.")
-        words = f"Two workers ended, the last {how}, while they worked on this: it may need more memory than there is."
+        self.watcher.notify(f"{one.title} ended {how} while it worked on {task.title}, for the second time.")
+        words = (
+            f"Two workers ended, the last {how}, while they worked on this: "
+            "it may need more memory than there is."
+        )
         return Outcome(task.name, None, words, worker=one.title)
 
 
@@ -226,7 +229,7 @@ def ended_by(one: Worker) -> str:
 
 @contextmanager
 def deaf_children() -> Iterator[None]:
-    """Let a process that is started meanwhile not hear Ctrl-C, from its first moment on; this one hears it afterwards."""
+    """Blocks Ctrl-C for processes started meanwhile, from their first moment; this one hears it later."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

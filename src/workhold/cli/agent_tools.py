@@ -1,7 +1,8 @@
-"""Tools of ``workhold mcp`` for agents: load, design, show, sheet and explain, with checked arguments.
+"""Tools of ``workhold mcp`` for agents: load, design, show, sheet and explain.
 
-Each description of an argument is what an agent reads. Lengths are in mm, angles in degrees, forces in N.
-Nothing here knows the protocol. A result stays in its file; the next tool is told the file.
+Each tool has a form of its arguments (``cli.agent_arguments``). Lengths are in mm, angles in
+degrees, forces in N. Nothing here knows the protocol. A result stays in its file; the next tool takes the
+file's path.
 """
 
 from __future__ import annotations
@@ -9,11 +10,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from threading import Event, Timer
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Any
 
 from attrs import frozen
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from workhold.cli.agent_arguments import (
+    DesignArguments,
+    LoadArguments,
+    SheetArguments,
+    ShowArguments,
+    ToolArguments,
+)
 from workhold.cli.options import result_with
 from workhold.cli.outputs import refuse_output
 from workhold.cli.search_options import with_fit_of
@@ -31,185 +38,7 @@ from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zo
 from workhold.model.result import Result
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
 
-__all__ = [
-    "TOOLS",
-    "Answer",
-    "DesignArguments",
-    "LoadArguments",
-    "SheetArguments",
-    "ShowArguments",
-    "Tool",
-    "ToolArguments",
-    "checked_arguments",
-]
-
-Arguments = TypeVar("Arguments", bound="ToolArguments")
-Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
-Positive = Annotated[float, Field(gt=0)]
-Rank = Annotated[int, Field(ge=1, description="which fixture; 1 is the best")]
-ResultPath = Annotated[str, Field(description="path of a result file, as design tells it")]
-MayReplace = Annotated[bool, Field(description="replace a file that workhold has not written")]
-ClosingForce = Annotated[float | None, Field(ge=0, description="with which the vise is closed, in N")]
-
-
-class ToolArguments(BaseModel):
-    """What all tools have in common: words that are not known are refused."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-
-
-class LoadArguments(ToolArguments):
-    """A part and how it is read."""
-
-    part: str = Field(description="path of a DXF, SVG, JSON or STEP file, or a built-in name such as widget")
-    unit: Literal["mm", "cm", "m", "inch"] | None = Field(
-        default=None, description="of a drawing that does not say its own"
-    )
-    layers: list[str] | None = Field(
-        default=None, description="DXF layers to read; all visible ones if not given"
-    )
-    part_number: int | None = Field(
-        default=None, ge=1, description="which part of several, from 1 by decreasing area"
-    )
-    join_tolerance: float = Field(
-        default=1e-3, ge=0, description="largest gap between loose ends to close, in mm"
-    )
-    fit: Positive | None = Field(
-        default=None, description="how far lines and arcs may be from true curves that they stand for, in mm"
-    )
-    axis: Literal["x", "y", "z"] | None = Field(
-        default=None, description="STEP: what the pegs are parallel to"
-    )
-    section: float | None = Field(default=None, description="STEP: take the section at this height, in mm")
-    picture: bool = Field(default=False, description="show a picture, too")
-
-    def reading(self) -> dict[str, Any]:
-        """The arguments of :func:`workhold.load` but the part."""
-        return self.model_dump(include=set(LoadArguments.model_fields) - {"part", "picture"})
-
-
-class Circle(ToolArguments):
-    """A round place that no peg may stand over, in the part's coordinates."""
-
-    circle: Annotated[list[float], Field(min_length=3, max_length=3, description="x, y, radius")]
-
-
-class Polygon(ToolArguments):
-    """A place with corners that no peg may stand over, in the part's coordinates."""
-
-    polygon: list[Pair] = Field(min_length=3)
-
-
-class DesignArguments(LoadArguments):
-    """A search for every way to hold a part."""
-
-    toolkit: str = Field(
-        description="a preset such as plate-20mm, clamp-plate-20mm, two-clamp-plate-20mm or fence-20mm, the path of a "
-        "toolkit's TOML file, or a kind (vise, opening-vise, plate, fence) with fields"
-    )
-    fields: dict[str, Any] = Field(
-        default_factory=dict,
-        description="fields of the toolkit that are given or changed, such as pitch, columns, rows, peg_radius, min_gap, "
-        "max_opening, travel, clamps, wall_offset",
-    )
-    types: list[str] | None = Field(default=None, description="of a vise I, II or both")
-    best: int | None = Field(default=None, ge=1, description="seek only so many, the best")
-    avoid: list[int] = Field(
-        default=[], description="faces not to touch, by number, such as those to be machined"
-    )
-    keep_out: list[Circle | Polygon] = Field(default=[], description="places that no peg may stand over")
-    angles: list[Pair] = Field(default=[], description="ranges of angles that the part may lie at")
-    contact_margin: float = Field(
-        default=0.0, ge=0, description="smallest distance of a contact from a face's end"
-    )
-    prefer: Literal["square", "strong", "precise", "roomy"] | None = Field(
-        default=None, description="what comes first"
-    )
-    jaw_force: ClosingForce = None
-    loads: list[LoadTable] = Field(default=[], description="what acts on the part while it is held")
-    seating: int | None = Field(
-        default=None,
-        ge=1,
-        description="of the first so many fixtures tell from how far open, or drawn back, the part is caught and where else "
-        "it can rest, and order them by that too",
-    )
-    opening: Positive | None = Field(
-        default=None,
-        description="with seating, list only those that catch the part when opened by so many mm",
-    )
-    foolproof: bool = Field(
-        default=False,
-        description="with seating, list only those of which a caliper tells every wrong place to rest",
-    )
-    count: int = Field(default=5, ge=0, le=100, description="how many fixtures to tell")
-    out: str | None = Field(
-        default=None, description="path of the result file, .json or .npz; else a temporary one"
-    )
-    force: MayReplace = False
-    seconds: Positive = Field(
-        default=120.0, description="longest search; what was found by then is told as incomplete"
-    )
-
-
-class ShowArguments(ToolArguments):
-    """One fixture of a result."""
-
-    result_file: ResultPath
-    rank: Rank = 1
-    loads: list[LoadTable] = Field(default=[], description="instead of those of the result")
-    jaw_force: ClosingForce = None
-    seating: bool = Field(
-        default=False, description="work out whether the part ends up there, and where else it can rest"
-    )
-    picture: bool = Field(default=True, description="show a picture, too")
-
-
-class SheetArguments(ToolArguments):
-    """A setup sheet, or a set-up for a CAM system."""
-
-    result_file: ResultPath
-    rank: Rank = 1
-    path: str = Field(description="the file to write: .pdf, .svg, .png, .dxf, .step or .csv (a list of pins)")
-    force: MayReplace = False
-    paper: Literal["a4", "letter"] = "a4"
-    unit: Literal["mm", "inch"] = "mm"
-    part_name: str | None = None
-    jaw_force: ClosingForce = None
-    seating: bool | None = Field(
-        default=None, description="whether it says if the part ends up there; if known when null"
-    )
-    jaw: Literal["screw", "constant"] | Annotated[float, Field(ge=0)] = "screw"
-    friction: Positive | None = None
-    zero: str | Pair | None = Field(
-        default=None, description='part zero: "corner", "centre", "hole 2", or x and y'
-    )
-    machine_position: Pair | None = Field(default=None, description="of hole A1 in the machine's coordinates")
-    thickness: Positive | None = None
-    peg_length: Positive | None = None
-    peg_height: Positive | None = None
-    dowel: str | None = Field(
-        default=None, description="what the pegs are and how they fit, such as 6 mm m6 in H7"
-    )
-    clearance: float = Field(
-        default=1.0, ge=0, description="how far the cutter is to keep off the pegs of a .dxf"
-    )
-
-
-def checked_arguments(form: type[Arguments], given: dict[str, Any] | None) -> Arguments:
-    """The arguments of a tool.
-
-    Raises
-    ------
-    InputError
-        Naming the first that is not as it should be.
-    """
-    try:
-        return form.model_validate(given or {})
-    except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False)[0]
-        place = ".".join(str(part) for part in first["loc"])[:120] or "what is given"
-        message = str(first["msg"]).strip().rstrip(".")
-        raise InputError(f"{place} is not as it should be: {message[:1].lower()}{message[1:200]}.") from error
+__all__ = ["TOOLS", "Tool"]
 
 
 @frozen
@@ -222,7 +51,7 @@ class Answer:
 
 @frozen
 class Tool:
-    """A tool.
+    """A tool: its description, the form of its arguments and the function that runs it.
 
     Parameters
     ----------
@@ -237,7 +66,7 @@ class Tool:
 
 
 def load(asked: LoadArguments, folder: Path, cancel: Event) -> Answer:
-    """The part and its faces."""
+    """Reads a part and lists its faces."""
     loaded = read(asked)
     return Answer(
         part_data(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None
@@ -245,7 +74,7 @@ def load(asked: LoadArguments, folder: Path, cancel: Event) -> Answer:
 
 
 def read(asked: LoadArguments) -> Loaded:
-    """The part.
+    """Reads the part.
 
     Raises
     ------
@@ -256,18 +85,18 @@ def read(asked: LoadArguments) -> Loaded:
 
 
 def design(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
-    """The best fixtures, and where all of them are."""
+    """Finds the fixtures, writes all to a file and returns the best."""
     out = asked.out or str(folder / f"result-{len(list(folder.iterdir())) + 1}.json")
     refuse_output(out, (asked.part, asked.toolkit), asked.force, "force")
     loaded, result = answered(asked, cancel)
     save(result, out)
-    told = result_data(result, entries(result), asked.count)
-    data = {**told, "result_file": out, "remarks": list(loaded.remarks)}
+    found = result_data(result, entries(result), asked.count)
+    data = {**found, "result_file": out, "remarks": list(loaded.remarks)}
     return Answer(data, result.draw() if asked.picture and len(result) else None)
 
 
 def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
-    """Why there is no fixture, and what would help; where there are some, how many."""
+    """Explains why there is no fixture and what would help; where there are some, counts them."""
     _, result = answered(asked, cancel)
     found = sum(result.found.values())
     if found or not result.complete:
@@ -287,7 +116,7 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
 
 
 def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
-    """The part, and the answer of the search, which is ended when its time is over.
+    """Returns the part and the answer of the search, which ends when its time is over.
 
     Raises
     ------
@@ -327,7 +156,7 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
 
 
 def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | None]:
-    """A toolkit of a preset, a file or a kind, with fields that are given or changed, and its tolerance where it has one.
+    """Makes a toolkit of a preset, a file or a kind, with some fields changed; returns its tolerance too.
 
     Raises
     ------
@@ -346,7 +175,7 @@ def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | 
 
 
 def loads_of(tables: list[LoadTable]) -> tuple[Load, ...]:
-    """Loads from their descriptions.
+    """Makes loads of their descriptions.
 
     Raises
     ------
@@ -358,14 +187,14 @@ def loads_of(tables: list[LoadTable]) -> tuple[Load, ...]:
 
 
 def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
-    """How to set up a fixture, and what loads do to it."""
+    """Shows how to set up a fixture, and what loads do to it."""
     from workhold.statics.loads import load_cases
 
     result = result_with(asked.result_file, asked.rank)
     fixture, loads = result[asked.rank - 1], loads_of(asked.loads) or result.query.loads
     force = result.query.jaw_force if asked.jaw_force is None else asked.jaw_force
     cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
-    told = {
+    rest = {
         "listed": len(result),
         "complete": bool(result.complete),
         "loads": [load_case_data(one) for one in cases],
@@ -379,11 +208,11 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
         from workhold.seating.solver import Solver
 
         shown["seating"] = Solver(result.workpiece, result.toolkit).of(fixture).as_fields()
-    return Answer({"fixture": shown, **told}, fixture.draw() if asked.picture else None)
+    return Answer({"fixture": shown, **rest}, fixture.draw() if asked.picture else None)
 
 
 def sheet(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:
-    """The setup sheet, written."""
+    """Writes the setup sheet."""
     refuse_output(asked.path, (asked.result_file,), asked.force, "force")
     result = result_with(asked.result_file, asked.rank)
     wishes = asked.model_dump(exclude={"result_file", "rank", "path", "force"})
@@ -396,23 +225,26 @@ TOOLS: Mapping[str, Tool] = {
         "Read a part and list its numbered faces; numbers of faces are what avoid takes.", LoadArguments, load
     ),
     "design": Tool(
-        "Find every way to hold a part in a vise, on a plate with clamps or on a fence, proven complete; tells the best and "
-        "writes all to a result file.",
+        "Find every way to hold a part in a vise, on a plate with clamps or on a fence, proven complete; "
+        "tells the best and writes all to a result file.",
         DesignArguments,
         design,
     ),
     "show": Tool(
-        "Show how to set up one fixture of a result file: holes, opening, pose, quality, and what loads do to it.",
+        "Show how to set up one fixture of a result file: holes, opening, pose, quality, and what loads do "
+        "to it.",
         ShowArguments,
         show,
     ),
     "sheet": Tool(
-        "Write the setup sheet of a fixture of a result file, or its set-up as DXF or STEP, or its list of pins.",
+        "Write the setup sheet of a fixture of a result file, or its set-up as DXF or STEP, or its list of "
+        "pins.",
         SheetArguments,
         sheet,
     ),
     "explain": Tool(
-        "Tell why there is no way to hold a part, which rule took the last candidates away, and which changes would help.",
+        "Tell why there is no way to hold a part, which rule took the last candidates away, and which "
+        "changes would help.",
         DesignArguments,
         explain,
     ),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option, spread, tell
+from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
@@ -40,15 +40,15 @@ TOOLKITS, WORK = "Toolkits to try", "The work"
 # Fixtures that are kept of each job.
 USUAL_BEST = "10"
 RECORDS, MEASURED, REPORT, SHEETS = "work", "measured.csv", "report.html", "sheets"
-# Parts told on the terminal that cannot be read or failed; the report names all.
-MOST_TOLD = 10
+# Parts that cannot be read or failed, as named on the terminal; the report names all.
+MOST_NAMED = 10
 
 PartsArgument = Annotated[
     list[str],
     typer.Argument(
         metavar="PARTS...",
-        help="Parts: files, folders with drawings, built-in names; or files of jobs (.toml, .csv), each with its part, "
-        "toolkits, restrictions and loads.",
+        help="Parts: files, folders with drawings, built-in names; or files of jobs (.toml, .csv), each "
+        "with its part, toolkits, restrictions and loads.",
     ),
 ]
 SheetsOption = Annotated[
@@ -66,8 +66,8 @@ def batch(
     toolkit: list[str] | None = option(
         TOOLKITS,
         "NAMES|FILES",
-        "Vises, plates and fences by name or from TOML files, such as plate-20mm,own.toml; or a kind (vise, plate, fence) "
-        "with the lists below. May be repeated.",
+        "Vises, plates and fences by name or from TOML files, such as plate-20mm,own.toml; or a kind (vise, "
+        "plate, fence) with the lists below. May be repeated.",
         "--toolkit",
         "--toolkits",
     ),
@@ -97,15 +97,15 @@ def batch(
     records: str | None = option(
         WORK,
         "URL|DIR",
-        "Where records are kept, if not in the folder of --out: a folder that all workers of a cluster see, or an object "
-        "store such as s3://bucket/batch. Workers write there themselves.",
+        "Where records are kept, if not in the folder of --out: a folder that all workers of a cluster see, "
+        "or an object store such as s3://bucket/batch. Workers write there themselves.",
     ),
     reading: PartWords,
 ) -> None:
     """Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files.
 
-    What is done is kept as it comes: the same command again, after whatever ended the first, goes on where that stopped. A
-    part that cannot be read is a row with the reason.
+    What is done is kept as it comes: the same command again, after whatever ended the first, goes on where
+    that stopped. A part that cannot be read is a row with the reason.
 
     Example: workhold batch parts/ --toolkit plate-20mm,clamp-plate-20mm --out results
     """
@@ -149,12 +149,12 @@ def batch(
             done = run_batch(requests, kept, Work(store, queue, measured, progress, stop))
     spent = perf_counter() - start
     report = write_all(done, store, measured, folder, spent, progress.events, sheets)
-    from workhold.cli.tables import print_tables
+    from workhold.cli.table import print_tables
 
-    for part, reason in list(report.bad)[:MOST_TOLD]:
-        tell(f"{part}: {reason}")
-    if len(report.bad) > MOST_TOLD:
-        tell(f"and {len(report.bad) - MOST_TOLD:,} more, which the report names.")
+    for part, reason in list(report.bad)[:MOST_NAMED]:
+        print_remark(f"{part}: {reason}")
+    if len(report.bad) > MOST_NAMED:
+        print_remark(f"and {len(report.bad) - MOST_NAMED:,} more, which the report names.")
     if json_:
         bad = [{"part": part, "reason": reason} for part, reason in report.bad]
         counts = {"parts": len(done.parts), "found": done.fresh, "known_before": done.kept}
@@ -164,17 +164,17 @@ def batch(
     else:
         print_tables(report.counts, run_sentence(done, spent), f"Written to {folder}: {', '.join(names)}.")
     if not has_parquet():
-        tell("the tables are comma-separated values: with pyarrow>=18 installed they are Parquet.")
+        print_remark("the tables are comma-separated values: with pyarrow>=18 installed they are Parquet.")
     gone = getattr(queue, "gone", "")
     if gone:
         raise InputError(gone)
     if not done.is_complete:
-        tell("interrupted: start the same command again to go on.")
+        print_remark("interrupted: start the same command again to go on.")
         raise typer.Exit(INTERRUPTED)
 
 
 def refuse_no_cluster() -> None:
-    """Refuse a cluster where the library for it is not installed.
+    """Refuses a cluster where the library for it is not installed.
 
     Raises
     ------
@@ -190,7 +190,7 @@ def refuse_no_cluster() -> None:
 
 
 def is_seated(held: HeldIn) -> bool:
-    """Whether seating is asked for, of one clamp or a vise: with two clamps there is nothing to compile for it."""
+    """Whether seating is asked for with one clamp or a vise; with two clamps it needs no kernels."""
     from workhold.model.query import Query
 
     return (
@@ -205,7 +205,7 @@ def place_to_work(
     processes: int | None,
     store: Store | None,
 ) -> LocalWorkers | ClusterWorkers:
-    """The queue asked for; ``store`` is where the workers of a cluster put records themselves."""
+    """Makes the queue asked for; the workers of a cluster write records to ``store`` themselves."""
     if cluster is None and processes is None:
         from workhold.batch.workers import LocalWorkers, processor_count
 
@@ -225,7 +225,7 @@ def requests_of(
     reading: PartWords,
     folder: Path,
 ) -> list[Request]:
-    """What is asked of each part, in the order of the command line.
+    """Lists what is asked of each part, in the order of the command line.
 
     Raises
     ------
@@ -277,7 +277,7 @@ def asked_toolkits(
     peg_radius: str | None,
     reading: PartWords,
 ) -> list[Named]:
-    """The toolkits of names, files and lists; of several names one may be a kind.
+    """Lists the toolkits of names, files and lists; of several names one may be a kind.
 
     Raises
     ------
@@ -314,7 +314,7 @@ def asked_of(words: AskedWords, unit: Unit) -> dict[str, Any]:
 
 
 def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -> list[HeldIn]:
-    """What is asked in each toolkit.
+    """Lists what is asked in each toolkit.
 
     Raises
     ------
@@ -328,7 +328,7 @@ def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -
 
 
 def run_sentence(done: Batch, spent: float) -> str:
-    """How the run went."""
+    """Says how many answers the run found, and in what time."""
     from workhold.cli.tables import plural
 
     before = f"; {done.kept:,} were known from before" if done.kept else ""
@@ -340,7 +340,7 @@ def run_sentence(done: Batch, spent: float) -> str:
 def write_all(
     done: Batch, store: Store, measured: Measured, folder: Path, spent: float, events: list[str], sheets: bool
 ) -> Report:
-    """Write tables, report and, where asked for, sheets.
+    """Writes tables, report and, where asked for, sheets.
 
     Raises
     ------

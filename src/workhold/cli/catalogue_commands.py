@@ -14,12 +14,12 @@ import typer
 
 from workhold.cli.commands import option, spread
 from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
-from workhold.cli.values import length_unit, optional_length, picture_ending
+from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.values import length_unit, optional_length
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.cli.tables import Table
+    from workhold.cli.table import Table
     from workhold.files.part.load import Loaded
     from workhold.files.toolkit_file import LoadedToolkit
     from workhold.fixels.table import Form
@@ -32,12 +32,12 @@ __all__ = ["features", "parts", "toolkits"]
 def parts(unit: str | None = SHOWN_UNIT, json_: JsonOption = False) -> None:
     """List the built-in parts.
 
-    They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any of the
-    names can stand for PART.
+    They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any
+    of the names can stand for PART.
 
     Example: workhold design widget --pitch 8 --columns 1 --peg-radius 3
     """
-    from workhold.cli.tables import Table, print_tables
+    from workhold.cli.table import Table, print_tables
     from workhold.files.part.finding import builtin_parts
     from workhold.files.part.load import load
 
@@ -72,14 +72,14 @@ def toolkits(
 ) -> None:
     """List the vises, plates and fences that come with workhold, or show all figures of one.
 
-    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp, two-clamp- with two, fence- with
-    a fence and one locator. The others are vises with such a plate on each jaw; their number of columns is a usual one:
-    your jaws may have more or fewer.
+    Those named clamp- are plates with a lattice of dowel holes, three locators and a clamp, two-clamp- with
+    two, fence- with a fence and one locator. The others are vises with such a plate on each jaw; their number
+    of columns is a usual one: your jaws may have more or fewer.
 
     Example: workhold toolkits plate-one-inch --unit inch
     """
     shown = None if unit is None else length_unit(unit)
-    from workhold.cli.tables import print_tables
+    from workhold.cli.table import print_tables
     from workhold.files.toolkit_file import load_toolkit, preset_names
     from workhold.units import MILLIMETRE
 
@@ -103,7 +103,7 @@ def toolkits(
 
 def toolkits_table(unit: Unit) -> Table:
     """All presets, one line each, with lengths in a unit."""
-    from workhold.cli.tables import Table
+    from workhold.cli.table import Table
     from workhold.files.toolkit_file import load_toolkit, preset_names
 
     of = unit.abbreviation
@@ -124,7 +124,7 @@ def toolkits_table(unit: Unit) -> Table:
 
 def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
     """Every figure of a toolkit, one line each."""
-    from workhold.cli.tables import Table
+    from workhold.cli.table import Table
 
     toolkit, of = loaded.toolkit, unit.abbreviation
     first, finest = toolkit.carriers[0], unit.decimals + 1
@@ -154,7 +154,7 @@ def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
 
 
 def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
-    """Yield what only a toolkit of its kind has, and its value in words."""
+    """Yields the figures that only this kind of toolkit has, each with its value in words."""
     from workhold.fixels.kinds import table_of
 
     toolkit = loaded.toolkit
@@ -214,27 +214,22 @@ def features(
 
     Example: workhold features part.dxf --draw faces.svg
     """
-    from workhold.files.atomic import write_bytes
-
     shown_unit = length_unit(reading.unit)
     radius = optional_length("--peg-radius", peg_radius, shown_unit)
     if radius is not None and radius < 0:
         raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more.")
-    picture = None if draw is None else Path(draw)
-    ending = None
-    if picture is not None:
-        ending = picture_ending(picture)
-        refuse_output(picture, (part,), force)
+    picture = asked_picture(draw, (part,), force)
     if layers:
         list_layers(part, reading, shown_unit, json_)
         return
     loaded = reading.load(part)
     workpiece = loaded.workpiece
 
-    from workhold.cli.tables import face_table, jumps_sentence, plural, print_tables
+    from workhold.cli.table import print_tables
+    from workhold.cli.tables import face_table, jumps_sentence, plural
 
     if parts:
-        list_parts(loaded, shown_unit, picture, ending, json_)
+        list_parts(loaded, shown_unit, picture, json_)
         return
 
     if not json_:
@@ -243,12 +238,10 @@ def features(
         size = f"{shown_unit.number(x1 - x0)} x {shown_unit.text(y1 - y0)}"
         table = face_table(workpiece, shown_unit)
         print_tables(f"{workpiece.name}: {size}, {faces}", table, *jumps_sentence(workpiece))
-    if picture is not None and ending is not None:
+    if picture is not None:
         from workhold.drawing.part_pictures import draw_features
-        from workhold.drawing.render import render
 
-        svg = draw_features(workpiece, peg_radius=radius, unit=shown_unit)
-        write_bytes(picture, render(svg, ending))
+        write_picture(picture, draw_features(workpiece, peg_radius=radius, unit=shown_unit))
     if json_:
         from workhold.presenting.data import part_data
 
@@ -258,14 +251,16 @@ def features(
 
 
 def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> None:
-    """Print the layers of a DXF file; sizes in JSON are in mm where the unit is known, else in units of the drawing.
+    """Prints the layers of a DXF file.
+
+    In JSON sizes are in mm where the unit is known, else in units of the drawing.
 
     Raises
     ------
     InputError
         For other files.
     """
-    from workhold.cli.tables import Table, print_tables
+    from workhold.cli.table import Table, print_tables
     from workhold.files.part.survey import drawn_layers
 
     found, known = drawn_layers(part, reading.drawing_unit, reading.unit)
@@ -290,10 +285,9 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
     print_tables(table, "Read only some of them with --layer NAME, which may be repeated.")
 
 
-def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, ending: str | None, as_json: bool) -> None:
-    """Print the parts of a file, and draw them."""
-    from workhold.cli.tables import Table, print_tables
-    from workhold.files.atomic import write_bytes
+def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) -> None:
+    """Prints the parts of a file, and draws them."""
+    from workhold.cli.table import Table, print_tables
 
     table = Table(
         (">part", f">width {unit.abbreviation}", f">height {unit.abbreviation}", ">holes", "lowest corner")
@@ -306,9 +300,8 @@ def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, ending: str | N
         )
     if not as_json:
         print_tables(table)
-    if picture is not None and ending is not None:
+    if picture is not None:
         from workhold.drawing.part_pictures import draw_parts
-        from workhold.drawing.render import render
 
         svg = draw_parts(
             loaded.workpiece.name,
@@ -316,7 +309,7 @@ def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, ending: str | N
             loaded.number,
             unit=unit,
         )
-        write_bytes(picture, render(svg, ending))
+        write_picture(picture, svg)
     if as_json:
         parts = [
             {"number": p.number, "bounds": list(p.bounds), "holes": len(p.loops) - 1} for p in loaded.parts

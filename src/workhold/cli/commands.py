@@ -18,14 +18,14 @@ import typer
 from attrs import fields, resolve_types
 from typer.core import TyperCommand, TyperGroup
 
-from workhold.limits import NO_ROOM
+from workhold.errors import NO_ROOM
 from workhold.plain import plain, shortened
 
-__all__ = ["PlainCommand", "PlainGroup", "forget", "option", "spread", "tell"]
+__all__ = ["PlainCommand", "PlainGroup", "forget", "option", "spread", "print_remark"]
 
 
-def tell(message: str) -> None:
-    """One line on stderr, whatever the message quotes; a full disk, as of a log, loses it and changes nothing else."""
+def print_remark(message: str) -> None:
+    """Prints a remark in one line on stderr; where the disk is full the remark is lost, and nothing else."""
     try:
         typer.echo(f"workhold: {plain(shortened(message))}", err=True)
     except OSError as error:
@@ -35,7 +35,10 @@ def tell(message: str) -> None:
 
 
 def forget(stream: TextIO) -> None:
-    """Nobody reads a stream any more, or it has no room: send the rest nowhere, so that the interpreter ends in peace."""
+    """Sends the rest of a stream nowhere, once its reader is gone or the disk is full.
+
+    Otherwise the interpreter would complain when it flushes the stream at its end.
+    """
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
@@ -47,12 +50,15 @@ WIDEST_ENTRY = 27
 
 
 def option(panel: str | None, metavar: str, help: str, *names: str, default: str | None = None) -> Any:
-    """An option of a section of the help, as the default value of a parameter or of a field in a group of words."""
+    """Makes an option in a section of the help: the default of a parameter, or of a field of a group."""
     return typer.Option(default, *names, metavar=metavar, help=help, rich_help_panel=panel)
 
 
 def spread(command: Callable[..., None]) -> Callable[..., None]:
-    """A command in whose place of each group of words, an attrs class of options, the class's fields stand as options."""
+    """Replaces each parameter of a command that is a group of options by the options of the group.
+
+    A group is an attrs class whose fields are options.
+    """
     kinds = get_type_hints(command, include_extras=True)
     groups = {
         name: kinds[name] for name in signature(command).parameters if hasattr(kinds[name], "__attrs_attrs__")
@@ -81,25 +87,26 @@ class PlainCommand(TyperCommand):
     """A subcommand whose parameters are words."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """The parameters and the help option, whose words are not checked here."""
+        """Returns the parameters and the help option, whose words are not checked here."""
         return as_typed(super().get_params(ctx))
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Usage, text, and the parameters by their sections."""
+        """Writes usage, text, and the parameters by their sections."""
         self.format_usage(ctx, formatter)
         self.format_help_text(ctx, formatter)
         write_sections(self, ctx, formatter)
 
 
 class PlainGroup(TyperGroup):
-    """A group of subcommands; without any word it shows the help."""
+    """A group of subcommands, which shows the help where no subcommand is named."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """The parameters and the help option, whose words are not checked here."""
+        """Returns the parameters and the help option, whose words are not checked here."""
         return as_typed(super().get_params(ctx))
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Read the words in front of the subcommand, or show the help where there is none and no shell asks for one.
+        """Parses the words before the subcommand; without any word it shows the help, unless a shell
+        completes.
 
         Raises
         ------
@@ -112,7 +119,7 @@ class PlainGroup(TyperGroup):
         return super().parse_args(ctx, args)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Usage, text, options, subcommands with the first paragraph of their texts, and the epilog as it is."""
+        """Writes usage, text, options, subcommands with their first paragraphs, and the epilog as it is."""
         self.format_usage(ctx, formatter)
         self.format_help_text(ctx, formatter)
         write_sections(self, ctx, formatter)
@@ -125,7 +132,7 @@ class PlainGroup(TyperGroup):
 
 
 def as_typed(parameters: list[Any]) -> list[Any]:
-    """The same parameters, which from now on hand on a word, or None for an option not given, without a check."""
+    """Lets parameters hand on a word, or None for an option not given, without a check."""
     for parameter in parameters:
         if "process_value" not in vars(parameter):
             parameter.process_value = partial(taken, parameter, parameter.process_value)
@@ -133,19 +140,19 @@ def as_typed(parameters: list[Any]) -> list[Any]:
 
 
 def taken(parameter: Any, checked: Callable[[Any, Any], Any], ctx: Any, value: Any) -> Any:
-    """The value of a parameter; what is neither a word nor missing by right is for Typer to check."""
+    """Returns the value of a parameter; Typer checks what is neither a word nor an option not given."""
     if isinstance(value, str) or (value is None and not parameter.required):
         return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
     return checked(ctx, value)
 
 
 def heading(words: str) -> str:
-    """A heading of the help, bold on a terminal."""
+    """Makes a heading of the help, bold on a terminal."""
     return typer.style(words, bold=True)
 
 
 def write_sections(command: Any, ctx: Any, formatter: Any) -> None:
-    """Write a command's parameters, each in the section named by its panel; the options without one come last."""
+    """Writes the parameters of a command, each in the section of its panel; those without one come last."""
     sections: dict[str, list[tuple[str, str]]] = {}
     for parameter in command.get_params(ctx):
         entry = parameter.get_help_record(ctx)

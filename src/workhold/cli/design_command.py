@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option, spread, tell
+from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.design_report import explain_none, picture_names
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
@@ -42,8 +42,8 @@ __all__ = ["design"]
 SEARCH = "The search"
 EVERY_TYPE = "both"
 ENGINES = ("curves", "algebra")
-# From this part of the work on it is told how many fixtures there will be, where they are so many or more; the search finds
-# them in the first part. Bytes of a fixture in a file of each form.
+# From this part of the work on a remark says how many fixtures there will be, where they are so many or more;
+# the search finds them in the first part. Bytes of a fixture in a file of each form.
 KNOWN_FROM, SEARCH_SHARE, MANY = 0.05, 0.9, 200_000
 BYTES = {"json": 960, "csv": 550, "npz": 209}
 
@@ -73,8 +73,8 @@ def design(
     listing: str | None = option(
         SEARCH,
         "best|all",
-        "Of two clamps: best: for each seat of the locators its best pair of clamps, and how many there are; all: every "
-        "pair. best if not given.",
+        "Of two clamps: best: for each seat of the locators its best pair of clamps, and how many there "
+        "are; all: every pair. best if not given.",
     ),
     threads: str | None = option(SEARCH, "N", "Threads to use; all processors if not given."),
     engine: str = option(
@@ -96,9 +96,9 @@ def design(
 ) -> None:
     """Find every way to hold PART in a vise, or on a plate with a clamp or two.
 
-    In a vise four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on the right (type
-    II). On a plate three locators stand in holes, and a clamp pushes along a row or a column, or two do.
-    Lengths are in millimetres, or in the unit of --unit, or carry their own: 0.5in.
+    In a vise four pegs stand in holes of the two jaws: two on each (type I), or three on the left and one on
+    the right (type II). On a plate three locators stand in holes, and a clamp pushes along a row or a column,
+    or two do. Lengths are in millimetres, or in the unit of --unit, or carry their own: 0.5in.
 
     Example: workhold design part.dxf --vise plate-20mm --out part.json
     """
@@ -142,8 +142,10 @@ def design(
             compile_seating(cancel)
         streamed = out if form == "npz" and engine == "curves" else None
         with search_progress() as progress:
-            told = foretelling(progress, query, out, form)
-            result = answered(query, engine, streamed, threads=workers, progress=told, cancel=cancel)
+            shown_progress = with_size_remark(progress, query, out, form)
+            result = answered(
+                query, engine, streamed, threads=workers, progress=shown_progress, cancel=cancel
+            )
     if out is not None and streamed is None:
         result = write_found(result, out, form)
     if json_:
@@ -164,32 +166,36 @@ def design(
         draw_pictures(result, folder, out, shown)
 
 
-def foretelling(
+def with_size_remark(
     progress: Callable[[float, int], None], query: Query, out: str | None, form: str
 ) -> Callable[[float, int], None]:
-    """The same progress, which says once how large a file it will be, as soon as that can be told and where it matters."""
+    """Wraps a progress function so that it says once how large a large result file will be.
+
+    It says so as soon as the number of fixtures can be estimated.
+    """
     if out is None or query.best is not None or query.has_seating_rules:
         return progress
-    told: list[float] = []
+    said_at: list[float] = []
 
     def followed(fraction: float, found: int) -> None:
         progress(fraction, found)
-        if told or fraction < KNOWN_FROM:
+        if said_at or fraction < KNOWN_FROM:
             return
-        told.append(fraction)
+        said_at.append(fraction)
         fixtures = round(found / min(fraction / SEARCH_SHARE, 1.0))
         if fixtures >= MANY:
-            size = f"some {float(f'{fixtures:.1e}'):,.0f} fixtures, {fixtures * BYTES[form] / 1e6:,.0f} MB in {out}"
+            megabytes = fixtures * BYTES[form] / 1e6
+            size = f"some {float(f'{fixtures:.1e}'):,.0f} fixtures, {megabytes:,.0f} MB in {out}"
             columns = (
                 "" if form == "npz" else "; a name that ends in .npz gives a smaller file that opens at once"
             )
-            tell(f"this will be {size}: --best K keeps only the best K{columns}.")
+            print_remark(f"this will be {size}: --best K keeps only the best K{columns}.")
 
     return followed
 
 
 def answered(query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any) -> Result:
-    """The answer of an engine, which is imported only now, written on the way where a file is named for that."""
+    """Returns the answer of an engine; where ``streamed`` names a file it is written during the search."""
     if engine == "algebra":
         from workhold.algebra.engine import answer_by_algebra
         from workhold.search.seated import seated_answer
@@ -207,19 +213,14 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
 def report(
     result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit, unfit: bool
 ) -> None:
-    """Tell about a result that is written; the words go to stderr where stdout carries the file."""
-    from workhold.cli.tables import (
-        counts_sentence,
-        print_tables,
-        proof_sentences,
-        result_table,
-        unfit_sentence,
-    )
+    """Reports a result; the words go to stderr where stdout carries the file."""
+    from workhold.cli.table import print_tables
+    from workhold.cli.tables import counts_sentence, proof_sentences, result_table, unfit_sentence
     from workhold.listing.identity import entries
 
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     for note in result.notes:
-        tell(note)
+        print_remark(note)
     shown = entries(result, unfit)
     if len(result) and listed > 0:
         print_tables(result_table(result, shown, listed, unit), stream=stream)
@@ -237,11 +238,11 @@ def report(
         print_tables(f"Written to {out}.", stream=stream)
     if not result.complete:
         marked = f", and {out} is marked so" if written else ""
-        tell(f"interrupted: this is a part of the fixtures only{marked}.")
+        print_remark(f"interrupted: this is a part of the fixtures only{marked}.")
 
 
 def report_data(result: Result, listed: int, unfit: bool, out: str | None) -> dict[str, Any]:
-    """What :func:`report` says, as plain data."""
+    """Returns what :func:`report` says as plain data."""
     from workhold.listing.identity import entries
     from workhold.presenting.data import result_data
 
@@ -251,7 +252,10 @@ def report_data(result: Result, listed: int, unfit: bool, out: str | None) -> di
 def further_data(
     result: Result, engine: str, threads: int | None, folder: Path | None, unit: Unit
 ) -> dict[str, Any]:
-    """Why there is no fixture, and the pictures drawn, as plain data; a search that was interrupted has neither."""
+    """Returns why there is no fixture, and the pictures drawn, as plain data.
+
+    A search that was interrupted has neither.
+    """
     explained, written = None, []
     if result.complete and not any(result.found.values()) and engine == "curves":
         from workhold.presenting.data import explanation_data
@@ -271,9 +275,10 @@ def further_data(
 
 
 def draw_pictures(result: Result, folder: Path, out: str | None, unit: Unit) -> None:
-    """Draw the best fixtures and say where they are."""
+    """Draws the best fixtures and says where they are."""
     from workhold.cli.design_report import draw_best
-    from workhold.cli.tables import plural, print_tables
+    from workhold.cli.table import print_tables
+    from workhold.cli.tables import plural
 
     written = draw_best(result, folder, unit)
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from workhold.model.search_report import Explanation
     from workhold.units import Unit
 
-__all__ = ["BEST_DRAWN", "NEAREST_MISS", "draw_best", "draw_one", "explain_none", "picture_names"]
+__all__ = ["NEAREST_MISS", "draw_best", "draw_one", "explain_none", "picture_names"]
 
 BEST_DRAWN = 12
 ENDINGS = (".svg", ".png")
@@ -34,7 +34,7 @@ def picture_name(place: int) -> str:
 
 
 def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
-    """Draw one fixture of a result's part and vise into a folder, as SVG and PNG; returns the files written.
+    """Draws one fixture of a result into a folder, as SVG and PNG, and returns the files written.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
 
 
 def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
-    """Write pictures, by name, as SVG and PNG; returns the files written. Where one cannot be written none is left."""
+    """Writes pictures, by name, as SVG and PNG, and returns the files written; if one fails none is left."""
     from workhold.drawing.render import render
     from workhold.files.atomic import unfinished, write_bytes
 
@@ -74,10 +74,10 @@ def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
 
 
 def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
-    """Draw the best twelve entries and the thumbnails into a folder, as SVG and PNG; returns the files written.
+    """Draws the best twelve entries and the thumbnails into a folder, as SVG and PNG; returns the files.
 
-    The folder is created. Pictures of these names from an earlier design are replaced, or removed where this design has
-    fewer fixtures; nothing else in the folder is touched.
+    The folder is created. Pictures of these names from an earlier design are replaced, or removed where this
+    design has fewer fixtures; nothing else in the folder is touched.
 
     Raises
     ------
@@ -112,7 +112,7 @@ MOST_HELPS = 6
 def explain_none(
     result: Result, threads: int | None, folder: Path | None, unit: Unit, stream: TextIO
 ) -> None:
-    """Say what each rule took away, what came nearest, and what would help.
+    """Explains what each rule took away, what came nearest, and what would help.
 
     Parameters
     ----------
@@ -127,8 +127,9 @@ def explain_none(
 
 
 def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO) -> None:
-    """Write the explanation."""
-    from workhold.cli.tables import Table, fixture_tables, print_tables
+    """Prints the explanation."""
+    from workhold.cli.table import Table, print_tables
+    from workhold.cli.tables import fixture_tables
 
     print_tables("", stream=stream)
     if explanation.contacts == 0:
@@ -154,14 +155,14 @@ def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, st
 def draw_nearest_miss(
     explanation: Explanation, result: Result, folder: Path, unit: Unit, stream: TextIO
 ) -> None:
-    """Draw the nearest miss into a folder, as SVG and PNG.
+    """Draws the nearest miss into a folder, as SVG and PNG.
 
     Raises
     ------
     InputError
         When the folder cannot be written.
     """
-    from workhold.cli.tables import print_tables
+    from workhold.cli.table import print_tables
 
     assert explanation.nearest is not None
     written = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)

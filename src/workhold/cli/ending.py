@@ -1,8 +1,8 @@
-"""How the command ends when it is told to, by Ctrl-C or SIGTERM, whatever it is doing.
+"""How the command ends on Ctrl-C or SIGTERM, whatever it is doing.
 
-Python acts on a signal between two of its own steps, and then waits for its threads: a long step in compiled code would
-keep the end waiting. So a thread of its own sees the signal at once. It gives the program a moment to end in order, and
-then ends it, without unfinished files. A second signal ends it at once.
+Python acts on a signal between two of its own steps, and then waits for its threads: a long step in compiled
+code would keep the end waiting. So a thread of its own sees the signal at once. It gives the program a moment
+to end in order, and then ends it, without unfinished files. A second signal ends it at once.
 """
 
 from __future__ import annotations
@@ -30,26 +30,30 @@ __all__ = [
 
 INTERRUPTED, TERMINATED = 130, 143
 CODES = {int(signal.SIGINT): INTERRUPTED, int(signal.SIGTERM): TERMINATED}
-# Seconds for an orderly end, and within which signals are one: some programs tell a process and its whole group.
+# Seconds for an orderly end, and within which signals are one: some programs signal a process and its
+# whole group.
 GRACE, AT_ONCE = 1.5, 0.05
 # What clears a progress bar off its line and shows the cursor again.
 PLAIN_LINE = b"\r\x1b[2K\x1b[?25h"
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C. A plain KeyboardInterrupt that passes code made from text ends Python by the signal, whatever catches it."""
+    """Ctrl-C, as an exception of its own.
+
+    A plain KeyboardInterrupt that passes code made from text ends Python by the signal, whatever catches it.
+    """
 
 
 class Terminated(SystemExit):
-    """SIGTERM."""
+    """SIGTERM, as an exception."""
 
 
 class Ending:
-    """What this process has been told, and what it has to keep."""
+    """The signals that this process has received, and whether it has findings to keep."""
 
     def __init__(self) -> None:
         self.watched = False
-        self.told_at: float | None = None
+        self.noted_at: float | None = None
         self.timer: threading.Timer | None = None
         self.keeping = False
         self.said = False
@@ -57,19 +61,19 @@ class Ending:
         self.heard = False
         self.code: int | None = None
 
-    def tell(self, number: int) -> None:
-        """Take note of a signal."""
+    def note(self, number: int) -> None:
+        """Notes a signal: the first starts a timer, a second one ends the process."""
         now = monotonic()
-        if self.told_at is None:
-            self.told_at = now
+        if self.noted_at is None:
+            self.noted_at = now
             self.timer = threading.Timer(GRACE, self.lose_patience, (number,))
             self.timer.daemon = True
             self.timer.start()
-        elif now - self.told_at > AT_ONCE:
+        elif now - self.noted_at > AT_ONCE:
             end_now(number)
 
     def lose_patience(self, number: int) -> None:
-        """End a program that has not ended in order, unless it was asked to keep what it has found."""
+        """Ends a program that has not ended in order, unless it keeps what it has found."""
         if not (number == signal.SIGINT and self.keeping):
             end_now(number)
 
@@ -78,7 +82,7 @@ ending = Ending()
 
 
 def end_on_signals() -> None:
-    """Let Ctrl-C and SIGTERM end this process from now on, within two seconds."""
+    """Makes Ctrl-C and SIGTERM end this process from now on, within two seconds."""
     if ending.watched or threading.current_thread() is not threading.main_thread():
         return
     ending.watched = True
@@ -94,26 +98,26 @@ def end_on_signals() -> None:
 
 
 def watch(reader: int) -> None:
-    """Tell of every signal that Python has a handler for, also while that handler has to wait."""
-    while told := os.read(reader, 1):
-        if told[0] in CODES:
-            ending.tell(told[0])
+    """Notes every signal that Python has a handler for, even while that handler has to wait."""
+    while numbers := os.read(reader, 1):
+        if numbers[0] in CODES:
+            ending.note(numbers[0])
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
-    """Ctrl-C as Python's own, see :class:`Interrupted`."""
+    """Raises :class:`Interrupted` on Ctrl-C."""
     ending.heard = True
     raise Interrupted
 
 
 def terminate(number: int, frame: FrameType | None) -> None:
-    """End on SIGTERM through the interpreter, so that temporary files are removed."""
+    """Ends on SIGTERM through the interpreter, so that temporary files are removed."""
     ending.heard, ending.code = True, TERMINATED
     raise Terminated(TERMINATED)
 
 
 def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
-    """End at once where what a signal raises cannot be passed on, as in what a library in compiled code calls back."""
+    """Ends at once where a signal's exception cannot be passed on, as in a callback of a compiled library."""
     for kind, number in ((Interrupted, signal.SIGINT), (Terminated, signal.SIGTERM)):
         if issubclass(lost.exc_type, kind):
             end_now(number)
@@ -121,14 +125,16 @@ def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
 
 
 def leave(code: int) -> NoReturn:
-    """End the program in order with an exit code."""
+    """Ends the program in order with an exit code."""
     ending.code = code
     sys.exit(code)
 
 
 def keep_the_code() -> None:
-    """Let no signal change the exit code any more: Python, while it clears up, would end by it. It has its output out, and
-    has waited for its threads; what clearing up would take, a program that is told to end does not wait for.
+    """Makes signals leave the exit code alone while Python clears up.
+
+    By then the output is written and the threads have ended. A program that has received a signal does not
+    wait for the rest.
     """
     for number in CODES:
         signal.signal(number, signal.SIG_IGN)
@@ -140,7 +146,7 @@ def keep_the_code() -> None:
 
 
 def end_now(number: int) -> None:
-    """End this process from any thread, without unfinished files."""
+    """Ends this process from any thread, without unfinished files."""
     atomic = sys.modules.get("workhold.files.atomic")
     if atomic is not None:
         atomic.remove_unfinished()
@@ -151,7 +157,7 @@ def end_now(number: int) -> None:
 
 
 def say_interrupted() -> None:
-    """One sentence, once."""
+    """Prints one sentence, once."""
     if not ending.said:
         ending.said = True
         line = PLAIN_LINE if os.isatty(2) else b""
@@ -160,14 +166,17 @@ def say_interrupted() -> None:
 
 
 def keep_what_is_found() -> None:
-    """Let the search that is being interrupted, if one is, take its time to hand over what it has found."""
+    """Gives an interrupted search, if there is one, the time to return what it has found."""
     ending.keeping = True
 
 
 @contextmanager
 def ask_to_stop(then: str) -> Iterator[threading.Event]:
-    """An event that Ctrl-C within the block sets, which is said with what ``then`` is; another one ends the program, and so
-    does a moment without any finding (see :func:`keep_what_is_found`)."""
+    """An event that Ctrl-C within the block sets; ``then`` says on stderr what happens next.
+
+    Another Ctrl-C ends the program, and so does a moment without any finding (see
+    :func:`keep_what_is_found`).
+    """
     event = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield event

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from workhold.cli.commands import option, spread, tell
+from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
@@ -37,8 +37,8 @@ def explore(
     vise: list[str] | None = option(
         SWEEP,
         "NAMES|FILES",
-        "Vises and plates by name or from TOML files, such as plate-20mm,clamp-plate-20mm; all presets if neither this nor "
-        "--pitch is given.",
+        "Vises and plates by name or from TOML files, such as plate-20mm,clamp-plate-20mm; all presets if "
+        "neither this nor --pitch is given.",
     ),
     toolkit: str | None = TOOLKIT,
     pitch: str | None = option(SWEEP, "LIST", "Pitches, such as 8,10,12.5 or 10x12.5."),
@@ -50,7 +50,8 @@ def explore(
     json_: JsonOption = False,
     reading: PartWords,
 ) -> None:
-    """Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with its figures.
+    """Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with its
+    figures.
 
     The lists of pitches, columns and radii are combined with each other, and with each toolkit that is named.
 
@@ -83,7 +84,8 @@ def explore(
                 found.append(item)
                 progress(len(found) / len(toolkits), sum(one.fixtures for one in found))
     types = list(dict.fromkeys(name for one in found for name in one.found))
-    # Toolkits with one clamp and with two have a default ranking each; the first that can be asked tells the columns.
+    # Toolkits with one clamp and with two have a default ranking each; the first that can be asked gives the
+    # columns.
     ranking = next((query.ranking for _, query in queries if not isinstance(query, InputError)), ())
     if not json_:
         print_explored(found, types, ranking, shown)
@@ -94,19 +96,19 @@ def explore(
         from workhold.presenting.data import explored_data
 
         best = first_of(found, ranking)
-        told = {"ranking": list(ranking), "first_choice": None if best is None else best.name}
-        print_json(toolkits=explored_data(found), **told, written=[] if out is None else [out])
+        choice = {"ranking": list(ranking), "first_choice": None if best is None else best.name}
+        print_json(toolkits=explored_data(found), **choice, written=[] if out is None else [out])
     elif out is not None:
-        from workhold.cli.tables import print_tables
+        from workhold.cli.table import print_tables
 
         print_tables(f"Written to {out}.")
     if len(found) < len(toolkits):
-        tell(f"interrupted: {len(toolkits) - len(found)} toolkits were not tried.")
+        print_remark(f"interrupted: {len(toolkits) - len(found)} toolkits were not tried.")
         raise typer.Exit(INTERRUPTED)
 
 
 def refuse_unknown_faces(workpiece: Workpiece, restrictions: Restrictions) -> None:
-    """Refuse faces that do not exist, for which no toolkit is to blame.
+    """Refuses faces that do not exist, before any toolkit is tried.
 
     Raises
     ------
@@ -124,14 +126,16 @@ FIGURES_KEPT = 3
 
 
 def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
-    """Write the table and say which toolkit is best."""
-    from workhold.cli.tables import Table, figure_text, heading, print_tables
+    """Prints the table and says which toolkit is best."""
+    from workhold.cli.table import Table, print_tables
+    from workhold.cli.tables import figure_text, heading
     from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR
 
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
     figures = [figure for key in keys for figure in FIGURES if figure.key == key]
-    # What is told of all, then what there may be no room for: later figures, and of which types the fixtures are.
+    # What is known of all, then what there may be no room for: later figures, and of which types the fixtures
+    # are.
     headings = [*(f">{heading(figure, unit)}" for figure in figures), *(f">type {name}" for name in types)]
     table = Table(("toolkit", ">fixtures", *headings), spare=max(len(headings) - FIGURES_KEPT, 0))
     for item in found:
@@ -148,14 +152,14 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
             print_tables(f"{item.name}: {item.reason}")
     best = first_of(found, ranking)
     if best is not None:
-        told = [f for f in (*figures[1:], figures[0]) if f.key in best.figures]
-        words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in told)
+        shown = [f for f in (*figures[1:], figures[0]) if f.key in best.figures]
+        words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in shown)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         print_tables(f"First choice: {best.name}; its first fixture has {words}.{unsold}")
 
 
 def first_of(found: list[Explored], ranking: tuple[str, ...]) -> Explored | None:
-    """The toolkit to take, see :func:`workhold.search.exploring.first_choice`."""
+    """Returns the toolkit to take, see :func:`workhold.search.exploring.first_choice`."""
     from workhold.files.toolkit_file import is_sold
     from workhold.search.exploring import first_choice
 
@@ -163,7 +167,7 @@ def first_of(found: list[Explored], ranking: tuple[str, ...]) -> Explored | None
 
 
 def table_text(found: list[Explored], types: list[str]) -> str:
-    """The table as comma-separated values; lengths in mm, forces in N."""
+    """Formats the table as comma-separated values; lengths in mm, forces in N."""
     from workhold.model.quality import FIGURES
 
     stream = io.StringIO()

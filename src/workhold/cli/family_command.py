@@ -5,6 +5,7 @@ The terminal shows the curve, what was left out, and the plan.
 
 from __future__ import annotations
 
+from datetime import date
 from math import isfinite
 from pathlib import Path
 from time import perf_counter
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from workhold.cli.commands import option, spread, tell
+from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.jobs import asked_of, jobs_of
 from workhold.cli.options import PartWords
@@ -28,30 +29,30 @@ if TYPE_CHECKING:
     from workhold.family.family import Family
     from workhold.family.members import Threshold
     from workhold.family.plan import Plan, SetUp
-    from workhold.fixels.toolkit import Toolkit
     from workhold.units import Unit
 
-__all__ = ["family", "report"]
+__all__ = ["family"]
 
 # Letters of a part's name that are shown, and up to which there is room for the figure as well.
 LONGEST_NAME, SHORT_NAME = 26, 16
 
 
 def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
-    """Tell the curve, what was left out, and the plan."""
-    from workhold.cli.tables import plural, print_tables
+    """Prints the curve, what was left out, and the plan."""
+    from workhold.cli.table import print_tables
+    from workhold.cli.tables import plural
 
     toolkit = found.toolkit
     for part in found.left_out:
-        tell(f"{part.name} is left out: {part.reason}.")
+        print_remark(f"{part.name} is left out: {part.reason}.")
     if not found.members:
         print_tables(f"No pattern holds any of the parts {toolkit.wording.inside}; {spent}.")
         return
     assert found.table is not None
     print_tables(curve_table(found, unit))
     sentences = [
-        f"{plural(len(found.members), 'part')}, {plural(len(found.table.words), 'pattern')} that hold at least one of them; "
-        f"{spent}.",
+        f"{plural(len(found.members), 'part')}, {plural(len(found.table.words), 'pattern')} that hold at "
+        f"least one of them; {spent}.",
         f"The loss is the {found.figure.words} over the best that each part has {toolkit.wording.inside}.",
     ]
     if not all(plan.point.is_least and plan.point.at_least == plan.point.setups for plan in found.plans):
@@ -63,7 +64,8 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
         )
         return
     for number_, setup in enumerate(plan.setups, 1):
-        heading = f"Set-up {number_} of {len(plan.setups)}: {pegs_words(setup, toolkit)}"
+        holes = ", ".join(peg.hole for peg in setup.standing.fixture.placed)
+        heading = f"Set-up {number_} of {len(plan.setups)}: {holes}"
         place = "" if number_ == 1 else f" ({setup.moved} to place, the rest stands)"
         print_tables("", f"{heading}{place}", setup_table(setup, found, unit))
         for one in setup.holdings:
@@ -78,7 +80,7 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
 
 
 def curve_table(found: Family, unit: Unit) -> Table:
-    """The curve: set-ups, the worst loss and on which part, and how many pegs are moved."""
+    """Tabulates the curve: set-ups, the worst loss and on which part, and how many pegs are moved."""
     from workhold.cli.tables import figure_text, heading
     from workhold.family.members import loss_text
 
@@ -97,13 +99,8 @@ def curve_table(found: Family, unit: Unit) -> Table:
     return table
 
 
-def pegs_words(setup: SetUp, toolkit: Toolkit) -> str:
-    """The holes of a set-up."""
-    return ", ".join(peg.hole for peg in setup.standing.fixture.placed)
-
-
 def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
-    """The parts of a set-up and how each lies."""
+    """Tabulates the parts of a set-up and how each lies."""
     from workhold.cli.tables import figure_text, heading
     from workhold.family.members import loss_text
     from workhold.model.setup import settings_of
@@ -140,7 +137,7 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
 
 
 def short_name(name: str) -> str:
-    """A part's name, or its beginning and end where it is long.
+    """Shortens a long name of a part to its beginning and end.
 
     >>> short_name("ell.dxf"), short_name("bracket, left, machined side up.dxf")
     ('ell.dxf', 'bracket, left… side up.dxf')
@@ -153,8 +150,6 @@ FAMILY, OUTPUT = "The family", "Results"
 EVERY_TYPE = "both"
 SECONDS = "60"
 SHEET_ENDINGS = (".pdf", ".svg", ".png")
-# A PNG is so many pixels wide; every set-up makes it higher.
-PNG_WIDTH = 2400
 
 UnfitOption = Annotated[
     bool,
@@ -180,8 +175,8 @@ PartsArgument = Annotated[
     list[str],
     typer.Argument(
         metavar="PARTS...",
-        help="Parts: files, folders with drawings, built-in names; or files of jobs (.toml, .csv), each with its part, "
-        "restrictions and loads.",
+        help="Parts: files, folders with drawings, built-in names; or files of jobs (.toml, .csv), each "
+        "with its part, restrictions and loads.",
     ),
 ]
 
@@ -202,15 +197,16 @@ def family(
     limit: list[str] | None = option(
         FAMILY,
         "FIGURE=VALUE",
-        "Use no fixture whose figure is worse, such as location-error=0.05 (mm, N or degrees). May be repeated.",
+        "Use no fixture whose figure is worse, such as location-error=0.05 (mm, N or degrees). May be "
+        "repeated.",
     ),
     unfit: UnfitOption = False,
     both_sides: BothSidesOption = False,
     zero: str | None = option(
         FAMILY,
         "POINT",
-        "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not given, the origin of "
-        "the drawing where that is on the part, else the corner.",
+        "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not "
+        "given, the origin of the drawing where that is on the part, else the corner.",
     ),
     same_zero: SameZeroOption = False,
     time_limit: str = option(
@@ -231,7 +227,8 @@ def family(
     sheets: str | None = option(
         OUTPUT,
         "FILE",
-        "Write the sheets of the plan, one for each set-up, to this file; its name ends in .pdf, .svg or .png.",
+        "Write the sheets of the plan, one for each set-up, to this file; its name ends in .pdf, .svg or "
+        ".png.",
     ),
     force: ForceOption = False,
     json_: JsonOption = False,
@@ -239,9 +236,9 @@ def family(
 ) -> None:
     """Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
 
-    A loss is a fixture's location error, or the first figure of --rank-by, over the best that the part has in this vise
-    or on this plate: 1 is the best, 2 is twice as bad. For each number of set-ups the least worst loss is told. Give
-    --setups or --max-loss to see which pegs stand where and how each part lies.
+    A loss is a fixture's location error, or the first figure of --rank-by, over the best that the part has in
+    this vise or on this plate: 1 is the best, 2 is twice as bad. For each number of set-ups the least worst
+    loss is told. Give --setups or --max-loss to see which pegs stand where and how each part lies.
 
     Example: workhold family drawings --vise plate-20mm --max-loss 1.25
     """
@@ -315,13 +312,13 @@ def family(
         return
     report(found, plan, spent, shown)
     if written:
-        from workhold.cli.tables import print_tables
+        from workhold.cli.table import print_tables
 
         print_tables(f"Written to {', '.join(written)}.")
 
 
 def refuse_one_name_twice(names: list[str]) -> None:
-    """Refuse outputs that would replace each other.
+    """Refuses outputs that would replace each other.
 
     Raises
     ------
@@ -337,7 +334,7 @@ def refuse_one_name_twice(names: list[str]) -> None:
 def write_all(
     found: Family, plan: Plan | None, out: str | None, draw: str | None, sheets: str | None, unit: Unit
 ) -> list[str]:
-    """Write what was asked for; the names of the files written."""
+    """Writes the outputs asked for, and returns the names of the files."""
     from workhold.files.atomic import write_bytes
 
     contents: dict[str, bytes] = {}
@@ -351,30 +348,19 @@ def write_all(
 
         contents[draw] = render(draw_curve(found, None if plan is None else plan.point), Path(draw).suffix)
     if sheets is not None and plan is not None:
-        contents[sheets] = sheets_bytes(found, plan, Path(sheets).suffix.lower(), unit)
+        from workhold.family.pages import draw_setups
+        from workhold.presenting.papers import pages_bytes
+
+        day = date.today()
+        pages = draw_setups(plan, found.figure, day, unit)
+        contents[sheets] = pages_bytes(pages, Path(sheets).suffix.lower(), day)
     for name, content in contents.items():
         write_bytes(name, content)
     return list(contents)
 
 
-def sheets_bytes(found: Family, plan: Plan, ending: str, unit: Unit) -> bytes:
-    """The sheets of a plan as the bytes of a file."""
-    from datetime import date
-
-    from workhold.drawing.pdf import svg_to_pdf
-    from workhold.drawing.render import svg_to_png
-    from workhold.drawing.scene import stacked
-    from workhold.family.pages import draw_setups
-
-    day = date.today()
-    pages = draw_setups(plan, found.figure, day, unit)
-    if ending == ".pdf":
-        return svg_to_pdf(pages, day)
-    return stacked(pages).encode("utf-8") if ending == ".svg" else svg_to_png(stacked(pages), PNG_WIDTH)
-
-
 def loss_of(text: str) -> float:
-    """A largest loss.
+    """Reads a largest loss.
 
     Raises
     ------
@@ -390,7 +376,7 @@ def loss_of(text: str) -> float:
 
 
 def threshold_of(text: str) -> Threshold:
-    """A threshold from words such as ``location-error=0.05``.
+    """Reads a threshold from words such as ``location-error=0.05``.
 
     Raises
     ------

@@ -10,43 +10,39 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
-from workhold.cli.commands import option, tell
+from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
-from workhold.cli.tables import Table
+from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
     choice,
     length_unit,
     optional_force,
     optional_positive_length,
-    picture_ending,
     positive_number,
 )
-from workhold.statics.loads import jaw_words
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from workhold.cli.table import Table
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.model.seating import Seat, Seating
     from workhold.seating.clamping import Gauge
     from workhold.statics.loads import LoadCase
-    from workhold.units import Unit
 
-__all__ = ["by_hand_words", "load_tables", "seat", "seating_words", "show"]
+__all__ = ["load_tables", "seat", "show"]
 
 
 def load_tables(
     cases: Sequence[LoadCase], fixture: Fixture, toolkit: Toolkit, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
-    """For each load the jaw or clamp force it needs, and each peg's forces at the one that is used."""
+    """Tabulates the force that each load needs, and each peg's forces at the closing force that is used."""
     if not cases:
         return ()
+    from workhold.statics.loads import jaw_words
+
     noun = toolkit.moving.noun
     with_friction = cases[0].needed_with_friction is not None
     columns = [
@@ -77,7 +73,7 @@ def load_tables(
         notes.append(
             "With friction the forces are not determined; what is needed with it is the best to be hoped for."
         )
-    told = f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md tells both."
+    note = f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md tells both."
     return (
         "",
         table,
@@ -85,7 +81,7 @@ def load_tables(
         "",
         f"Forces on the part at a {noun} force of {cases[0].jaw_force:.1f} N:",
         forces,
-        told,
+        note,
     )
 
 
@@ -108,16 +104,18 @@ def seat(
     opening: str | None = option(
         None,
         "LENGTH",
-        "Open the jaws, or draw the clamp back, by this much to put the part in; as far as they go if not given.",
+        "Open the jaws, or draw the clamp back, by this much to put the part in; as far as they go if not "
+        "given.",
     ),
     draw: str | None = option(None, "FILE", "Draw how the part can rest into this file, .svg or .png."),
     force: ForceOption = False,
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened: how wide open
-    that may be when the part is let go and how far off it may lie, where else it can come to rest, and what is read then.
-    Of two clamps, tell how the part is put in by hand and in which order they are tightened.
+    """Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened:
+    how wide open that may be when the part is let go and how far off it may lie, where else it can come to
+    rest, and what is read then. Of two clamps, tell how the part is put in by hand and in which order they
+    are tightened.
 
     Example: workhold seat part.json 1 --draw seats.svg
     """
@@ -125,71 +123,61 @@ def seat(
     shown_unit = length_unit(unit)
     shown_side = choice("--side", side, SIDES)
     opened = optional_positive_length("--opening", opening, shown_unit)
-    picture = None if draw is None else Path(draw)
-    ending = None
-    if picture is not None:
-        ending = picture_ending(picture)
-        refuse_output(picture, (result_file,), force)
+    picture = asked_picture(draw, (result_file,), force)
     result = result_with(result_file, rank)
     fixture = result[rank - 1]
 
-    from workhold.cli.tables import print_tables
     from workhold.seating.clamping import Gauge
 
     if not result.toolkit.closes_at_once:
-        tell_by_hand(result, rank, picture, shown_unit, json_)
+        print_by_hand(result, rank, picture, shown_unit, json_)
         return
-    gauge, told = Gauge(fixture, result.toolkit), fixture.seating
-    if told is None:
+    gauge, seating = Gauge(fixture, result.toolkit), fixture.seating
+    if seating is None:
         from workhold.cli.warming import compile_seating
         from workhold.seating.pattern import refuse_unseated
         from workhold.seating.solver import Solver
 
         refuse_unseated(result.toolkit)
         compile_seating(Event())
-        told = Solver(result.workpiece, result.toolkit).of(fixture)
-    seats = shown_seats(told, shown_side, opened, result)
+        seating = Solver(result.workpiece, result.toolkit).of(fixture)
+    seats = shown_seats(seating, shown_side, opened, result)
     if not json_:
         print_tables(
             f"Seating of fixture {rank} of {len(result)}: {result.workpiece.name}",
             "",
-            *setting_words(told, gauge, shown_unit),
+            *setting_words(seating, gauge, shown_unit),
             "",
-            *wrong_words(told, seats, opened, gauge, shown_unit),
+            *wrong_words(seating, seats, opened, gauge, shown_unit),
             seat_table(seats, gauge, shown_unit),
         )
-    for words in told.unsettled:
-        tell(words)
-    if picture is not None and ending is not None:
-        from workhold.drawing.render import render
+    for words in seating.unsettled:
+        print_remark(words)
+    if picture is not None:
         from workhold.drawing.seats import draw_seats
-        from workhold.files.atomic import write_bytes
 
         svg = draw_seats(
             seats, fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit
         )
-        write_bytes(picture, render(svg, ending))
+        write_picture(picture, svg)
         if not json_:
             print_tables(f"Drawn in {picture}.")
     if json_:
-        print_json(rank=rank, seating=told.as_fields(), written=[] if picture is None else [str(picture)])
+        print_json(rank=rank, seating=seating.as_fields(), written=[] if picture is None else [str(picture)])
 
 
-def tell_by_hand(result: Result, rank: int, picture: Path | None, unit: Unit, json_: bool) -> None:
-    """Tell how the part gets into its place under two clamps, and draw how it lies there."""
-    from workhold.cli.tables import print_tables
+def print_by_hand(result: Result, rank: int, picture: Path | None, unit: Unit, json_: bool) -> None:
+    """Prints how the part gets into its place under two clamps, and draws how it lies there."""
     from workhold.drawing.fixture_pictures import draw_fixture
-    from workhold.drawing.render import render
-    from workhold.files.atomic import write_bytes
     from workhold.seating.clamping import by_hand
 
     fixture, written = result[rank - 1], [] if picture is None else [str(picture)]
     if picture is not None:
         svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=unit)
-        write_bytes(picture, render(svg, picture_ending(picture)))
+        write_picture(picture, svg)
     if json_:
-        told = by_hand(fixture, result.workpiece, result.toolkit)
-        print_json(rank=rank, seating=None, by_hand=told.as_fields(unit.text), written=written)
+        steps = by_hand(fixture, result.workpiece, result.toolkit)
+        print_json(rank=rank, seating=None, by_hand=steps.as_fields(unit.text), written=written)
         return
     print_tables(
         f"Seating of fixture {rank} of {len(result)}: {result.workpiece.name}",
@@ -199,93 +187,97 @@ def tell_by_hand(result: Result, rank: int, picture: Path | None, unit: Unit, js
 
 
 def by_hand_words(rank: int, result: Result, unit: Unit) -> list[str]:
-    """What to do with a part that two clamps hold, in numbered steps."""
+    """Lists in numbered steps how to put in a part that two clamps hold."""
     from workhold.seating.clamping import WHY, by_hand
 
     steps = by_hand(result[rank - 1], result.workpiece, result.toolkit).steps(unit.text)
     return ["", WHY, "", *(f"{number}. {step}" for number, step in enumerate(steps, 1))]
 
 
-def shown_seats(told: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
-    """The seats that can be reached, that of the fixture first."""
-    own = [one for one in told.seats if one.is_own]
+def shown_seats(seating: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
+    """Lists the seats that can be reached; the fixture's own is first."""
+    own = [one for one in seating.seats if one.is_own]
     rest = [
         one
-        for one in told.seats
+        for one in seating.seats
         if not one.is_own and (side == "both" or one.mirrored == (side == "turned-over"))
     ]
     if opened is not None:
-        rest = [one for one in rest if told.clamping * one.difference < opened]
+        rest = [one for one in rest if seating.clamping * one.difference < opened]
     most = result.toolkit.moving.travel.most if result.toolkit.moving.travel else None
     return own + [one for one in rest if most is None or one.jaw_separation <= most]
 
 
 def seating_words(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
-    """What a result tells of the seating of a fixture: what to do, what to read, and what to beware of."""
+    """Says of the seating of a fixture what to do, what to read, and what to beware of."""
     from workhold.seating.clamping import Gauge
 
-    told: Seating = fixture.seating
+    seating: Seating = fixture.seating
     gauge = Gauge(fixture, result.toolkit)
-    beware = [f"Beware: {words}." for words in told.warnings]
-    seats = shown_seats(told, SIDES[0], told.opening, result)
+    beware = [f"Beware: {words}." for words in seating.warnings]
+    seats = shown_seats(seating, SIDES[0], seating.opening, result)
     return [
         "",
-        *setting_words(told, gauge, unit),
-        *wrong_words(told, seats, told.opening, gauge, unit),
+        *setting_words(seating, gauge, unit),
+        *wrong_words(seating, seats, seating.opening, gauge, unit),
         *beware,
     ]
 
 
-def setting_words(told: Seating, gauge: Gauge, unit: Unit) -> list[str]:
-    """What to do, and what to read when it went right."""
+def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
+    """Says what to do to seat the part, and what to read when it went right."""
     from workhold.model.seating import DRY_STEEL
 
     setting, carrier, ways = gauge.setting, gauge.carrier, gauge.ways
     named = "" if setting.tip is None else f"a {setting.name} of "
     more, less = ("more", "less") if gauge.grows else ("less", "more")
-    if told.is_untold:
+    if seating.is_untold:
         words = [
-            f"From where on it is caught is not known: put the part in its place, hold it there and {ways.close}."
+            "From where on it is caught is not known: put the part in its place, hold it there and "
+            f"{ways.close}."
         ]
-    elif told.capture_opening is None:
+    elif seating.capture_opening is None:
         words = [f"However {ways.far}, the part cannot get to another place: put it in and {ways.close}."]
     else:
-        wide = gauge.at(gauge.fixture.jaw_separation + told.clamping * told.capture_opening)
+        wide = gauge.at(gauge.fixture.jaw_separation + seating.clamping * seating.capture_opening)
         words = [
-            f"{ways.open} to {named}{less} than {unit.text(wide)}, which is {unit.text(told.capture_opening)} from where "
-            f"{ways.hold} the part. Put the part in its place and {ways.close}: on the way it cannot leave for another "
-            "place."
+            f"{ways.open} to {named}{less} than {unit.text(wide)}, which is "
+            f"{unit.text(seating.capture_opening)} from where {ways.hold} the part. Put the part in its "
+            f"place and {ways.close}: on the way it cannot leave for another place."
         ]
     words.append(
-        f"When it has come home the {setting.name} is {unit.text(setting.length)}. While that is {more}, the part is stuck "
-        "short of its pose."
+        f"When it has come home the {setting.name} is {unit.text(setting.length)}. While that is {more}, "
+        "the part is stuck short of its pose."
     )
-    if told.drop_room is not None and not told.is_untold:
+    if seating.drop_room is not None and not seating.is_untold:
         words.append(
-            f"{ways.done} so far, there is about {unit.text(told.drop_room)} of room at every peg at once."
+            f"{ways.done} so far, there is about {unit.text(seating.drop_room)} of room at every peg at once."
         )
-    if told.cage is not None and told.placing is not None:
-        low, high = told.cage.theta_deg
-        shifts = (told.cage.x, told.cage.y) if carrier.line == "row" else (told.cage.y, told.cage.x)
+    if seating.cage is not None and seating.placing is not None:
+        low, high = seating.cage.theta_deg
+        shifts = (
+            (seating.cage.x, seating.cage.y) if carrier.line == "row" else (seating.cage.y, seating.cage.x)
+        )
         along, across = (" to ".join(unit.number(end) for end in ends) for ends in shifts)
         words += [
-            f"It may lie off by {low:.2f} to {high:.2f} degrees and by {along} {unit.abbreviation} along the {ways.whose} "
-            f"way, {across} {unit.abbreviation} across it, as far as the pegs let it.",
-            f"Put so that every point is nearer than {unit.text(told.placing)} to its place, it comes home.",
+            f"It may lie off by {low:.2f} to {high:.2f} degrees and by {along} {unit.abbreviation} along "
+            f"the {ways.whose} way, {across} {unit.abbreviation} across it, as far as the pegs let it.",
+            f"Put so that every point is nearer than {unit.text(seating.placing)} to its place, it comes "
+            "home.",
         ]
-    tap = "." if told.sticking_friction >= DRY_STEEL else "; dry steel has 0.1 to 0.2, so tap it home."
-    words.append(f"With a friction below {told.sticking_friction:.3f} it cannot stick near its pose{tap}")
+    tap = "." if seating.sticking_friction >= DRY_STEEL else "; dry steel has 0.1 to 0.2, so tap it home."
+    words.append(f"With a friction below {seating.sticking_friction:.3f} it cannot stick near its pose{tap}")
     return words
 
 
 def wrong_words(
-    told: Seating, seats: list[Seat], opened: float | None, gauge: Gauge, unit: Unit
+    seating: Seating, seats: list[Seat], opened: float | None, gauge: Gauge, unit: Unit
 ) -> list[str]:
-    """How many wrong seats there are, and whether a reading tells them."""
+    """Says how many wrong seats there are, and whether a reading shows them."""
     wrong = [one for one in seats if one.is_wrong]
     alike = sum(one.same_place and not one.is_own for one in seats)
     words = []
-    if told.capture_opening is not None and opened is not None and opened < told.capture_opening:
+    if seating.capture_opening is not None and opened is not None and opened < seating.capture_opening:
         far = f"{gauge.ways.done} by {unit.text(opened)}"
         words.append(f"{far}, a part let go in its cage reaches no other place; let go elsewhere it may.")
     if not wrong:
@@ -306,9 +298,7 @@ def wrong_words(
 
 
 def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
-    """The seats: what is read, how the part lies, what touches, and how far it is held."""
-    from workhold.cli.table import Table
-
+    """Tabulates the seats: what is read, how the part lies, what touches, and how far it is held."""
     of, fixture = unit.abbreviation, gauge.fixture
     kinds = {**KINDS, "fixture": gauge.toolkit.setup_words.resting}
     table = Table(
@@ -343,34 +333,26 @@ def show(
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its quality, and what
-    loads do to it (those of the result, if none are given here).
+    """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its
+    quality, and what loads do to it (those of the result, if none are given here).
 
-    A hole is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
+    A hole is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from
+    below.
 
     Example: workhold show part.json 1 --draw setup.png
     """
-    from workhold.files.atomic import write_bytes
+    from workhold.statics.loads import jaw_stiffness, load_cases
 
     rank = asked_rank(number)
     shown_unit = length_unit(unit)
     closing_force = optional_force("--jaw-force", jaw_force)
     coefficient = positive_number("--friction", friction)
     asked = asked_loads(load, loads, shown_unit)
-    picture = None if draw is None else Path(draw)
-    ending = None
-    if picture is not None:
-        ending = picture_ending(picture)
-        refuse_output(picture, (result_file, loads), force)
-
-    from workhold.statics.loads import jaw_stiffness
+    picture = asked_picture(draw, (result_file, loads), force)
 
     stiffness = jaw_stiffness(jaw)
     result = result_with(result_file, rank)
     fixture = result[rank - 1]
-
-    from workhold.statics.loads import load_cases
-
     loads_asked = asked or result.query.loads
     cases = load_cases(
         fixture, result.workpiece, result.toolkit, loads_asked, closing_force, coefficient, stiffness
@@ -378,15 +360,14 @@ def show(
     if not json_:
         print_fixture(result, rank, cases, shown_unit)
     if not result.complete:
-        tell("the search for this result was interrupted; there may be better fixtures.")
-    if picture is not None and ending is not None:
+        print_remark("the search for this result was interrupted; there may be better fixtures.")
+    if picture is not None:
         from workhold.drawing.fixture_pictures import draw_fixture
-        from workhold.drawing.render import render
 
         svg = draw_fixture(
             fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit
         )
-        write_bytes(picture, render(svg, ending))
+        write_picture(picture, svg)
     if json_:
         from workhold.presenting.data import fixture_data, load_case_data
 
@@ -398,14 +379,12 @@ def show(
             written=[] if picture is None else [str(picture)],
         )
     elif picture is not None:
-        from workhold.cli.tables import print_tables
-
         print_tables(f"Drawn in {picture}.")
 
 
 def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Unit) -> None:
-    """Print how to set up the fixture of a rank, its quality and what loads do to it."""
-    from workhold.cli.tables import fixture_tables, print_tables, quality_table
+    """Prints how to set up the fixture of a rank, its quality and what loads do to it."""
+    from workhold.cli.tables import fixture_tables, quality_table
 
     fixture, toolkit = result[rank - 1], result.toolkit
     quality = quality_table(fixture, toolkit.moving.noun, unit)

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, fields_dict, frozen
 
-from workhold.cli.commands import tell
+from workhold.cli.commands import print_remark
 from workhold.cli.options import PartWords
 from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of
 from workhold.cli.values import length_unit
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.requirements import Tolerance
 
-__all__ = ["JOB_ENDINGS", "Job", "JobWords", "asked_of", "jobs_of", "read_jobs"]
+__all__ = ["JOB_ENDINGS", "asked_of", "jobs_of", "read_jobs"]
 
 JOB_ENDINGS = (".csv", ".toml")
 # Bytes; a job takes a hundred.
@@ -62,8 +62,8 @@ class JobWords:
     place : where it stands, for messages.
     part : file, folder or built-in name.
     toolkits : names and files; None where the file gives none.
-    reading, query, seating : what the file says of reading the part, of its fixtures and of their seating, by the names of
-        options.
+    reading, query, seating : what the file says of reading the part, of its fixtures and of their seating, by
+        the names of options.
     """
 
     place: str
@@ -75,7 +75,7 @@ class JobWords:
 
 
 def read_jobs(path: Path) -> list[JobWords]:
-    """The jobs of a file.
+    """Reads the jobs of a file.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def read_jobs(path: Path) -> list[JobWords]:
 
 
 def toml_entries(text: str) -> Iterator[dict[str, Any]]:
-    """The entries of each job of a TOML file.
+    """Yields the entries of each job of a TOML file.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def toml_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def csv_entries(text: str) -> Iterator[dict[str, Any]]:
-    """The cells of each row of a CSV file, without the empty ones.
+    """Yields the cells of each row of a CSV file, without the empty ones.
 
     Raises
     ------
@@ -135,12 +135,12 @@ def csv_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def named(key: str) -> str:
-    """The name of a word, however it is written: ``jaw-force`` is ``jaw_force``."""
+    """Normalizes the name of a word: ``jaw-force`` is ``jaw_force``."""
     return key.strip().lower().replace("-", "_").replace(" ", "_").replace("toolkits", TOOLKIT)
 
 
 def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
-    """A job from its entries.
+    """Makes a job of its entries.
 
     Raises
     ------
@@ -165,13 +165,13 @@ def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
         words[name] = values if name in LISTS else ",".join(values)
     if PART not in words:
         raise InputError(f"{place} has no part: name a file, a folder or a built-in part.")
-    told = ({name: words[name] for name in of if name in words} for of in (OF_PART, OF_QUERY, OF_SEATING))
+    groups = ({name: words[name] for name in of if name in words} for of in (OF_PART, OF_QUERY, OF_SEATING))
     toolkits = tuple(words[TOOLKIT]) if TOOLKIT in words else None
-    return JobWords(place, words[PART], toolkits, *told)
+    return JobWords(place, words[PART], toolkits, *groups)
 
 
 def flag_of(value: Any, known: Mapping[str, bool], place: str) -> bool:
-    """A value that is true or false, or one of the words for that.
+    """Reads a value that is true or false, or one of the words for that.
 
     Raises
     ------
@@ -185,7 +185,7 @@ def flag_of(value: Any, known: Mapping[str, bool], place: str) -> bool:
 
 
 def text_of(value: Any, place: str) -> str:
-    """A value as it would be typed.
+    """Returns a value as it would be typed.
 
     Raises
     ------
@@ -198,7 +198,7 @@ def text_of(value: Any, place: str) -> str:
 
 
 def beside(folder: Path, name: str) -> str:
-    """A file beside the file of jobs, if there is one of a name; else the name."""
+    """Returns the path of a file beside the file of jobs, if there is one; else the name as it is."""
     try:
         return str(folder / name) if name and (folder / name).exists() else name
     except (OSError, ValueError):
@@ -206,8 +206,8 @@ def beside(folder: Path, name: str) -> str:
 
 
 @frozen
-class Job:
-    """A part of the family before it is read: what it is called, and what is asked of it."""
+class FamilyPart:
+    """A part of the family before it is read: its name, and the words about it."""
 
     name: str
     listed: ListedPart
@@ -215,8 +215,8 @@ class Job:
     reading: PartWords
 
 
-def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[Job]:
-    """The parts of the command line and of files of jobs, no two called alike.
+def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[FamilyPart]:
+    """Lists the parts of the command line and of files of jobs, each under a name of its own.
 
     Raises
     ------
@@ -243,12 +243,14 @@ def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[Job
     times, jobs = Counter[str](), []
     for name, (one, own_words, own_reading) in zip(called, found, strict=True):
         times[name] += 1
-        jobs.append(Job(name if times[name] == 1 else f"{name} ({times[name]})", one, own_words, own_reading))
+        jobs.append(
+            FamilyPart(name if times[name] == 1 else f"{name} ({times[name]})", one, own_words, own_reading)
+        )
     return jobs
 
 
 def called_by(name: str, names: list[str]) -> str:
-    """What a part is called: by its file alone, where no other of the names ends in the same.
+    """Names a part by its file alone, unless another path ends in the same file.
 
     >>> called_by("a/x.dxf", ["a/x.dxf", "b/y.dxf"]), called_by("a/x.dxf", ["a/x.dxf", "b/x.dxf"])
     ('x.dxf', 'a/x.dxf')
@@ -258,9 +260,9 @@ def called_by(name: str, names: list[str]) -> str:
 
 
 def asked_of(
-    jobs: list[Job], toolkit: Toolkit, tolerance: Tolerance | None, types: str | None, zero: str | None
+    jobs: list[FamilyPart], toolkit: Toolkit, tolerance: Tolerance | None, types: str | None, zero: str | None
 ) -> tuple[list[Asked], list[LeftOut]]:
-    """What is asked for each part that can be read, and the parts that cannot.
+    """Makes the query of each part that can be read, and lists the parts that cannot.
 
     Raises
     ------
@@ -283,7 +285,7 @@ def asked_of(
             left_out.append(LeftOut(job.name, str(path), read.refusal.rstrip(".")))
             continue
         for remark in read.loaded.remarks:
-            tell(f"{job.name}: {remark}")
+            print_remark(f"{job.name}: {remark}")
         unit = length_unit(job.reading.unit)
         asked = job.words.asked(unit)
         asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)

@@ -1,7 +1,8 @@
 """The command ``workhold``: its subcommands, and what happens when something goes wrong.
 
-Exit codes: 0 done (also when no fixture exists), 1 a fault of workhold, 2 bad input or a refuted result, 130
-interrupted, 141 nobody reads the output any more, 143 terminated.
+Exit codes are 0 when it is done (even if no fixture exists), 1 for a fault of workhold, and 2 for bad input
+or a refuted result. They are 130 when it was interrupted, 141 when nobody reads the output any more, and 143
+when it was terminated.
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ import typer
 from typer.main import get_command
 
 from workhold import __version__
-from workhold.cli.commands import PlainCommand, PlainGroup, forget, tell
+from workhold.cli.commands import PlainCommand, PlainGroup, forget, print_remark
 from workhold.cli.ending import INTERRUPTED, end_on_signals, leave, say_interrupted
-from workhold.errors import InputError
-from workhold.limits import NO_ROOM, lacks_memory, refuse_little_space
+from workhold.errors import NO_ROOM, InputError, lacks_memory
+from workhold.limits import refuse_little_space
 
 __all__ = ["COMMANDS", "app", "run"]
 
@@ -55,24 +56,28 @@ COMMANDS = {
         "quality, and what loads do to it (those of the result, if none are given here)."
     ),
     "seat": (
-        "Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened: how wide "
-        "open that may be when the part is let go and how far off it may lie, where else it can come to rest, and what is "
-        "read then. Of two clamps, tell how the part is put in by hand and in which order they are tightened."
+        "Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp "
+        "tightened: how wide open that may be when the part is let go and how far off it may lie, where "
+        "else it can come to rest, and what is read then. Of two clamps, tell how the part is put in by "
+        "hand and in which order they are tightened."
     ),
     "sheet": (
         "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "
         "loads, cautions."
     ),
     "convert": (
-        "Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a spreadsheet."
+        "Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a "
+        "spreadsheet."
     ),
     "explore": (
-        "Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with its figures."
+        "Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with "
+        "its figures."
     ),
     "copies": "Tell how many copies of fixture N a plate holds at once, and where each stands.",
     "family": "Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
     "batch": (
-        "Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files."
+        "Try many parts in many toolkits: every part with every toolkit, into tables, a report and result "
+        "files."
     ),
     "features": "List the numbered faces of PART, as pictures and result files name them.",
     "parts": "List the built-in parts.",
@@ -81,12 +86,14 @@ COMMANDS = {
     "verify": "Prove or refute every fixture of a result, and every number written with it.",
     "schema": "Print the JSON Schema of a part, a toolkit, loads, a query or a result, or list them.",
     "serve": "Serve the page: from a drawing to a setup sheet in the browser.",
-    "mcp": "Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol.",
+    "mcp": (
+        "Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol."
+    ),
     "completion": "Print the script that lets a shell complete the commands and options of workhold.",
 }
 
-# The modules of several commands; every other command stands in a module of its own. A command is the function of its name,
-# and its module is imported when it is asked for: nobody waits for the others.
+# The modules of several commands; every other command stands in a module of its own. A command is the
+# function of its name, and its module is imported when it is asked for: nobody waits for the others.
 SHARED_MODULES = {
     "catalogue_commands": ("features", "parts", "toolkits"),
     "fixture_commands": ("seat", "show"),
@@ -100,14 +107,14 @@ MODULES = {name: f"{name}_command" for name in COMMANDS} | {
 
 
 def command_of(name: str) -> Callable[..., None]:
-    """The function of a command, whose module is imported now."""
+    """Imports the module of a command and returns its function."""
     command: Callable[..., None] = getattr(import_module(f"workhold.cli.{MODULES[name]}"), name)
     return command
 
 
 @contextmanager
 def outcomes() -> Iterator[None]:
-    """Two outcomes that Typer would handle in words, and with a code, of its own."""
+    """Handles two outcomes that Typer would handle with words and a code of its own."""
     try:
         yield
     except KeyboardInterrupt as error:
@@ -119,14 +126,14 @@ def outcomes() -> Iterator[None]:
 
 
 class Workhold(PlainGroup):
-    """The commands, with every outcome told in one plain sentence and an exit code."""
+    """The commands, each of which ends with an exit code and at most one sentence about what went wrong."""
 
     def __init__(self, **about: Any) -> None:
         super().__init__(**about)
         self.commands = {name: PlainCommand(name, help=words) for name, words in COMMANDS.items()}
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """A command, imported now; None for a word that names none."""
+        """Imports a command; returns None for a word that names none."""
         if cmd_name not in COMMANDS:
             return None
         alone = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -134,12 +141,12 @@ class Workhold(PlainGroup):
         return get_command(alone)
 
     def make_context(self, *args: Any, **extra: Any) -> Any:
-        """Take the arguments; a help that was asked for is shown here."""
+        """Parses the arguments; a help that was asked for is shown here."""
         with outcomes():
             return super().make_context(*args, **extra)
 
     def _main_shell_completion(self, ctx_args: Any, prog_name: str, complete_var: str | None = None) -> None:
-        """Answer a shell that asks for words; Typer knows no shell until it is told to."""
+        """Completes words for a shell; Typer knows the shells only after its set-up."""
         if any(name.endswith("_COMPLETE") for name in os.environ):
             import typer.completion
 
@@ -147,7 +154,7 @@ class Workhold(PlainGroup):
         super()._main_shell_completion(ctx_args, prog_name, complete_var)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command."""
+        """Runs the command."""
         refuse_little_space(LEAST_SPACE, "workhold", "raise the limit")
         with outcomes():
             return super().invoke(ctx)
@@ -161,7 +168,7 @@ class Workhold(PlainGroup):
         windows_expand_args: bool = True,
         **extra: Any,
     ) -> Any:
-        """Parse the arguments and run the command; ends the process unless ``standalone_mode`` is off."""
+        """Parses the arguments and runs the command; ends the process unless ``standalone_mode`` is off."""
         command = super().main
         code = exit_code(lambda: command(args, prog_name, complete_var, False, windows_expand_args, **extra))
         if standalone_mode:
@@ -172,7 +179,8 @@ class Workhold(PlainGroup):
 app = typer.Typer(
     name="workhold",
     cls=Workhold,
-    help="Finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence and a stop.",
+    help="Finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence and a "
+    "stop.",
     epilog=EXAMPLES,
     add_completion=False,
     rich_markup_mode=None,
@@ -181,7 +189,7 @@ app = typer.Typer(
 
 
 def show_version(wanted: bool) -> None:
-    """Print the version and stop."""
+    """Prints the version and stops."""
     if wanted:
         typer.echo(f"workhold {__version__}")
         raise typer.Exit
@@ -198,7 +206,7 @@ def options(
 
 
 def run() -> NoReturn:
-    """The console command."""
+    """Runs the console command and ends the process."""
     for stream in (sys.stdout, sys.stderr):
         # A part's name must not end the program on a terminal that lacks a letter.
         with suppress(AttributeError, ValueError):
@@ -211,7 +219,7 @@ def run() -> NoReturn:
 
 
 def exit_code(command: Callable[[], Any]) -> int:
-    """Run a command and turn its outcome into an exit code, with one sentence on stderr where there is news."""
+    """Runs a command and turns its outcome into an exit code, with one sentence on stderr if it failed."""
     try:
         return int(command() or DONE)
     except InputError as error:
@@ -228,7 +236,8 @@ def exit_code(command: Callable[[], Any]) -> int:
     except Exception as error:
         if lacks_memory(error):
             say(
-                "error: this needs more memory than there is: close other programs, use fewer threads, or raise the limit."
+                "error: this needs more memory than there is: close other programs, use fewer threads, or "
+                "raise the limit."
             )
             return BAD_INPUT
         if isinstance(error, OSError) and error.errno in NO_ROOM:
@@ -240,7 +249,7 @@ def exit_code(command: Callable[[], Any]) -> int:
 
 
 def complain(error: Exception) -> int:
-    """Say what is wrong with the command line, and where the help is."""
+    """Says what is wrong with the command line, and where the help is."""
     message = str(getattr(error, "message", "") or error)
     with suppress(Exception):
         message = error.format_message()  # type: ignore[attr-defined]
@@ -251,12 +260,12 @@ def complain(error: Exception) -> int:
 
 
 def say(message: str) -> None:
-    """One line on stderr, whatever the message holds."""
-    tell(" ".join(message.split()))
+    """Prints one line on stderr, whatever the message holds."""
+    print_remark(" ".join(message.split()))
 
 
 def report_fault(error: Exception) -> None:
-    """Own up to a mistake of the program, and keep the traceback for the report."""
+    """Reports a mistake of the program, and keeps the traceback for the user's report."""
     import tempfile
     import traceback
 

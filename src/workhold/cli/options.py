@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import option, tell
+from workhold.cli.commands import option, print_remark
 from workhold.cli.values import (
     choice,
     length,
@@ -46,7 +46,7 @@ RankArgument = Annotated[str, typer.Argument(metavar="N", help="Which fixture, b
 
 
 def asked_rank(text: str) -> int:
-    """A rank from 1.
+    """Reads a rank, counted from 1.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def asked_rank(text: str) -> int:
 
 
 def result_with(path: str, rank: int) -> Result:
-    """The result of a file that lists a fixture of a rank.
+    """Reads a result file that lists a fixture of a rank.
 
     Raises
     ------
@@ -102,19 +102,19 @@ SHOWN_UNIT = option(None, "UNIT", "Unit of the lengths shown (mm, cm, m, inch); 
 
 
 def at_terminal() -> bool:
-    """Whether somebody can be asked."""
+    """Whether a user at a terminal can be asked."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
 @frozen
 class PartWords:
-    """What was typed about reading the part; None for options not given."""
+    """The options of reading the part, as typed; None for those not given."""
 
     unit: str | None = option(
         None,
         "UNIT",
-        "Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm if not given. A "
-        "length may also carry its unit: 0.5in.",
+        "Unit of lengths given and shown (mm, cm, m, inch), and of a drawing that does not say its own; mm "
+        "if not given. A length may also carry its unit: 0.5in.",
     )
     layer: list[str] | None = option(READING, "NAME", "Read only this layer; may be repeated.")
     part_number: str | None = option(
@@ -139,11 +139,12 @@ class PartWords:
     fit: str | None = option(
         READING,
         "LENGTH",
-        "Put lines and arcs, nowhere farther off than this, in place of splines, ellipses and Bézier curves that are none.",
+        "Put lines and arcs, nowhere farther off than this, in place of splines, ellipses and Bézier curves "
+        "that are none.",
     )
 
     def options(self) -> dict[str, Any]:
-        """Keyword arguments of ``files.part.load.read_workpiece``.
+        """Makes the keyword arguments of ``files.part.load.read_workpiece``.
 
         Raises
         ------
@@ -164,7 +165,7 @@ class PartWords:
         }
 
     def load(self, part: str) -> Loaded:
-        """Read a part and tell on stderr what a user should know about the drawing.
+        """Reads a part and prints remarks about the drawing on stderr.
 
         Parameters
         ----------
@@ -185,8 +186,8 @@ class PartWords:
         except UnitAskedError as question:
             if not at_terminal():
                 raise
-            tell(str(question))
+            print_remark(str(question))
             loaded = read(unit=typer.prompt("Unit of the drawing (mm, inch, cm, m)", err=True))
         for remark in loaded.remarks:
-            tell(remark)
+            print_remark(remark)
         return loaded

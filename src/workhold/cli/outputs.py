@@ -19,7 +19,7 @@ import typer
 
 from workhold.cli.commands import option
 from workhold.cli.ending import Interrupted, keep_what_is_found
-from workhold.cli.values import choice
+from workhold.cli.values import choice, picture_ending
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ __all__ = [
     "STANDARD_OUTPUT",
     "ForceOption",
     "JsonOption",
+    "asked_picture",
     "output_form",
     "print_json",
     "print_written",
@@ -39,13 +40,15 @@ __all__ = [
     "refuse_output_folder",
     "write_found",
     "write_output",
+    "write_picture",
 ]
 
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace files of these names that workhold has not written.")
 ]
 
-# What stands within the first or the last so many bytes of everything that workhold writes, and of nothing else.
+# What stands within the first or the last so many bytes of everything that workhold writes, and of nothing
+# else.
 ENDS = 4096
 MARKS = (
     b'{"format": "workhold-result/',
@@ -67,7 +70,7 @@ MARKS = (
 def refuse_output(
     path: str | Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force"
 ) -> None:
-    """Refuse an output file before any work is done for it.
+    """Refuses an output file before any work is done for it.
 
     Parameters
     ----------
@@ -89,7 +92,7 @@ def refuse_output(
 def refuse_output_folder(
     folder: Path, names: Iterable[str], inputs: Iterable[str | Path | None], force: bool
 ) -> None:
-    """Refuse an output folder, or the files of some names that a command would write into it.
+    """Refuses an output folder, or the files of some names that a command would write into it.
 
     Raises
     ------
@@ -107,7 +110,7 @@ def refuse_output_folder(
 def refuse_replacing(
     path: Path, inputs: Iterable[str | Path | None], force: bool, called: str = "--force"
 ) -> None:
-    """Refuse to write over an input, and over a foreign file unless that is asked for.
+    """Refuses to write over an input, and over a foreign file unless that is asked for.
 
     Raises
     ------
@@ -123,7 +126,7 @@ def refuse_replacing(
 
 
 def is_same(path: Path, given: str | Path) -> bool:
-    """Whether a file is what another name, which may be that of no file, leads to."""
+    """Whether a path and another name lead to the same file."""
     try:
         return path.samefile(given)
     except (OSError, ValueError):
@@ -131,13 +134,37 @@ def is_same(path: Path, given: str | Path) -> bool:
 
 
 def is_own(path: Path) -> bool:
-    """Whether workhold has written a file, or nobody has written anything into it."""
+    """Whether workhold has written a file, or the file is empty."""
     with suppress(OSError), path.open("rb") as stream:
         first = stream.read(ENDS)
         stream.seek(-min(ENDS, os.fstat(stream.fileno()).st_size), os.SEEK_END)
         ends = first + stream.read(ENDS)
         return not ends or any(mark in ends for mark in MARKS)
     return False
+
+
+def asked_picture(draw: str | None, inputs: Iterable[str | Path | None], force: bool) -> Path | None:
+    """Returns the path of the picture asked for; None where none is.
+
+    Raises
+    ------
+    InputError
+        For another ending than .svg and .png, and see :func:`refuse_output`.
+    """
+    if draw is None:
+        return None
+    path = Path(draw)
+    picture_ending(path)
+    refuse_output(path, inputs, force)
+    return path
+
+
+def write_picture(path: Path, svg: str) -> None:
+    """Writes SVG text as a picture of the kind that the name of the file says."""
+    from workhold.drawing.render import render
+    from workhold.files.atomic import write_bytes
+
+    write_bytes(path, render(svg, path.suffix))
 
 
 OUTPUT = "Results"
@@ -147,14 +174,14 @@ FORMS = ("json", "csv", "npz")
 FORMAT = option(
     OUTPUT,
     "json|csv|npz",
-    "Form of the file: csv for a spreadsheet, npz in columns for a great many fixtures. If not given, the file's "
-    "name decides.",
+    "Form of the file: csv for a spreadsheet, npz in columns for a great many fixtures. If not given, the "
+    "file's name decides.",
     "--format",
 )
 
 
 def output_form(out: str | None, asked: str | None) -> str:
-    """The form of a result file: the one asked for, or the one that its name suggests.
+    """Returns the form of a result file: the one asked for, or the one that its name suggests.
 
     Raises
     ------
@@ -171,7 +198,7 @@ def output_form(out: str | None, asked: str | None) -> str:
 
 
 def write_output(result: Result, out: str, form: str) -> None:
-    """Write a result to a file or to the terminal.
+    """Writes a result to a file or to the terminal.
 
     Raises
     ------
@@ -192,7 +219,7 @@ def write_output(result: Result, out: str, form: str) -> None:
 
 
 def write_found(result: Result, out: str, form: str) -> Result:
-    """Write what a search found, or after a Ctrl-C the best of millions, which takes a moment only; what was written.
+    """Writes what a search found and returns it; after a Ctrl-C it writes only the best of millions.
 
     Raises
     ------
@@ -221,7 +248,7 @@ JsonOption = Annotated[
 
 
 def refuse_both(as_json: bool, out: str | None) -> None:
-    """Refuse two things on standard output.
+    """Refuses two things on standard output.
 
     Raises
     ------
@@ -235,16 +262,16 @@ def refuse_both(as_json: bool, out: str | None) -> None:
 
 
 def print_json(**content: Any) -> None:
-    """Print an object in a line of ASCII."""
+    """Prints an object as JSON, in a line of ASCII."""
     sys.stdout.write(json.dumps(content, allow_nan=False) + "\n")
     sys.stdout.flush()
 
 
 def print_written(as_json: bool, sentence: str, *paths: str | Path) -> None:
-    """Tell which files were written, in a sentence or as JSON."""
+    """Prints which files were written, in a sentence or as JSON."""
     if as_json:
         print_json(written=[str(path) for path in paths])
         return
-    from workhold.cli.tables import print_tables
+    from workhold.cli.table import print_tables
 
     print_tables(sentence)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 
 from attrs import define, field
 
-from workhold.cli.commands import tell
+from workhold.cli.commands import print_remark
 from workhold.cli.ending import keep_what_is_found
 from workhold.plain import plain
 
@@ -26,8 +26,10 @@ ONLY_TASK = cast("TaskID", 0)
 
 @contextmanager
 def search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], None]]:
-    """The progress bar of a search, as a function of the fraction done and the fixtures found, which are to be kept where
-    ``keeps`` says so."""
+    """The progress bar of a search, as a function of the fraction done and the fixtures found.
+
+    Where ``keeps`` is set an interrupted search gets the time to return what it has found.
+    """
     with progress_bar("Searching", "found") as show:
 
         def progress(fraction: float, found: int) -> None:
@@ -73,7 +75,7 @@ def progress_bar(
 
 
 def shown_bar(words: str, counted: str) -> Progress:
-    """A bar on the terminal, with its one task."""
+    """Shows a bar on the terminal, with its one task."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -97,7 +99,7 @@ LONGEST_TITLE = 60
 
 @define(eq=False)
 class BatchProgress:
-    """Counts along and looks on (``batch.run.Counting``, ``batch.tasks.Watcher``); quiet where there are no bars.
+    """The progress of a batch (``batch.run.Counting``, ``batch.tasks.Watcher``); silent without bars.
 
     Parameters
     ----------
@@ -113,7 +115,7 @@ class BatchProgress:
     done: int = field(default=0, init=False)
 
     def stage(self, doing: str, count: int, seconds: float) -> None:
-        """See :class:`workhold.batch.run.Counting`."""
+        """Begins a stage of so many tasks, which take about so many seconds in all."""
         self.count, self.done = count, 0
         if self.bars is None or count == 0:
             return
@@ -127,13 +129,13 @@ class BatchProgress:
         return f"{self.done:,} of {self.count:,}"
 
     def one_done(self, seconds: float) -> None:
-        """See :class:`workhold.batch.run.Counting`."""
+        """Counts a task that is done, and advances the bar by its expected seconds."""
         self.done += 1
         if self.bars is not None and self.whole is not None:
             self.bars.update(self.whole, advance=seconds, words=self.words)
 
     def begun(self, worker: str, title: str) -> None:
-        """See :class:`workhold.batch.tasks.Watcher`."""
+        """Shows what a worker has begun."""
         if self.bars is None:
             return
         self.ended(worker)
@@ -141,15 +143,15 @@ class BatchProgress:
         self.hands[worker] = self.bars.add_task(f"  {worker}: {words}", total=None, words="")
 
     def ended(self, worker: str) -> None:
-        """See :class:`workhold.batch.tasks.Watcher`."""
+        """Removes the line of a worker that has ended its task."""
         if self.bars is not None and worker in self.hands:
             self.bars.remove_task(self.hands.pop(worker))
 
-    def told(self, sentence: str) -> None:
-        """See :class:`workhold.batch.tasks.Watcher`."""
+    def notify(self, sentence: str) -> None:
+        """Keeps and prints a sentence about an event."""
         self.events.append(sentence)
         if self.bars is None:
-            tell(sentence)
+            print_remark(sentence)
         else:
             self.bars.console.print(f"workhold: {plain(sentence)}", markup=False, highlight=False)
 
@@ -173,7 +175,7 @@ def batch_progress() -> Iterator[BatchProgress]:
     from rich.text import Text
 
     class Rest(ProgressColumn):
-        """What is left of all tasks; how long a worker is at one."""
+        """The time left of all tasks, and the time that a worker has spent on its task."""
 
         left, spent = TimeRemainingColumn(), TimeElapsedColumn()
 
@@ -181,7 +183,7 @@ def batch_progress() -> Iterator[BatchProgress]:
             return self.spent.render(task) if task.total is None else self.left.render(task)
 
     class Bar(BarColumn):
-        """Of all tasks only."""
+        """A bar in the line of all tasks, and none in the lines of workers."""
 
         def render(self, task: Line) -> Text:  # type: ignore[override]
             return Text("") if task.total is None else super().render(task)  # type: ignore[return-value]

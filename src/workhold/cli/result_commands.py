@@ -41,7 +41,8 @@ def convert(
     force: ForceOption = False,
     json_: JsonOption = False,
 ) -> None:
-    """Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a spreadsheet.
+    """Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a
+    spreadsheet.
 
     From JSON to columns and back the same bytes come out.
 
@@ -86,18 +87,18 @@ def verify(
 ) -> None:
     """Prove or refute every fixture of a result, and every number written with it.
 
-    Each fixture is derived again from workpiece, toolkit, pegs and faces alone, in arithmetic whose rounding errors are
-    bounded, with nothing of the search. Coincidences such as an opening of just the smallest gap are decided: the
-    edge of every rule stands 1e-9 mm off them. What lies exactly on such an edge is undecided. What a file alone cannot
-    show, such as fixtures left out, --complete does, by the search of the file's own query. The exit code is 0 when nothing
-    is refuted and 2 otherwise.
+    Each fixture is derived again from workpiece, toolkit, pegs and faces alone, in arithmetic whose rounding
+    errors are bounded, with nothing of the search. Coincidences such as an opening of just the smallest gap
+    are decided: the edge of every rule stands 1e-9 mm off them. What lies exactly on such an edge is
+    undecided. What a file alone cannot show, such as fixtures left out, --complete does, by the search of the
+    file's own query. The exit code is 0 when nothing is refuted and 2 otherwise.
 
     Example: workhold verify part.json
     """
     listed = whole_number("--list", list_)
     workers = optional_count("--threads", threads)
 
-    from workhold.cli.tables import print_tables
+    from workhold.cli.table import print_tables
     from workhold.verification.listing import read_listing
     from workhold.verification.verify import verify_listing
 
@@ -122,7 +123,7 @@ def verify(
 
 
 def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
-    """The verification with what a search of the same query finds."""
+    """Adds to the verification what a search of the same query finds."""
     from workhold.completeness import completed
     from workhold.kernels.base.compiling import is_first_run
 
@@ -136,7 +137,7 @@ def compared(outcome: Verification, listing: Listing, workers: int | None) -> Ve
 
 
 def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
-    """What is shown beyond the fixtures, or what is not."""
+    """Says what is shown beyond the fixtures, or what is not."""
     from workhold.verification.verify import not_shown
 
     if outcome.is_compared:
@@ -148,7 +149,7 @@ def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
 
 
 def summary(outcome: Verification) -> str:
-    """How many fixtures are proven, refuted and undecided."""
+    """Says how many fixtures are proven, refuted and undecided."""
     from workhold.cli.tables import plural
 
     return (
@@ -158,7 +159,7 @@ def summary(outcome: Verification) -> str:
 
 
 def unproven_sentences(outcome: Verification, count: int) -> list[str]:
-    """What is wrong with the file, and with the first fixtures that are not proven, the refuted ones first."""
+    """Says what is wrong with the file and with the first fixtures not proven, the refuted ones first."""
     sentences = [f"The file: {fault}." for fault in outcome.faults]
     unproven = sorted(outcome.unproven, key=lambda fixture: fixture.verdict != "refuted")
     for fixture in unproven[: max(count, 0)]:

@@ -18,14 +18,14 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def part_schema() -> dict[str, Any]:
-    """Of a workpiece in JSON."""
-    from workhold.files.input_forms import WorkpieceForm
+    """The schema of a workpiece in JSON."""
+    from workhold.files.input_forms import WorkpieceFile
 
-    return WorkpieceForm.model_json_schema()
+    return WorkpieceFile.model_json_schema()
 
 
 def toolkit_schema() -> dict[str, Any]:
-    """Of a toolkit's TOML file: that of its kind."""
+    """The schema of a toolkit's TOML file: one of those of the kinds."""
     from pydantic import TypeAdapter
 
     from workhold.files.input_forms import FORMS, one_of
@@ -41,21 +41,21 @@ def toolkit_schema() -> dict[str, Any]:
 
 
 def loads_schema() -> dict[str, Any]:
-    """Of a loads file."""
+    """The schema of a loads file."""
     from workhold.files.input_forms import LoadsFile
 
     return LoadsFile.model_json_schema()
 
 
 def query_schema() -> dict[str, Any]:
-    """Of a search as it is asked over HTTP."""
+    """The schema of a search as it is asked over HTTP."""
     from workhold.web.forms import JobForm
 
     return JobForm.model_json_schema()
 
 
 def result_schema() -> dict[str, Any]:
-    """Of a result file."""
+    """The schema of a result file."""
     from workhold.files.result.fixture_forms import ResultFile
 
     return ResultFile.model_json_schema()
@@ -72,9 +72,10 @@ SCHEMAS: Mapping[str, tuple[str, Callable[[], dict[str, Any]]]] = {
 
 
 def schema_of(name: str) -> dict[str, Any]:
-    """The JSON Schema of a name.
+    """Returns the JSON Schema of a name.
 
-    Forms of which one is chosen by a word in the file are told apart by all they say, so that one of them must fit at least.
+    Forms of which a word in the file chooses one differ in all they say, so that a file must fit at least one
+    of them.
     """
     words, make = SCHEMAS[name]
     schema: dict[str, Any] = loosened(make())
@@ -87,7 +88,7 @@ def schema_of(name: str) -> dict[str, Any]:
 
 
 def loosened(schema: Any) -> Any:
-    """A schema with "any of these" wherever it says "exactly one of these"."""
+    """Replaces "exactly one of these" by "any of these" throughout a schema."""
     if isinstance(schema, dict):
         return {("anyOf" if key == "oneOf" else key): loosened(value) for key, value in schema.items()}
     return [loosened(one) for one in schema] if isinstance(schema, list) else schema
@@ -113,7 +114,7 @@ def schema(
     elif json_:
         print_json(schemas=[{"name": one, "of": words} for one, (words, _) in SCHEMAS.items()])
     else:
-        from workhold.cli.tables import Table, print_tables
+        from workhold.cli.table import Table, print_tables
 
         table = Table(("name", "of"))
         for one, (words, _) in SCHEMAS.items():

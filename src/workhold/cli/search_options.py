@@ -33,7 +33,6 @@ __all__ = [
     "JAW_FORCE",
     "LOAD",
     "LOADS_FILE",
-    "LOAD_HELP",
     "QueryWords",
     "SeatingWords",
     "asked_loads",
@@ -77,8 +76,8 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
         key, equals, value = word.partition("=")
         if not equals:
             raise InputError(
-                f"{place} cannot be used at '{word}': give words like force=200 at=10,5 direction=30..60, without spaces "
-                "inside a value."
+                f"{place} cannot be used at '{word}': give words like force=200 at=10,5 direction=30..60, "
+                "without spaces inside a value."
             )
         if key in values:
             raise InputError(f"{place} has {key} twice: give it once, and another --load for another load.")
@@ -94,14 +93,14 @@ LOADS_FILE = option(LOADS, "FILE", "Loads from a TOML file.")
 JAW_FORCE = option(
     LOADS,
     "FORCE",
-    "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the sum of theirs; the "
-    "one needed so that no peg lets go if not given.",
+    "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the "
+    "sum of theirs; the one needed so that no peg lets go if not given.",
 )
 JAW = option(
     LOADS,
     "KIND",
-    "screw: the closed jaw is locked, as a vise's is; constant: it keeps its force (hydraulic, pneumatic); or how many "
-    "times as stiff as one contact the locked jaw is.",
+    "screw: the closed jaw is locked, as a vise's is; constant: it keeps its force (hydraulic, pneumatic); "
+    "or how many times as stiff as one contact the locked jaw is.",
     default="screw",
 )
 FRICTION = option(
@@ -111,7 +110,7 @@ FRICTION = option(
 
 @frozen
 class QueryWords:
-    """What was typed about what is asked for; None for options not given."""
+    """The options of what is asked for, as typed; None for those not given."""
 
     avoid: list[str] | None = option(
         RULING_OUT, "FACES", "Faces that no peg may touch, such as 3,7 (see workhold features)."
@@ -119,8 +118,8 @@ class QueryWords:
     keep_out: list[str] | None = option(
         RULING_OUT,
         "ZONE",
-        "Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y. May be "
-        "repeated.",
+        "Where no peg may stand, in the drawing's coordinates: circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y. "
+        "May be repeated.",
     )
     angle: list[str] | None = option(
         RULING_OUT, "FROM..TO", "Angles the part may lie at, in degrees: -10..10. May be repeated."
@@ -133,22 +132,22 @@ class QueryWords:
     jaw_force: str | None = option(
         LOADS,
         "FORCE",
-        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps the sum of theirs, "
-        "to warn of pegs that let go under the loads.",
+        "Force that closes the vise, or of the clamp, in N or with its unit (3kN, 700lbf), of two clamps "
+        "the sum of theirs, to warn of pegs that let go under the loads.",
     )
     rank_by: str | None = option(
         RANKING,
         "FIGURES",
-        "What makes a fixture good, the first counting most: warnings,penalty,clamp-amplification,closure-margin,"
-        "edge-distance if not given, with load-reaction in third place if there are loads; also location-error, tilt, "
-        "smallest-face, wrench-radius, end-distance, jaw-force-needed, and of two clamps clamp-freedom, which is then in "
-        "third place.",
+        "What makes a fixture good, the first counting most: "
+        "warnings,penalty,clamp-amplification,closure-margin,edge-distance if not given, with load-reaction "
+        "in third place if there are loads; also location-error, tilt, smallest-face, wrench-radius, "
+        "end-distance, jaw-force-needed, and of two clamps clamp-freedom, which is then in third place.",
     )
     prefer: str | None = option(
         RANKING,
         "square|strong|precise|roomy",
-        "Instead of --rank-by, what you want most: the part square to the jaws, gentle pegs, the best location, or "
-        "contacts far from edges.",
+        "Instead of --rank-by, what you want most: the part square to the jaws, gentle pegs, the best "
+        "location, or contacts far from edges.",
     )
     tolerance: str | None = option(
         RANKING,
@@ -260,7 +259,7 @@ def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
 
 
 def with_fit_of(asked: Tolerance | None, named: Tolerance | None) -> Tolerance | None:
-    """The tolerance asked for, or that of a named vise; the fit of the named vise's dowels stays known."""
+    """Returns the tolerance asked for, or that of a named vise; keeps the fit of the named vise's dowels."""
     if asked is None or named is None:
         return asked or named
     return evolve(asked, fit=named.fit)
@@ -295,19 +294,19 @@ FoolproofOption = Annotated[
 
 @frozen
 class SeatingWords:
-    """What was typed about seating; None for options not given."""
+    """The options of seating, as typed; None for those not given."""
 
     seating: str | None = option(
         SEATING,
         "K",
-        "Of the first K fixtures tell from how far open, or with the clamp how far drawn back, the part is caught and where "
-        "else it can rest, and order them by that too (see workhold seat).",
+        "Of the first K fixtures tell from how far open, or with the clamp how far drawn back, the part is "
+        "caught and where else it can rest, and order them by that too (see workhold seat).",
     )
     opening: str | None = option(
         SEATING,
         "LENGTH",
-        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so much more than "
-        "where they hold it; places beyond it do not count.",
+        "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so "
+        "much more than where they hold it; places beyond it do not count.",
     )
     foolproof: FoolproofOption = False
 

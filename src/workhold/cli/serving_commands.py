@@ -21,8 +21,7 @@ import typer
 import typer.completion
 
 from workhold.cli.values import choice, positive_number, whole_number
-from workhold.errors import InputError
-from workhold.limits import lacks_memory
+from workhold.errors import InputError, lacks_memory
 from workhold.version import __version__
 
 __all__ = ["completion", "mcp", "outcome", "serve"]
@@ -31,8 +30,8 @@ LIMITS = "Limits"
 HIGHEST_PORT = 65_535
 TOKEN_BYTES = 16
 OPEN_TO_ALL = (
-    "workhold: everybody who reaches this machine can use the page, read what others search for if told its name, and keep "
-    "the processors busy; --ask-token lets in only who has the address."
+    "workhold: everybody who reaches this machine can use the page, read what others search for if told its "
+    "name, and keep the processors busy; --ask-token lets in only who has the address."
 )
 # Processes that search: each takes a hundred megabytes before it begins.
 MOST_SEARCHES = 256
@@ -40,7 +39,7 @@ FIRST_RUN = "workhold: compiling for this machine, which takes half a minute or 
 
 
 def limit(metavar: str, variable: str, help: str) -> typer.models.OptionInfo:
-    """An option that is a limit and can come from the environment."""
+    """Makes an option that is a limit and can come from the environment."""
     option: typer.models.OptionInfo = typer.Option(
         metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
     )
@@ -104,7 +103,7 @@ def serve(
         )
     for proxy in trust_proxy or ():
         refuse_no_address(proxy)
-    from workhold.web.guard import Limits, usual_memory
+    from workhold.web.guard import ServerLimits, usual_memory
     from workhold.web.serve import is_for_others, run_server
 
     most = usual_memory(figures["searches"]) if memory is None else int(limit_value("--memory", memory)) << 20
@@ -119,12 +118,12 @@ def serve(
             webbrowser.open(address)
 
     token = token_urlsafe(TOKEN_BYTES) if ask_token else None
-    limits = Limits(memory_bytes=most, **figures)
+    limits = ServerLimits(memory_bytes=most, **figures)
     run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare)
 
 
 def refuse_no_address(text: str) -> None:
-    """Refuse what is not the numeric address of a proxy.
+    """Refuses what is not the numeric address of a proxy.
 
     Raises
     ------
@@ -138,7 +137,7 @@ def refuse_no_address(text: str) -> None:
 
 
 def limit_value(option: str, text: str) -> float:
-    """A positive number.
+    """Reads a positive number.
 
     Raises
     ------
@@ -152,7 +151,7 @@ def limit_value(option: str, text: str) -> float:
 
 
 def prepare() -> None:
-    """Compile the kernels on a first run, before workers would do so one after the other."""
+    """Compiles the kernels on a first run, before workers would do so one after the other."""
     from workhold.cli.warming import compile_kernels, compile_seating, is_seating_compiled
     from workhold.kernels.base.compiling import is_first_run
 
@@ -169,18 +168,18 @@ REQUIREMENT = "mcp>=2"
 # Of a picture, in pixels.
 WIDTH = 1000
 INSTRUCTIONS = (
-    "workhold finds every way to hold a flat part with round pegs: in a vise whose jaws carry a lattice of holes, on a "
-    "plate with locators and a clamp or two, or on a fence. load a part to see the numbers of its faces, design to find all "
-    "fixtures (avoid the faces that will be machined), show one of them, write its sheet; explain where there is none. "
-    "Lengths are in mm, angles in degrees, forces in N."
+    "workhold finds every way to hold a flat part with round pegs: in a vise whose jaws carry a lattice of "
+    "holes, on a plate with locators and a clamp or two, or on a fence. load a part to see the numbers of "
+    "its faces, design to find all fixtures (avoid the faces that will be machined), show one of them, "
+    "write its sheet; explain where there is none. Lengths are in mm, angles in degrees, forces in N."
 )
 
 
 def mcp() -> None:
     """Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol.
 
-    The agent's program starts this command and speaks with it on standard input and output; it is no command for people. It
-    reads and writes the files that the agent names, with the rights of whoever starts it.
+    The agent's program starts this command and speaks with it on standard input and output; it is no command
+    for people. It reads and writes the files that the agent names, with the rights of whoever starts it.
 
     Example: workhold mcp
     """
@@ -202,7 +201,7 @@ def mcp() -> None:
 
 
 def tool_server(folder: Path) -> Any:
-    """The server of the tools; results that nobody names a file for are in a folder."""
+    """Makes the server of the tools; results for which no file is named are written into the folder."""
     import mcp_types as types
     from anyio import get_cancelled_exc_class
     from anyio.to_thread import run_sync
@@ -240,8 +239,9 @@ def tool_server(folder: Path) -> Any:
 def outcome(
     name: str, arguments: dict[str, Any] | None, folder: Path, cancel: Event
 ) -> tuple[dict[str, Any] | str, str | None, bool]:
-    """What a tool says, its picture as PNG in base 64 where there is one, and whether it failed: then it is a sentence."""
-    from workhold.cli.agent_tools import TOOLS, checked_arguments
+    """Runs a tool; returns its data or a sentence, its picture as PNG in base 64, and whether it failed."""
+    from workhold.cli.agent_arguments import checked_arguments
+    from workhold.cli.agent_tools import TOOLS
 
     try:
         if name not in TOOLS:
@@ -270,12 +270,14 @@ VARIABLE = "_WORKHOLD_COMPLETE"
 def completion(shell: Annotated[str, typer.Argument(metavar="SHELL", help="bash, zsh or fish.")]) -> None:
     """Print the script that lets a shell complete the commands and options of workhold.
 
-    In ~/.bashrc: eval "$(workhold completion bash)"; in ~/.zshrc, after compinit: eval "$(workhold completion zsh)"; for
-    fish write it to ~/.config/fish/completions/workhold.fish.
+    In ~/.bashrc: eval "$(workhold completion bash)"; in ~/.zshrc, after compinit: eval "$(workhold completion
+    zsh)"; for fish write it to ~/.config/fish/completions/workhold.fish.
 
     Example: workhold completion bash
     """
     name = choice("the shell", shell, SHELLS)
-    script = typer.completion.get_completion_script(prog_name="workhold", complete_var=VARIABLE, shell=name)  # type: ignore[attr-defined]
+    script = typer.completion.get_completion_script(  # type: ignore[attr-defined]
+        prog_name="workhold", complete_var=VARIABLE, shell=name
+    )
     sys.stdout.write(script + "\n")
     sys.stdout.flush()

@@ -1,12 +1,18 @@
-"""A table of words, as wide as there is room for."""
+"""Tables of words, and printing them with sentences as wide as there is room for."""
 
 from __future__ import annotations
 
+import os
+import sys
 from textwrap import wrap
+from typing import TextIO
 
+import typer
 from attrs import define, field, frozen
 
-__all__ = ["Fitted", "Table"]
+from workhold.plain import plain, shortened
+
+__all__ = ["Table", "print_tables", "width_of"]
 
 # Between two columns where there is room, and where there is little.
 GAP, NARROW_GAP = 3, 2
@@ -41,17 +47,19 @@ class Table:
     spare: int = 0
 
     def add_row(self, *words: str) -> None:
-        """Add a row at the end."""
+        """Adds a row at the end."""
         self.rows.append(words)
 
     def lines(self) -> list[str]:
-        """The table as text without a limit of width: the headings, a rule below them, and a line for each row."""
+        """Returns the table as lines without a limit of width: headings, a rule, and a line for each row."""
         fitted = self.fitted(None)
         return [*fitted.headings, *fitted.lines]
 
     def fitted(self, width: int | None) -> Fitted:
-        """The table in a width: where it is wider its headings take several lines, then the spare columns are left out,
-        which a last line says, and at last what stands in the last column takes several lines.
+        """Fits the table into a width.
+
+        A table that is wider has its headings wrapped first. Then the spare columns are left out, which a
+        last line says. At last the content of the last column is wrapped.
         """
         right = [column.startswith(">") for column in self.columns]
         headings = [column.lstrip(">") for column in self.columns]
@@ -105,5 +113,59 @@ class Table:
 
 
 def total(widths: list[int], gap: int) -> int:
-    """How wide a table is."""
+    """The width of a table in characters."""
     return sum(widths) + gap * (len(widths) - 1)
+
+
+def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
+    """Prints tables and sentences to a stream, stdout by default.
+
+    On a terminal headings are bold. What is printed is as wide as the terminal at most, where no single word
+    is longer.
+    """
+    stream = stream or sys.stdout
+    width = width_of(stream)
+    for part in parts:
+        if isinstance(part, Table):
+            fitted = part.fitted(width)
+            headings, lines, red = fitted.headings, fitted.lines, fitted.red
+        else:
+            headings, lines, red = sentence_lines(shortened(part), width), [], set()
+        headings, lines = list(map(plain, headings)), list(map(plain, lines))
+        if lines and stream.isatty():
+            headings = [typer.style(line, bold=True) for line in headings]
+            lines = [typer.style(line, fg="red") if row in red else line for row, line in enumerate(lines)]
+        stream.write("\n".join([*headings, *lines]) + "\n")
+    stream.flush()
+
+
+def sentence_lines(sentence: str, width: int | None) -> list[str]:
+    """Wraps a sentence into lines of a width, all of them indented as it is.
+
+    >>> sentence_lines("  one two three", 10)
+    ['  one two', '  three']
+    """
+    words = sentence.lstrip(" ")
+    indent = " " * (len(sentence) - len(words))
+    if width is None or len(sentence) <= width or not words:
+        return [sentence]
+    return wrap(
+        words,
+        width,
+        initial_indent=indent,
+        subsequent_indent=indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def width_of(stream: TextIO) -> int | None:
+    """Returns the columns of a terminal, or those that the environment says; None where there is no limit."""
+    given = os.environ.get("COLUMNS", "")
+    if given.isascii() and given.isdigit() and int(given[:6]):
+        return int(given[:6])
+    try:
+        # A terminal that does not know its size says 0.
+        return os.get_terminal_size(stream.fileno()).columns or None if stream.isatty() else None
+    except (OSError, ValueError):
+        return None

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from math import degrees, hypot, isfinite, isnan, nan, pi
-from textwrap import wrap
-from typing import TYPE_CHECKING, TextIO
-
-import typer
+from typing import TYPE_CHECKING
 
 from workhold.cli.table import Table
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN
-from workhold.plain import plain, shortened
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
@@ -23,19 +17,18 @@ if TYPE_CHECKING:
     from workhold.model.quality import Figure
     from workhold.model.result import Result
     from workhold.model.search_report import Proof, Undecided
-    from workhold.model.setup import Setting
+    from workhold.model.setup import LengthSetting
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "Table",
     "counts_sentence",
     "face_table",
     "figure_text",
     "fixture_tables",
     "heading",
     "jumps_sentence",
-    "Table",
     "plural",
-    "print_tables",
     "proof_sentences",
     "quality_table",
     "result_table",
@@ -47,63 +40,13 @@ __all__ = [
 MOST_FURTHER = 8
 # Undecided candidates that are named on the terminal.
 MOST_NAMED = 3
-# Columns of which the figure's name is too wide: how far open the part is caught, by what a wrong seat reads otherwise.
+# Columns of which the figure's name is too wide: how far open the part is caught, by what a wrong seat reads
+# otherwise.
 SHORT = {"capture_opening": "caught", "reading": "reads"}
 UNDECIDED = (
-    "  Every fixture listed holds; one more may exist at such a place. Nearly equal sizes are the cause: another peg "
-    "radius or pitch decides it."
+    "  Every fixture listed holds; one more may exist at such a place. Nearly equal sizes are the cause: "
+    "another peg radius or pitch decides it."
 )
-
-
-def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
-    """Print tables and sentences to a stream, stdout by default; headings are bold on a terminal, and what is printed is as
-    wide as it is at most, where no single word is longer."""
-    stream = stream or sys.stdout
-    width = width_of(stream)
-    for part in parts:
-        if isinstance(part, Table):
-            fitted = part.fitted(width)
-            headings, lines, red = fitted.headings, fitted.lines, fitted.red
-        else:
-            headings, lines, red = sentence_lines(shortened(part), width), [], set()
-        headings, lines = list(map(plain, headings)), list(map(plain, lines))
-        if lines and stream.isatty():
-            headings = [typer.style(line, bold=True) for line in headings]
-            lines = [typer.style(line, fg="red") if row in red else line for row, line in enumerate(lines)]
-        stream.write("\n".join([*headings, *lines]) + "\n")
-    stream.flush()
-
-
-def sentence_lines(sentence: str, width: int | None) -> list[str]:
-    """A sentence as lines of a width, all of them indented as it is.
-
-    >>> sentence_lines("  one two three", 10)
-    ['  one two', '  three']
-    """
-    words = sentence.lstrip(" ")
-    indent = " " * (len(sentence) - len(words))
-    if width is None or len(sentence) <= width or not words:
-        return [sentence]
-    return wrap(
-        words,
-        width,
-        initial_indent=indent,
-        subsequent_indent=indent,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-
-
-def width_of(stream: TextIO) -> int | None:
-    """How many columns a terminal has, or as many as the environment says; None where there is no limit."""
-    given = os.environ.get("COLUMNS", "")
-    if given.isascii() and given.isdigit() and int(given[:6]):
-        return int(given[:6])
-    try:
-        # A terminal that nobody has told its size says 0.
-        return os.get_terminal_size(stream.fileno()).columns or None if stream.isatty() else None
-    except (OSError, ValueError):
-        return None
 
 
 def plural(count: int, word: str) -> str:
@@ -116,7 +59,7 @@ def plural(count: int, word: str) -> str:
 
 
 def counts_sentence(result: Result) -> str:
-    """How many fixtures there are, of which type, and how many differ under the part's symmetry."""
+    """Says how many fixtures there are, of which type, and how many differ under the part's symmetry."""
     total = sum(result.found.values())
     kinds = ", ".join(f"{count} of type {kind}" for kind, count in result.found.items())
     of_types = f": {kinds}" if len(result.toolkit.types) > 1 else ""
@@ -135,16 +78,16 @@ def counts_sentence(result: Result) -> str:
 
 
 def unfit_sentence(unfit: int) -> str:
-    """How many fixtures are not shown because they are none for a workshop, and how to see them."""
+    """Says how many fixtures are not shown because they are none for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
     return (
-        f"{unfit:,} of them {are} for a workshop (the part may lie anywhere, or one peg hardly holds) and not shown: "
-        "see them with --unfit."
+        f"{unfit:,} of them {are} for a workshop (the part may lie anywhere, or one peg hardly holds) and "
+        "not shown: see them with --unfit."
     )
 
 
 def proof_sentences(result: Result, written: str | None = None) -> list[str]:
-    """The account of the search in a line, and below it the first candidates that are undecided.
+    """Says in a line how the search was proven, and below it names the first undecided candidates.
 
     Parameters
     ----------
@@ -168,7 +111,7 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
 
 
 def proof_head(proof: Proof, complete: bool) -> str:
-    """What the account proves: that all fixtures are listed, or only that those listed are fixtures."""
+    """Says what is proven: that all fixtures are listed, or only that those listed are fixtures."""
     if proof.cells == 0:
         # The paper's algebra does not go through ranges of orientation: its candidates come from polynomials.
         return "Proven one by one"
@@ -178,7 +121,7 @@ def proof_head(proof: Proof, complete: bool) -> str:
 
 
 def proof_counts(proof: Proof) -> str:
-    """How many candidates there were, and what became of them."""
+    """Says how many candidates there were, and what became of them."""
     settled = max(proof.escalated - len(proof.undecided), 0)
     candidates = "1 candidate" if proof.candidates == 1 else f"{proof.candidates:,} candidates"
     if proof.cells == 0:
@@ -187,16 +130,16 @@ def proof_counts(proof: Proof) -> str:
 
 
 def undecided_words(item: Undecided) -> str:
-    """One undecided candidate: where it is and why."""
+    """Says of an undecided candidate where it is and why."""
     faces = ", ".join(str(face) for face in item.faces)
     return f"Type {item.type} on faces {faces} at {item.theta_deg:.6f} degrees: {item.reason}"
 
 
 def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILLIMETRE) -> Table:
-    """The best entries of a result, one line each, with lengths in a unit.
+    """Tabulates the best entries of a result, one line each, with lengths in a unit.
 
-    What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the table looks as
-    sorted as it is.
+    What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
+    table looks as sorted as it is.
     """
     from workhold.model.quality import FIGURES, LOCATION_ERROR, RANKED, SEATING_FIGURES
     from workhold.model.setup import settings_of
@@ -206,9 +149,9 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     others = [] if FIGURES[LOCATION_ERROR] in ranked else [FIGURES[LOCATION_ERROR]]
     figures = [f for f in [*ranked, *others] if len(result) and f.key in result[0].figures]
     if result.seating:
-        # What it is ranked by first, then how wide open the part is caught, and what a reading must tell.
-        told = [f for f in SEATING_FIGURES if f.key in ("capture_opening", "reading") and f not in figures]
-        figures[1:1] = told
+        # First what it is ranked by, then how wide open the part is caught, and what a reading must show.
+        others = [f for f in SEATING_FIGURES if f.key in ("capture_opening", "reading") and f not in figures]
+        figures[1:1] = others
     headings = [
         f">{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip() for figure in figures
     ]
@@ -277,12 +220,12 @@ def heading(figure: Figure, unit: Unit) -> str:
 
 
 def unit_of(figure: Figure, unit: Unit) -> str:
-    """The unit that a figure is told in."""
+    """The unit in which a figure is shown."""
     return unit.abbreviation if figure.unit == "mm" else figure.unit
 
 
 def rounded(value: float, decimals: int) -> str:
-    """A number with so many decimals, zero without a sign.
+    """Formats a number with so many decimals, and zero without a sign.
 
     >>> rounded(-1e-15, 3), rounded(-0.5, 1)
     ('0.000', '-0.5')
@@ -292,7 +235,7 @@ def rounded(value: float, decimals: int) -> str:
 
 
 def figure_text(figure: Figure, value: float, unit: Unit) -> str:
-    """A figure's value as a number of its unit; in words where it has no end, or is not known."""
+    """Formats a figure's value as a number of its unit; in words where it is infinite or not known."""
     if not isfinite(value):
         return "-" if isnan(value) else "none" if figure.key == "reading" else "any"
     # A caliper reads hundredths of a millimetre.
@@ -301,7 +244,7 @@ def figure_text(figure: Figure, value: float, unit: Unit) -> str:
 
 
 def counted_text(figure: Figure, value: float, unit: Unit) -> str:
-    """A figure's value as it counts in an order, which is in mm, as a number of a unit."""
+    """Formats a figure's value, rounded as the ranking rounds it in mm, in a unit."""
     from math import floor, log10
 
     if not isfinite(value):
@@ -316,7 +259,9 @@ def counted_text(figure: Figure, value: float, unit: Unit) -> str:
 
 
 def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Table:
-    """All figures of quality of a fixture, and what they mean where a jaw, or what moves instead of it, presses."""
+    """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (such as a jaw)
+    presses.
+    """
     from workhold.model.quality import FIGURES
 
     table = Table(("figure", ">value", "unit", "better", "meaning"))
@@ -325,7 +270,7 @@ def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Tabl
             of = unit.abbreviation if figure.unit == "mm" else figure.unit
             better = "more" if figure.more_is_better else "less"
             value = figure_text(figure, fixture.quality[figure.key], unit)
-            words, meaning = figure.told(mover)
+            words, meaning = figure.named_for(mover)
             table.add_row(words, value, of, better, meaning)
     return table
 
@@ -333,7 +278,7 @@ def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Tabl
 def fixture_tables(
     fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
-    """How to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
+    """Says how to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
     from workhold.model.setup import settings_of
 
     noun, several = toolkit.moving.noun, len(toolkit.plates) > 1
@@ -351,14 +296,14 @@ def fixture_tables(
         f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",
         *(setting_sentence(setting, unit) for setting in settings_of(fixture, toolkit)),
         *pair_sentences(fixture),
-        f"The part is turned by {rounded(pose.theta_deg, 3)} degrees, its origin lies at {place((pose.x, pose.y), unit)} "
-        f"{unit.abbreviation} from {toolkit.datum.full}",
+        f"The part is turned by {rounded(pose.theta_deg, 3)} degrees, its origin lies at "
+        f"{place((pose.x, pose.y), unit)} {unit.abbreviation} from {toolkit.datum.full}",
         pegs,
     )
 
 
-def setting_sentence(setting: Setting, unit: Unit) -> str:
-    """What there is to set on something that moves, and of a clamp where it is bolted and which way it pushes."""
+def setting_sentence(setting: LengthSetting, unit: Unit) -> str:
+    """Says what to set on a carrier that moves, and of a clamp where it is bolted and which way it pushes."""
     mover, length = setting.carrier, unit.text(setting.length)
     if setting.tip is None:
         return f"{setting.name[0].upper()}{setting.name[1:]} {length}"
@@ -367,7 +312,7 @@ def setting_sentence(setting: Setting, unit: Unit) -> str:
 
 
 def pair_sentences(fixture: Fixture) -> list[str]:
-    """In which order two clamps are tightened and with what forces; none of other fixtures."""
+    """Says in which order two clamps are tightened and with what forces; empty for other fixtures."""
     from workhold.model.clamps import clamp_names, clamp_shares, order_words
 
     order = order_words(fixture)
@@ -384,8 +329,10 @@ def pair_sentences(fixture: Fixture) -> list[str]:
 
 
 def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
-    """The numbered faces of a part, with lengths in a unit; where a face ends the next one begins, so that its end is spared
-    where there is little room."""
+    """Tabulates the numbered faces of a part, with lengths in a unit.
+
+    Where a face ends the next one begins, so that its end is left out where there is little room.
+    """
     table = Table((">face", "kind", f"size {unit.abbreviation}", "loop", "from", "to"), spare=1)
     first = 0
     loop_of = {}
@@ -401,20 +348,21 @@ def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
 
 
 def jumps_sentence(workpiece: Workpiece) -> list[str]:
-    """Why some numbers are not in the table of faces; nothing where none is missing."""
+    """Says why some numbers are not in the table of faces; empty where none is missing."""
     further = [str(number) for face in workpiece.faces for number in face.segments if number != face.number]
     if not further:
         return []
     shown = ", ".join(further[:MOST_FURTHER]) + (" and more" if len(further) > MOST_FURTHER else "")
     one = len(further) == 1
     return [
-        f"No face is called {shown}: {'that is a further piece' if one else 'these are further pieces'} of a face drawn in "
-        "pieces, such as a circle in two halves, and a face has the number of its first piece."
+        f"No face is called {shown}: {'that is a further piece' if one else 'these are further pieces'} of "
+        "a face drawn in pieces, such as a circle in two halves, and a face has the number of its first "
+        "piece."
     ]
 
 
 def face_words(face: Face, unit: Unit) -> tuple[str, str, str, str]:
-    """Kind, size, start and end of a face, with lengths in a unit."""
+    """Returns kind, size, start and end of a face, with lengths in a unit."""
     from workhold.geometry.segment import Arc
 
     segment = face.segment
@@ -430,5 +378,5 @@ def face_words(face: Face, unit: Unit) -> tuple[str, str, str, str]:
 
 
 def place(point: tuple[float, float], unit: Unit) -> str:
-    """The coordinates of a point in mm, as numbers of a unit."""
+    """Formats the coordinates of a point in mm as numbers of a unit."""
     return f"({unit.number(point[0])}, {unit.number(point[1])})"

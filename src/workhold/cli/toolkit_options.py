@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from workhold.model.requirements import Tolerance
     from workhold.model.workpiece import Workpiece
 
-__all__ = ["MOST_TOOLKITS", "TOOLKIT", "Named", "ToolkitWords", "query_of", "toolkits_to_try", "words_of"]
+__all__ = ["TOOLKIT", "Named", "ToolkitWords", "query_of", "toolkits_to_try", "words_of"]
 
 TOOLKIT = option(
     TOOLKIT_SECTION,
     "NAME|FILE",
-    f"{' '.join(f'{name}: {words}.' for name, words in NAMES.items())} Or a name of workhold toolkits, or a TOML file. "
-    "vise if not given.",
+    f"{' '.join(f'{name}: {words}.' for name, words in NAMES.items())} Or a name of workhold toolkits, or a "
+    "TOML file. vise if not given.",
     "--toolkit",
 )
 MIN_OPENING = option(
@@ -42,7 +42,7 @@ MIN_OPENING = option(
 
 
 def typed_options() -> dict[str, Any]:
-    """Attributes of :class:`ToolkitWords`, in the order of the help: one for each field of a toolkit, and a few more."""
+    """Makes the attributes of :class:`ToolkitWords` in the order of the help, from the field table."""
     out = {
         "vise": option(
             TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change what it says."
@@ -63,7 +63,7 @@ def typed_options() -> dict[str, Any]:
 
 @frozen(these=typed_options())
 class ToolkitWords:
-    """What was typed about the toolkit; None for options not given."""
+    """The options of the toolkit, as typed; None for those not given."""
 
     if TYPE_CHECKING:
         vise: str | None
@@ -71,7 +71,7 @@ class ToolkitWords:
         min_opening: str | None
 
     def fields(self, unit: Unit) -> dict[str, Any]:
-        """Keyword arguments of a toolkit, in mm, for the options that were given.
+        """Makes keyword arguments of a toolkit, in mm, of the options that were given.
 
         Raises
         ------
@@ -85,7 +85,7 @@ class ToolkitWords:
         }
 
     def refuse_others(self, kind: type[Toolkit]) -> None:
-        """Refuse options that a kind of toolkit does not have.
+        """Refuses options that a kind of toolkit does not have.
 
         Raises
         ------
@@ -101,8 +101,8 @@ class ToolkitWords:
                 typed.append("--min-opening")
             if typed and row.name not in known:
                 raise InputError(
-                    f"{typed[0]} is of {owner_of(row).noun}s: a {kind.noun} has no {row.belongs_to}; leave it out, or "
-                    "choose another --toolkit."
+                    f"{typed[0]} is of {owner_of(row).noun}s: a {kind.noun} has no {row.belongs_to}; leave "
+                    "it out, or choose another --toolkit."
                 )
 
     def asked(self, unit: Unit) -> tuple[Toolkit, Tolerance | None]:
@@ -144,8 +144,8 @@ class ToolkitWords:
             if row.is_required and row.name not in fields:
                 noun = KINDS[kind].noun
                 raise InputError(
-                    f"the {noun}'s {row.missing} is not given: add {row.option}, or name a {noun} with --toolkit (see "
-                    "workhold toolkits)."
+                    f"the {noun}'s {row.missing} is not given: add {row.option}, or name a {noun} with "
+                    "--toolkit (see workhold toolkits)."
                 )
         vise = toolkit_of(kind, fields)
         travel = vise.moving.travel
@@ -154,8 +154,8 @@ class ToolkitWords:
         if travel.most is not None and opening > travel.most:
             most = unit.figure(travel.most)
             raise InputError(
-                f"the smallest opening {unit.figure(opening)} {unit.abbreviation} is above the largest, {most} "
-                f"{unit.abbreviation}: no opening is left."
+                f"the smallest opening {unit.figure(opening)} {unit.abbreviation} is above the largest, "
+                f"{most} {unit.abbreviation}: no opening is left."
             )
         if opening > travel.least:
             # The jaws never stand farther apart than the pegs, so the one limit says it all.
@@ -164,12 +164,12 @@ class ToolkitWords:
 
 
 def lengths(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Read lengths with commas between them, in mm."""
+    """Reads lengths with commas between them; returns them in mm."""
     return tuple(length(option_name, word, unit) for word in text.split(","))
 
 
 def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Read the least and the most of a length, in mm.
+    """Reads the least and the most of a length; returns them in mm.
 
     Raises
     ------
@@ -184,7 +184,7 @@ def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
 
 
 def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
-    """Directions from words such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``.
+    """Reads directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``.
 
     Raises
     ------
@@ -217,7 +217,7 @@ MOST_TOOLKITS = 1000
 
 @frozen
 class Named:
-    """A toolkit to try: what it is called, its kind and keyword arguments, and its tolerance where it has one."""
+    """A toolkit to try: its name, its kind and keyword arguments, and its tolerance where it has one."""
 
     name: str
     kind: str
@@ -225,14 +225,14 @@ class Named:
     tolerance: Tolerance | None = None
 
     def changed(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
-        """The toolkit after changes, each of which has a name."""
+        """Applies changes, each of which has a name."""
         name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
         fields = {key: value for _, change in changes for key, value in change.items()}
         return Named(name, self.kind, self.fields | fields, self.tolerance)
 
 
 def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
-    """The query for a toolkit, or why there is no such toolkit."""
+    """Makes the query for a toolkit, or returns the error that says why there is no such toolkit."""
     from workhold.fixels.kinds import toolkit_of
     from workhold.model.query import Query
 
@@ -254,7 +254,7 @@ def toolkits_to_try(
     peg_radius: str | None,
     unit: Unit,
 ) -> list[Named]:
-    """The toolkits to try.
+    """Lists the toolkits to try.
 
     Raises
     ------
@@ -304,13 +304,14 @@ def toolkits_to_try(
     toolkits = [base.changed(list(changes)) for base in bases for changes in product(*lists)]
     if len(toolkits) > MOST_TOOLKITS:
         raise InputError(
-            f"the lists combine to {len(toolkits)} toolkits: give lists that combine to {MOST_TOOLKITS} or fewer."
+            f"the lists combine to {len(toolkits)} toolkits: give lists that combine to {MOST_TOOLKITS} or "
+            "fewer."
         )
     return toolkits
 
 
 def words_of(option: str, text: str) -> list[str]:
-    """The entries of a list.
+    """Splits a list into its entries.
 
     Raises
     ------
@@ -324,6 +325,6 @@ def words_of(option: str, text: str) -> list[str]:
 
 
 def pitch_of(word: str, unit: Unit) -> tuple[float, float]:
-    """A pitch for both directions, or ``XxY``."""
+    """Reads a pitch for both directions, or ``XxY``."""
     x, cross, y = word.partition("x")
     return length("--pitch", x, unit), length("--pitch", y if cross else x, unit)

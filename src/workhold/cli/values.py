@@ -1,4 +1,4 @@
-"""Numbers typed by a user, turned into numbers or into one plain sentence."""
+"""Readers of typed words: each returns a value, or raises an error of one plain sentence."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def length_unit(name: str | None) -> Unit:
 
 
 def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
-    """A finite length in mm; whether its sign fits is for the vise to say.
+    """Reads a finite length in mm; the toolkit checks its sign.
 
     Parameters
     ----------
@@ -71,14 +71,14 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
         value = (unit if own is None else unit_named(own)).length(number(match["number"]))
     if not isfinite(value):
         raise InputError(
-            f"{option} {text!r} is not a length: give a plain number in {unit.abbreviation}, such as 12.5, or one with "
-            "its unit, such as 0.5in."
+            f"{option} {text!r} is not a length: give a plain number in {unit.abbreviation}, such as 12.5, "
+            "or one with its unit, such as 0.5in."
         )
     return value
 
 
 def number(text: str) -> float:
-    """A number, or a fraction such as 1/2 or 1-1/2; NaN or infinite for anything else."""
+    """Reads a number, or a fraction such as 1/2 or 1-1/2; NaN or infinite for anything else."""
     fraction = FRACTION.fullmatch(text)
     if fraction is None:
         try:
@@ -133,14 +133,14 @@ def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
         numbers = [length("--pitch", part, unit) for part in parts]
     except InputError as error:
         raise InputError(
-            f"--pitch {text!r} is not a distance between holes: give it in {unit.abbreviation}, such as 10, or as X,Y, "
-            "such as 10,12.5."
+            f"--pitch {text!r} is not a distance between holes: give it in {unit.abbreviation}, such as 10, "
+            "or as X,Y, such as 10,12.5."
         ) from error
     return numbers[0], numbers[-1]
 
 
 def whole_number(option: str, text: str) -> int:
-    """A whole number; whether its sign fits is for others to say.
+    """Reads a whole number; its sign is checked elsewhere.
 
     Raises
     ------
@@ -199,7 +199,8 @@ def optional_force(option: str, text: str | None) -> float | None:
     value = nan if match is None else number(match["number"]) * FORCE_UNITS[(match["unit"] or "n").lower()]
     if not (isfinite(value) and value > 0):
         raise InputError(
-            f"{option} {text!r} is not a force above 0: give it in N, or with its unit, such as 3kN or 700lbf."
+            f"{option} {text!r} is not a force above 0: give it in N, or with its unit, such as 3kN or "
+            "700lbf."
         )
     refuse_strong(option, value)
     return value

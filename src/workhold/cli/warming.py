@@ -1,7 +1,8 @@
 """Compiling on a first run, shared with a second process, where the package was not built with its kernels.
 
-The second process compiles one half of the kernels while this one compiles the other; the cache folder hands the code over,
-and a bar tells how many are done. It changes nothing but the wait: what a process that was ended has left is compiled here.
+The second process compiles one half of the kernels while this one compiles the other. The cache folder hands
+the code over, and a bar shows how many are done. If the second process was ended, what it has left is
+compiled here.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from time import sleep
 from workhold.cli.progress import progress_bar
 from workhold.kernels.base.compiling import are_stored, cache_folder
 
-__all__ = ["SecondProcess", "begin_compiling", "compile_kernels", "compile_seating", "is_seating_compiled"]
+__all__ = ["begin_compiling", "compile_kernels", "compile_seating", "is_seating_compiled"]
 
 WORDS = "Compiling the kernels, on the first run only"
 SEATING_WORDS = "Compiling the kernels of seating, on the first run only"
@@ -57,7 +58,7 @@ class SecondProcess:
         )
 
     def listen(self, one_more: Callable[[], None]) -> Thread:
-        """Start a thread that calls ``one_more`` for each kernel that is done."""
+        """Starts a thread that calls ``one_more`` for each kernel that is done."""
 
         def lines() -> None:
             with suppress(ValueError):
@@ -70,13 +71,13 @@ class SecondProcess:
         return listener
 
     def end(self) -> None:
-        """End the process, whatever it is doing."""
+        """Ends the process, whatever it is doing."""
         self.process.terminate()
         self.process.wait()
 
 
 def begin_compiling() -> SecondProcess | None:
-    """Begin to compile a search's kernels in a second process, if there is a processor and a place for it.
+    """Begins to compile a search's kernels in a second process, if there is a processor and a place for it.
 
     What is done until :func:`compile_kernels`, such as reading a part, is done meanwhile.
     """
@@ -84,7 +85,7 @@ def begin_compiling() -> SecondProcess | None:
 
 
 def compile_kernels(cancel: Event, second: SecondProcess | None = None) -> None:
-    """Compile the kernels of a search.
+    """Compiles the kernels of a search.
 
     Parameters
     ----------
@@ -95,12 +96,12 @@ def compile_kernels(cancel: Event, second: SecondProcess | None = None) -> None:
 
 
 def is_seating_compiled() -> bool:
-    """Whether the kernels of seating need not be compiled any more, a matter of ten seconds or so."""
+    """Whether the kernels of seating are compiled, which takes ten seconds or so."""
     return are_stored(LAST_OF_SEATING)
 
 
 def compile_seating(cancel: Event) -> None:
-    """Compile the kernels of seating, which searches do without, if that has not been done.
+    """Compiles the kernels of seating, which searches do without, if that has not been done.
 
     Parameters
     ----------
@@ -112,7 +113,7 @@ def compile_seating(cancel: Event) -> None:
 
 
 def share(shares: str, words: str, cancel: Event, second: SecondProcess | None = None) -> None:
-    """Compile the kernels of two shares, the second in another process where that can be, with a bar."""
+    """Compiles the kernels of two shares with a bar, the second in another process where there can be one."""
     second = second or second_process(shares)
     from workhold.kernels import preparing
 
@@ -151,6 +152,6 @@ def share(shares: str, words: str, cancel: Event, second: SecondProcess | None =
 
 
 def second_process(shares: str) -> SecondProcess | None:
-    """A process that compiles the second of two shares, if there is a processor for it and a folder to hand it over."""
+    """Starts a process that compiles the second of two shares, given a processor and a cache folder."""
     helped = (os.cpu_count() or 1) > 1 and cache_folder() is not None and bool(sys.executable)
     return SecondProcess(shares) if helped else None

@@ -64,8 +64,8 @@ def sheet(
     zero: str | None = option(
         None,
         "POINT",
-        "Part zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not given, the origin of "
-        "the drawing where that is on the part, else the corner.",
+        "Part zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not given, the "
+        "origin of the drawing where that is on the part, else the corner.",
     ),
     machine_position: str | None = option(
         ON_PAPER,
@@ -103,10 +103,11 @@ def sheet(
     friction: str | None = FRICTION,
     json_: JsonOption = False,
 ) -> None:
-    """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, loads, cautions.
+    """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality,
+    loads, cautions.
 
-    Loads given here stand instead of those in the result. The paper sizes are A4 and Letter. A .dxf or .step file holds
-    the set-up itself, in mm, for a CAM system; a .csv file lists the pins.
+    Loads given here stand instead of those in the result. The paper sizes are A4 and Letter. A .dxf or .step
+    file holds the set-up itself, in mm, for a CAM system; a .csv file lists the pins.
 
     Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
@@ -117,7 +118,8 @@ def sheet(
     ending = path.suffix.lower()
     if ending not in PAPER_ENDINGS + MODEL_ENDINGS:
         raise InputError(
-            f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf, .step or .csv."
+            f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf, .step or "
+            ".csv."
         )
     shown_unit = length_unit(unit)
 
@@ -157,7 +159,7 @@ def sheet(
 
 
 def day_of(text: str) -> date:
-    """A date typed as YYYY-MM-DD.
+    """Reads a date typed as YYYY-MM-DD.
 
     Raises
     ------
@@ -173,7 +175,7 @@ def day_of(text: str) -> date:
 
 
 def position(text: str, unit: Unit) -> tuple[float, float]:
-    """The two lengths in mm of a position typed as X,Y.
+    """Reads a position typed as X,Y; returns its two lengths in mm.
 
     Raises
     ------
@@ -213,7 +215,8 @@ def copies(
 ) -> None:
     """Tell how many copies of fixture N a plate holds at once, and where each stands.
 
-    The fixture is repeated by whole columns and rows, so that parts, pegs and clamps of the copies are clear of each other.
+    The fixture is repeated by whole columns and rows, so that parts, pegs and clamps of the copies are clear
+    of each other.
 
     Example: workhold copies part.json 1 --columns 20 --rows 15 --draw plate.png
     """
@@ -247,15 +250,15 @@ def copies(
         places = [{"columns": i, "rows": j} for i, j in packing.shifts]
         print_json(copies=len(found), at_most=packing.at_most, shifts=places, written=written)
         return
-    tell_copies(found, packing, result, size, shown)
+    print_copies(found, packing, result, size, shown)
     if written:
-        from workhold.cli.tables import print_tables
+        from workhold.cli.table import print_tables
 
         print_tables(f"Written to {draw}.")
 
 
 def plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[int, int]:
-    """Columns and rows of the plate: those asked for, or those of the result.
+    """Returns columns and rows of the plate: those asked for, or those of the result.
 
     Raises
     ------
@@ -272,11 +275,11 @@ def plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[in
     return size[0] or 0, size[1] or 0
 
 
-def tell_copies(
+def print_copies(
     found: list[Fixture], packing: Packing, result: Result, size: tuple[int, int], unit: Unit
 ) -> None:
-    """Tell how many copies there are, and where each stands."""
-    from workhold.cli.tables import Table, print_tables
+    """Prints how many copies there are, and where each stands."""
+    from workhold.cli.table import Table, print_tables
     from workhold.model.setup import part_zero
 
     zero = part_zero(result.workpiece)
@@ -363,7 +366,7 @@ def drill(
 
 
 def asked_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
-    """The bolts asked for; None where there are none.
+    """Reads the bolts asked for; None where there are none.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""All chord curves of a workpiece for one toolkit's lattice steps (see ``kernels.chord.evaluation`` for what a chord is)."""
+"""Chord curves of a workpiece for a toolkit's lattice steps (chords: ``kernels.chord.evaluation``)."""
 
 from __future__ import annotations
 

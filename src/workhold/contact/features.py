@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
-from workhold.fixels.carrier import Flat
+from workhold.fixels.pegs import Flat
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
@@ -58,7 +58,7 @@ class ContactFeature:
 def contact_features(
     workpiece: Workpiece, peg_radius: float, flat: Flat | None = None
 ) -> list[ContactFeature]:
-    """The contact features of a workpiece for pegs of a radius in mm, round or with a flat, ordered by face."""
+    """Contact features of a workpiece for pegs of a radius in mm, round or with a flat, by face."""
     faces = workpiece.faces
     pieces = trimmed_offsets(
         [face.segment for face in faces], peg_radius, None if flat is None else flat.distance
@@ -69,7 +69,7 @@ def contact_features(
 def allowed_features(
     features: list[ContactFeature], workpiece: Workpiece, restrictions: Restrictions, body_radius: float
 ) -> list[ContactFeature]:
-    """What is left of contact features when faces are avoided and no body of a peg may stand over a keep-out zone.
+    """Contact features without avoided faces and places where a peg's body would stand over a keep-out zone.
 
     Parameters
     ----------
@@ -84,14 +84,16 @@ def allowed_features(
     touched = [feature for feature in features if feature.face not in avoided]
     if not touched:
         raise InputError(
-            f"every face of {workpiece.name} that a peg could touch is to be avoided: leave some faces to hold it by."
+            f"every face of {workpiece.name} that a peg could touch is to be avoided: leave some faces to "
+            "hold it by."
         )
     left = touched
     for zone in restrictions.zones:
         left = [kept for feature in left for kept in clear_of(feature, zone, body_radius)]
     if not left:
         raise InputError(
-            f"the keep-out zones cover every place along {workpiece.name} where a peg could stand: make them smaller."
+            f"the keep-out zones cover every place along {workpiece.name} where a peg could stand: make them "
+            "smaller."
         )
     return left
 
@@ -127,8 +129,9 @@ def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
 def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Distances (..., 2) in mm along features from the feet of points to the low and to the high end.
 
-    Negative beyond an end, infinite on a whole circle, which has none. ``kernels.contact.contact_matrix.end_distance`` is
-    its compiled form for one point; verification, the algebra and the proof in balls have their own on purpose.
+    Negative past an end, infinite on a whole circle, which has none.
+    ``kernels.contact.contact_matrix.end_distance`` is its compiled form for one point; verification, the
+    algebra and the proof in balls have their own on purpose.
 
     Parameters
     ----------
@@ -150,12 +153,12 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
 def end_slacks(
     features: list[ContactFeature], margin: float = 0.0, locus: list[ContactFeature] | None = None
 ) -> NDArray[np.float64]:
-    """How far in mm a contact may lie past the place ``margin`` mm inside each feature's low and high end, shape (F, 2).
+    """Distances (F, 2) in mm that a contact may lie past the places ``margin`` mm inside a feature's ends.
 
-    Where two features join tangentially a contact exactly at the joint counts (for both, and is listed once), so rounding
-    is forgiven. Any other end does not count: there the peg also touches a second face or stands on a corner. A margin is
-    met where it is met exactly. A keep-out zone cuts a feature where the peg's body touches it, which is allowed: the margin
-    counts from the ends that the feature has without zones.
+    Where two features join tangentially a contact exactly at the joint counts (for both, and is listed once),
+    so rounding is forgiven. Any other end does not count: there the peg also touches a second face or stands
+    on a corner. A margin is met where it is met exactly. A keep-out zone cuts a feature where the peg's body
+    touches it, which is allowed: the margin counts from the ends that the feature has without zones.
 
     Parameters
     ----------
@@ -172,8 +175,8 @@ def end_slacks(
         if feature.segment is not piece:
             half = feature.segment.half_extent
             points = np.array([feature.segment.at(-half), feature.segment.at(half)])
-            beyond = end_distances(segment_rows([piece]), points)[[0, 1], [0, 1]]
-            slack[index] = np.minimum(slack[index] + beyond, margin + END_SLACK)
+            to_ends = end_distances(segment_rows([piece]), points)[[0, 1], [0, 1]]
+            slack[index] = np.minimum(slack[index] + to_ends, margin + END_SLACK)
     return slack
 
 

@@ -1,4 +1,6 @@
-"""The frame of the search: a toolkit turned by quarter turns so that its moving carrier slides along +x, and the way back.
+"""The frame of the search: a toolkit turned so that its moving carrier slides along +x.
+
+Quarter turns alone are used, and fixtures found in the frame are carried back.
 
 Everything between contact features and placed fixtures works in this frame; a vise needs no turning.
 """
@@ -32,11 +34,12 @@ ROUNDING = 1e-12
 class Frame:
     """A toolkit as the search sees it: one carrier stands still, one slides along its rows or columns.
 
-    What other toolkits must bring. Both carriers need one pitch only where both hold two pegs: Type I asks for
-    heights that differ by whole row pitches (``kernels.base.given.Lattice``). Chords are made of the steps of one
-    lattice alone: a carrier of another pitch needs lattice steps and curves of its own (``search.toolkit_search``,
-    ``CurveTable.joined``), and ``equations.take_pegs`` its pitch. A single moving peg, such as a clamp on a line of
-    holes of the locators' own plate, needs the pitch of its rows and their offset only.
+    What other toolkits must bring. Both carriers need one pitch only where both hold two pegs: Type I asks
+    for heights that differ by whole row pitches (``kernels.base.given.Lattice``). Chords are made of the
+    steps of one lattice alone: a carrier of another pitch needs lattice steps and curves of its own
+    (``search.toolkit_search``, ``CurveTable.joined``), and ``equations.take_pegs`` its pitch. A single moving
+    peg, such as a clamp on a line of holes of the locators' own plate, needs the pitch of its rows and their
+    offset only.
 
     Parameters
     ----------
@@ -57,18 +60,20 @@ class Frame:
         Raises
         ------
         InputError
-            When the lattices are not alike, or the moving carrier slides neither along its rows nor along its columns.
+            When the lattices are not alike, or the moving carrier slides neither along its rows nor along its
+            columns.
         """
         moving = toolkit.moving
-        still = (carrier for carrier in toolkit.carriers if carrier.travel is None and not carrier.is_wall)
+        still = (plate for plate in toolkit.plates if plate.travel is None)
         # Beside a wall a lattice that slides may be all there is.
         standing = next(still, moving)
         assert moving.travel is not None
         turns = moving.travel.direction / (pi / 2)
         if abs(turns - round(turns)) > ROUNDING or standing.pitch != moving.pitch:
             raise InputError(
-                f"the {moving.name} carrier of a {toolkit.kind} does not slide along the rows or columns of a lattice like "
-                f"that of the {standing.name} one: give both one pitch, and a direction of whole quarter turns."
+                f"the {moving.name} carrier of a {toolkit.kind} does not slide along the rows or columns of "
+                f"a lattice like that of the {standing.name} one: give both one pitch, and a direction of "
+                "whole quarter turns."
             )
         quarters = round(turns) % 4
         return cls(
@@ -92,8 +97,10 @@ class Frame:
 
     @property
     def swapped(self) -> int:
-        """How many pegs stand on each carrier of the arrangement that a half turn of everything leaves as it is, because it
-        swaps the carriers; 0 for none."""
+        """Pegs on each carrier of the arrangement that a half turn of everything keeps; 0 for none.
+
+        The half turn swaps the carriers.
+        """
         swaps = any(s.half_turns % 2 and s.carriers == (1, 0) for s in self.toolkit.symmetries)
         return next((a.pegs[0] for a in self.toolkit.arrangements if swaps and a.pegs == a.pegs[::-1]), 0)
 
@@ -140,8 +147,9 @@ def hole_back(carrier: Carrier, quarters: int, column: Any, row: Any) -> tuple[A
 
 
 def turned(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
-    """A carrier as it is in the frame; without an end along the travel it has as many columns as two pegs on the part can be
-    apart.
+    """A carrier as it is in the frame.
+
+    Without an end along the travel it has as many columns as two pegs on the part can be apart.
 
     Raises
     ------

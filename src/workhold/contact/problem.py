@@ -41,12 +41,13 @@ class Problem:
     Parameters
     ----------
     query : what is asked.
-    loci : for each carrier of the frame the contact features of its pegs, also those that are ruled out, ordered by face.
+    loci : for each carrier of the frame the contact features of its pegs, also those that are ruled out,
+        ordered by face.
     rows : (F, 12) contact features, with the slack of their ends beside the contact margin
         (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
-    standing, moving : first and past-the-last number of the features that pegs of each carrier touch. Both are equal where
-        their pegs are alike; else features of the standing carrier come first.
+    standing, moving : first and past-the-last number of the features that pegs of each carrier touch. Both
+        are equal where their pegs are alike; else features of the standing carrier come first.
     outline : (S, 10) the part's faces.
     diameter : largest distance between two peg centres that touch the part.
     pairing : whether the clamp is one of two, so that it need not hold the part with the locators alone.
@@ -73,8 +74,8 @@ class Problem:
         Raises
         ------
         InputError
-            When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to touch.
-            Also when two pegs can stand in too many ways (``limits``).
+            When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to
+            touch. Also when two pegs can stand in too many ways (``limits``).
         """
         workpiece, restrictions = query.workpiece, query.restrictions
         radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
@@ -132,7 +133,7 @@ class Problem:
 
     @property
     def backward_error(self) -> float:
-        """How far in mm the features' rows may be from the drawing, by the rounding of a dozen sums and products."""
+        """Distance in mm of the features' rows from the drawing, by the rounding of a dozen operations."""
         center = self.workpiece.center
         return ROUNDINGS * (
             abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [X, Y, RADIUS]]).max())
@@ -177,8 +178,8 @@ def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     features = contact_features(workpiece, carrier.peg_radius, carrier.flat)
     if not features:
         raise InputError(
-            f"a peg of radius {carrier.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is hidden in "
-            "corners too narrow for it; use a smaller peg."
+            f"a peg of radius {carrier.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is "
+            "hidden in corners too narrow for it; use a smaller peg."
         )
     return features
 

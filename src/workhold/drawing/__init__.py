@@ -1,7 +1,7 @@
 """Pictures of parts and fixtures: SVG text, and PNG rendered from the same SVG.
 
-The map from millimetres to the page is kept in the pictures: groups that show the model carry it in the attribute
-``data-model-to-page`` as an SVG matrix.
+The map from millimetres to the page is kept in the pictures: groups that show the model carry it in the
+attribute ``data-model-to-page`` as an SVG matrix.
 """
 
 from workhold.drawing.fixture_pictures import MOST_THUMBNAILS, draw_fixture, draw_thumbnails

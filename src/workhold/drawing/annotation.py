@@ -1,7 +1,7 @@
 """Annotation of drawings: dimensions, scale bars and angles, and labels placed where they hide nothing.
 
-Dimensions are in the manner of ISO 129: thin lines, text on top, arrows outside when tight. Each label takes the cheapest of
-its candidate places.
+Dimensions are in the manner of ISO 129: thin lines, text on top, arrows outside when tight. Each label takes
+the cheapest of its candidate places.
 
 Glossary
 --------
@@ -25,7 +25,7 @@ from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, number, 
 from workhold.geometry.segment import Point
 
 __all__ = [
-    "BEYOND",
+    "PAST_END",
     "Label",
     "LabelPlacer",
     "Place",
@@ -34,13 +34,12 @@ __all__ = [
     "dimension",
     "joined",
     "leader_end",
-    "round_length",
     "scale_bar",
 ]
 
 TIGHT = 34.0
-# How far beyond the end of a line a text too long for it stands, page units.
-BEYOND = 8.0
+# How far past the end of a line a text too long for it stands, page units.
+PAST_END = 8.0
 
 
 def dimension(
@@ -50,13 +49,13 @@ def dimension(
     text: str,
     size: float = 15.0,
     bold: bool = False,
-    beyond: Literal["upper", "lower"] | None = None,
+    past: Literal["upper", "lower"] | None = None,
 ) -> Box:
-    """Draw a dimension line between two page points, its text above it, readable from below or the right.
+    """Draws a dimension line between two page points, its text above it, readable from below or the right.
 
     Parameters
     ----------
-    beyond : which end of an upright line a text that is longer than it is written beyond.
+    past : the end of an upright line past which a text longer than the line is written.
 
     Returns the box of the text.
     """
@@ -73,9 +72,9 @@ def dimension(
     middle = ((start[0] + end[0]) / 2 + 0.75 * size * uy, (start[1] + end[1]) / 2 - 0.85 * size * abs(ux))
     if abs(ux) < abs(uy):
         middle = (min(start[0], end[0]) - 0.75 * size, (start[1] + end[1]) / 2)
-        if beyond is not None and text_width(text, size, bold) > length:
-            away = text_width(text, size, bold) / 2 + BEYOND
-            y = min(start[1], end[1]) - away if beyond == "upper" else max(start[1], end[1]) + away
+        if past is not None and text_width(text, size, bold) > length:
+            away = text_width(text, size, bold) / 2 + PAST_END
+            y = min(start[1], end[1]) - away if past == "upper" else max(start[1], end[1]) + away
             middle = (middle[0], y)
         scene.text(middle, text, size, "middle", bold, halo=3, turned=90)
         return Box.about(middle, size, text_width(text, size, bold))
@@ -102,7 +101,7 @@ def scale_bar(
     size: float = 12.0,
     more: str = "",
 ) -> float:
-    """Draw a bar of a round length with its lower left corner at a page point; return its total width.
+    """Draws a bar of a round length with its lower left corner at a page point; returns its total width.
 
     Parameters
     ----------
@@ -130,7 +129,7 @@ def scale_bar(
 
 
 def angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, reach: float) -> None:
-    """Draw the turn from the vise's x axis (a dashed line) to the part's (an arrow) around a page point."""
+    """Draws the turn from the vise's x axis (a dashed line) to the part's (an arrow) around a page point."""
     x, y = center
     theta = radians(theta_deg % 360.0)
     mark = scene.group("pose")
@@ -144,7 +143,8 @@ def angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, rea
     d = f"M{number(x + radius)} {number(y)}"
     for k in range(1, pieces + 1):
         a = end * k / pieces
-        d += f"A{number(radius)} {number(radius)} 0 0 0 {number(x + radius * cos(a))} {number(y - radius * sin(a))}"
+        end_x, end_y = number(x + radius * cos(a)), number(y - radius * sin(a))
+        d += f"A{number(radius)} {number(radius)} 0 0 0 {end_x} {end_y}"
     mark.path(d, GREY, 1.0)
     tip = (x + radius * cos(theta), y - radius * sin(theta))
     mark.arrow_head(tip, -(theta + pi / 2) + 3.5 / radius, GREY, 7.5)
@@ -260,23 +260,23 @@ class LabelPlacer:
         self.wall_starts, self.wall_ends = np.zeros((0, 2)), np.zeros((0, 2))
 
     def avoid_ink(self, points: ArrayLike, price: float) -> None:
-        """Make covering points, (N, 2) page units, cost ``price`` each."""
+        """Sets the price of covering each of some points, (N, 2) page units."""
         array = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         self.points = np.vstack([self.points, array])
         self.prices = np.concatenate([self.prices, np.full(len(array), price)])
 
     def avoid_box(self, box: Box) -> None:
-        """Make covering a box cost a lot."""
+        """Sets a high price for covering a box."""
         self.boxes = np.vstack([self.boxes, [box.x0, box.y0, box.x1, box.y1]])
 
     def avoid_line(self, start: Point, end: Point, price: float, step: float = 3.0) -> None:
-        """Make covering a line cost ``price`` for every ``step`` page units."""
+        """Sets the price of covering a line, for every ``step`` page units."""
         count = max(2, int(np.hypot(end[0] - start[0], end[1] - start[1]) / step))
         shares = np.linspace(0.0, 1.0, count)[:, None]
         self.avoid_ink((1 - shares) * np.array(start) + shares * np.array(end), price)
 
     def avoid_walls(self, points: Array) -> None:
-        """Make leaders across an open polyline, (N, 2) page units, cost."""
+        """Sets a price for leaders across an open polyline, (N, 2) page units."""
         self.wall_starts = np.vstack([self.wall_starts, points[:-1]])
         self.wall_ends = np.vstack([self.wall_ends, points[1:]])
 
@@ -305,7 +305,7 @@ class LabelPlacer:
         return costs
 
     def place(self, labels: Sequence[Label], sweeps: int = 4) -> list[Place]:
-        """Place labels together: one after another, then each anew among the others until nothing moves."""
+        """Places labels together: one after another, then each anew among the others until nothing moves."""
         kept = [label.kept(self.fixed_costs(label)) for label in labels]
         reaches = np.array([label.reach for label in kept]).reshape(-1, 4)
         boxes, anchors = np.zeros((len(kept), 4)), np.zeros((len(kept), 2))
@@ -326,7 +326,7 @@ class LabelPlacer:
 
 
 def mutual_costs(label: Label, boxes: Array, anchors: Array) -> Array:
-    """(C,) what the candidates of a label cost beside N labels in place, by their (N, 4) boxes and (N, 2) anchors."""
+    """(C,) costs of a label's candidates beside N placed labels, by their (N, 4) boxes and (N, 2) anchors."""
     middles = (boxes[:, :2] + boxes[:, 2:]) / 2
     costs: Array = COLLISION * overlaps(label.boxes, boxes).sum(axis=1)
     costs += CROSSING * crossings(label.anchors, label.centers, anchors, middles).sum(axis=1)
@@ -341,7 +341,7 @@ def meeting(box: Array, others: Array) -> NDArray[np.bool_]:
 
 
 def overlaps(boxes: Array, others: Array) -> Array:
-    """(C, N) nothing for (C, 4) boxes well clear of (N, 4) others, else 1 and the share of the box that is covered."""
+    """(C, N) 0 for (C, 4) boxes well clear of (N, 4) others, else 1 plus the share of the box covered."""
     low = np.maximum(boxes[:, None, :2], others[None, :, :2])
     high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
     sides = np.maximum(high - low + GAP, 0.0)

@@ -1,7 +1,7 @@
 """A fixture as it lies in the vise: jaws, part, pegs and contact forces, without any lettering.
 
-Outlines are SVG paths whose arcs are true arcs. A small picture shows the part as it was drawn, so that the turn in the vise
-can be told from it.
+Outlines are SVG paths whose arcs are true arcs. A small picture shows the part as it was drawn, so that its
+turn in the vise can be seen.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from workhold.conventions import AGREEMENT
 from workhold.drawing.carriers import draw_clamp, draw_holes, draw_plate, draw_push, draw_wall, most_holes
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
-from workhold.fixels.carrier import peg_outline
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
+from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
 from workhold.model.fixture import Fixture
@@ -44,8 +44,8 @@ __all__ = [
     "segment_path",
 ]
 
-# An SVG arc is told by its ends and radius. Beyond this sweep its centre suffers from the rounding of the ends, so
-# longer arcs are written in pieces.
+# An SVG arc is given by its ends and radius. With a larger sweep its centre suffers from the rounding of the
+# ends, so longer arcs are written in pieces.
 LONGEST_SWEEP = 2 * pi / 3
 
 
@@ -84,7 +84,7 @@ def sampled(segments: Iterable[Segment], view: View, step: float) -> NDArray[np.
 
 
 def sampled_loop(loop: Sequence[Segment], view: View, step: float) -> NDArray[np.float64]:
-    """(N, 2) page points around a closed loop in running order, about ``step`` apart; the last is the first."""
+    """(N, 2) page points around a closed loop in order, about ``step`` apart; the last is the first."""
     runs = []
     for segment in loop:
         points = sampled([segment], view, step)
@@ -99,7 +99,10 @@ def face_of(workpiece: Workpiece, number: int) -> Segment:
 
 
 def contact_of(kind: ContactKind, center: Point, face: Segment) -> tuple[Point, Point]:
-    """Where a contact of a kind, about a centre, touches a face, and the outward unit normal there, all in one frame, mm."""
+    """The point where a contact of a kind touches a face, and the outward unit normal there.
+
+    Its centre and the face are in one frame, in mm.
+    """
     return CONTACTS[kind](center, face)
 
 
@@ -153,7 +156,7 @@ class Bench:
 
     @property
     def extent(self) -> Box:
-        """Everything together."""
+        """The extent of all that shows, in mm."""
         return self.shown.extent
 
     def outlines(self, view: View, step: float) -> list[NDArray[np.float64]]:
@@ -177,7 +180,7 @@ class Bench:
 
 
 def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
-    """Put everything in its place."""
+    """Computes what there is to draw of a fixture, in the vise frame."""
     pose = fixture.pose
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
     faces = [pose.carry(face_of(workpiece, peg.face)) for peg in fixture.pegs]
@@ -189,9 +192,10 @@ def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
 
 
 def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
-    """Tail (the contact) and tip on the page of a contact force; the largest force is ``longest`` page units long.
+    """Tail (the contact) and tip of a contact force on the page.
 
-    A force that would have to pull points away from the part.
+    The largest force is ``longest`` page units long. A force that would have to pull points away from the
+    part.
     """
     contact, (nx, ny) = bench.contacts[index]
     forces = [abs(peg.force) for peg in bench.fixture.pegs]
@@ -204,7 +208,7 @@ def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[P
 def draw_bench(
     scene: Scene, bench: Bench, view: View, weight: float = 1.0, longest: float = 62.0, axes: bool = True
 ) -> None:
-    """Draw plates, holes, part, touched faces, forces and pegs.
+    """Draws plates, holes, part, touched faces, forces and pegs.
 
     Parameters
     ----------
@@ -243,7 +247,7 @@ def draw_bench(
 
 
 def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
-    """Draw the part: its faces, those touched underlaid, and the holes of the jaws faintly visible through it."""
+    """Draws the part, its touched faces underlaid; the holes of the jaws show faintly through it."""
     part = scene.group("part", view)
     d = outline_path(bench.loops, view)
     part.path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
@@ -255,7 +259,7 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
 
 
 def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
-    """Draw the pegs with their centres marked."""
+    """Draws the pegs with their centres marked."""
     pegs = scene.group("pegs", view)
     holes = {carrier.carrier.name: view.scale * carrier.hole_radius for carrier in bench.shown.carriers}
     for index in bench.placed:
@@ -289,11 +293,12 @@ def draw_inset(
     toolkit: Toolkit,
     zero: Point | None = None,
 ) -> None:
-    """Draw the unturned part with its touched faces and contacts into a page box.
+    """Draws the unturned part with its touched faces and contacts into a page box.
 
     Parameters
     ----------
-    zero : part zero in the part's coordinates, mm, to mark where it lies within the part's extent; holes are numbered too.
+    zero : part zero in the part's coordinates, mm, to mark where it lies within the part's extent; holes are
+        numbered too.
     """
     if box.height < LOWEST:
         return
@@ -321,7 +326,7 @@ def draw_inset(
 
 
 def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
-    """Write the number of each hole at its centre, where it has room for it."""
+    """Writes the number of each hole at its centre, where it has room for it."""
     for count, (loop, center) in enumerate(
         zip(workpiece.loop_segments[1:], hole_centers(workpiece), strict=True), 1
     ):
@@ -334,7 +339,7 @@ def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
 
 
 def draw_zero(scene: Scene, at: Point, radius: float = 5.0) -> None:
-    """Draw the sign of a zero point, a disc with two black quarters."""
+    """Draws the sign of a zero point, a disc with two black quarters."""
     x, y = at
     r = number(radius)
     scene.circle(at, radius, "#ffffff", BLACK, 1.0)

@@ -1,7 +1,7 @@
 """The carriers of a toolkit drawn: plates with their holes, walls, and clamps that are bolted to a plate.
 
-All is drawn from the description of what shows (``model.shown``). Of a clamp there are its body, bolt and line, and an arrow
-in the direction in which it pushes.
+All is drawn from the description of what shows (``model.shown``). A clamp has its body, bolt and line, and an
+arrow in the direction in which it pushes.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point
 from workhold.geometry.symmetry import rotated
 from workhold.model.clamps import ShownClamp
-from workhold.model.shown import Shown, ShownCarrier, Side
+from workhold.model.reach import Side
+from workhold.model.shown import Shown, ShownCarrier
 
 __all__ = [
     "SLIDING",
@@ -39,12 +40,14 @@ CLOSEST_HOLES = 5.0
 
 
 def most_holes(view: View, shown: Shown) -> float:
-    """More holes than this are drawn near the pegs only: none of a lattice too fine for the page, else all."""
+    """The number of holes above which only those near the pegs are drawn; 0 for a lattice too fine for the
+    page.
+    """
     return 0 if shown.pitch * view.scale < CLOSEST_HOLES else inf
 
 
 def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0) -> None:
-    """Draw a plate; broken sides are zigzags with teeth of ``tooth`` page units."""
+    """Draws a plate; broken sides are zigzags with teeth of ``tooth`` page units."""
     box = view.box(shown.plate)
     corners = [(box.x0, box.y1), (box.x1, box.y1), (box.x1, box.y0), (box.x0, box.y0)]
     sides: list[Side] = ["bottom", "right", "top", "left"]
@@ -61,7 +64,7 @@ def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0
 
 
 def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0) -> None:
-    """Draw a wall, a bar in mm: hatched below the line that the part lies on."""
+    """Draws a wall, a bar in mm: hatched below the line that the part lies on."""
     box = view.box(bar)
     scene.rectangle(box, FENCE[0])
     high, step = box.height, max(box.height * 0.8, 6.0 * weight)
@@ -89,7 +92,7 @@ def zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
 
 
 def draw_holes(scene: Scene, shown: ShownCarrier, view: View, most: float) -> None:
-    """Draw the holes that show; of more than ``most`` those near the pegs."""
+    """Draws the holes that show; of more than ``most`` those near the pegs."""
     radius = max(view.scale * shown.hole_radius, 0.4)
     for hole in shown.holes(most):
         scene.circle(view(hole.center), radius, "#ffffff", GREY, min(0.9, 0.3 * radius + 0.1))
@@ -98,7 +101,7 @@ def draw_holes(scene: Scene, shown: ShownCarrier, view: View, most: float) -> No
 def labelled(
     names: Sequence[tuple[int, float]], pegs: set[int], spacing: float
 ) -> list[tuple[int, float, bool]]:
-    """Which columns or rows to label so that labels stand at least ``spacing`` page units apart.
+    """The columns or rows to label so that labels stand at least ``spacing`` page units apart.
 
     Those of the pegs come first (their flag is True), then as many of the rest as there is room for, evenly.
 
@@ -134,7 +137,7 @@ THINNEST = 7.0
 def block_arrow(
     scene: Scene, middle: Point, direction: Point, size: float = 1.0, weight: float = 1.0
 ) -> None:
-    """Draw an outlined arrow about a page point in a direction of the plan, whose y runs up."""
+    """Draws an outlined arrow about a page point in a direction of the plan, whose y runs up."""
     turn = atan2(direction[1], -direction[0])
     corners = [rotated(size * x, size * y, turn) for x, y in ARROW]
     scene.polygon([(middle[0] + dx, middle[1] + dy) for dx, dy in corners], "#ffffff", BLACK, 1.4 * weight)
@@ -148,7 +151,7 @@ def clamp_arrow(clamp: ShownClamp, view: View, weight: float = 1.0) -> tuple[Poi
 
 
 def avoid_clamp(placer: LabelPlacer, clamp: ShownClamp, view: View) -> None:
-    """Tell where a clamp is drawn, so that labels keep off."""
+    """Marks where a clamp is drawn, so that labels keep off."""
     (x, y), size = clamp_arrow(clamp, view)
     along, across = size * LENGTH / 2, size * WIDTH / 2
     half_x, half_y = (across, along) if clamp.is_upright else (along, across)
@@ -157,7 +160,7 @@ def avoid_clamp(placer: LabelPlacer, clamp: ShownClamp, view: View) -> None:
 
 
 def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View, weight: float) -> None:
-    """Draw a clamp: its body with the bolt, or where the hole is not known the line of holes its tip is on."""
+    """Draws a clamp: its body with the bolt, or the line of holes of its tip where the hole is not known."""
     group = scene.group("clamp")
     tip = view((clamp.tip.x, clamp.tip.y))
     if clamp.hole is None:
@@ -175,13 +178,13 @@ def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View,
 
 
 def draw_push(scene: Scene, clamp: ShownClamp, view: View, weight: float) -> None:
-    """Draw the arrow behind a clamp that tells which way it pushes; over the part, as it may stand in a hole of it."""
+    """Draws the arrow of a clamp's push behind it; over the part, as it may stand in a hole of the part."""
     middle, size = clamp_arrow(clamp, view, weight)
     block_arrow(scene.group("clamp-push"), middle, clamp.clamping, size, weight)
 
 
 def draw_bolt(scene: Scene, at: Point, radius: float, weight: float = 1.0) -> None:
-    """Draw the head of a bolt with its hexagonal socket about a page point."""
+    """Draws the head of a bolt with its hexagonal socket about a page point."""
     scene.circle(at, radius, BOLT, BLACK, 1.1 * weight, **{"class": "bolt"})
     corners = [
         (at[0] + 0.55 * radius * cos(k * pi / 3), at[1] + 0.55 * radius * sin(k * pi / 3)) for k in range(6)
@@ -190,7 +193,7 @@ def draw_bolt(scene: Scene, at: Point, radius: float, weight: float = 1.0) -> No
 
 
 def draw_sign(scene: Scene, at: Point) -> None:
-    """Draw the sign of a clamp for a legend about a page point."""
+    """Draws the sign of a clamp for a legend about a page point."""
     fill, edge = SLIDING
     ends = [(at[0] + 9, at[1]), (at[0] - 9, at[1])]
     scene.line(ends, edge, 14, stroke_linecap="round")

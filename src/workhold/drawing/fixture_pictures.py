@@ -1,4 +1,4 @@
-"""Pictures of fixtures: one on a sheet, from which a machinist sets the vise, and small ones to choose among at a glance."""
+"""Pictures of fixtures: one on a sheet to set the vise from, and small ones to choose among."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import Bench, bench_of, draw_bench, draw_inset
 from workhold.drawing.carriers import most_holes
 from workhold.drawing.panel import (
-    Column,
+    TextColumn,
     closure_margin,
     draw_legend,
     draw_peg_table,
@@ -78,10 +78,10 @@ def draw_fixture(
     title: str | None = None,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
+    """Draws a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
 
-    The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their attribute
-    ``data-model-to-page``, written as an SVG matrix.
+    The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their
+    attribute ``data-model-to-page``, written as an SVG matrix.
 
     Parameters
     ----------
@@ -114,10 +114,10 @@ def draw_panel(
     title: str | None,
     lengths: LengthUnit,
 ) -> None:
-    """Write the panel, with the part as drawn at its foot; ``view`` is that of the drawing beside it."""
+    """Writes the panel, with the part as drawn at its foot; ``view`` is that of the drawing beside it."""
     group, fixture = scene.group("panel"), bench.fixture
     group.line([(panel.x0 - 12, panel.y0), (panel.x0 - 12, panel.y1)], GREY, 0.8)
-    column = Column(group, panel.x0, panel.y0, panel.width)
+    column = TextColumn(group, panel.x0, panel.y0, panel.width)
     draw_title(column, fixture, workpiece, bench.toolkit, title)
     draw_settings(column, fixture, bench.toolkit, lengths)
     draw_peg_table(column, fixture, bench.toolkit, lengths)
@@ -139,7 +139,7 @@ ALONE, RIM = (320.0, 240.0), 6.0
 
 
 def draw_thumbnail(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
-    """Draw one fixture as small as it can be looked at, without any words, to stand beside what is said of it.
+    """Draws one fixture as a small picture without any words, to stand beside a text.
 
     Returns
     -------
@@ -162,7 +162,7 @@ def draw_thumbnails(
     *,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw up to twelve fixtures on one A4 sheet, all to the same scale, with type, closure margin and opening.
+    """Draws up to twelve fixtures on an A4 sheet to one scale, with type, closure margin and opening.
 
     Parameters
     ----------
@@ -204,7 +204,8 @@ def draw_thumbnails(
 
 
 def best_at_a_glance(result: Result, shown: Entries, unit: Unit = MILLIMETRE) -> str:
-    """Thumbnails of the first twelve entries of a result, each with its rank and how many are like it; SVG text.
+    """Thumbnails of the first twelve entries of a result as SVG text, with ranks and numbers of near
+    duplicates.
 
     Raises
     ------
@@ -234,7 +235,7 @@ def grid(count: int) -> list[Box]:
 
 
 def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, lengths: LengthUnit) -> None:
-    """Draw one thumbnail with its caption."""
+    """Draws one thumbnail with its caption."""
     group = scene.group("thumbnail")
     group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
     draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)

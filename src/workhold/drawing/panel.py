@@ -1,6 +1,6 @@
 """The block of words and numbers beside a fixture: what to set, which holes to use, what the signs mean.
 
-Signs are those that every plan has, those of what moves, and those of what the part lies on.
+The legend explains the signs of every plan, of what moves, and of what the part lies on.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from workhold.model.workpiece import Workpiece
 __all__ = [
     "FACT_NAME",
     "NUMBERS",
-    "Column",
+    "TextColumn",
     "arrangement_words",
     "closure_margin",
     "diameter_words",
@@ -46,7 +46,7 @@ TABLE = 13.5
 NUMBERS = ("no", "one", "two", "three", "four", "five")
 
 
-class Column:
+class TextColumn:
     """Writes line after line down a page.
 
     Parameters
@@ -62,7 +62,7 @@ class Column:
     def words(
         self, content: str, size: float, bold: bool = False, fill: str = BLACK, gap: float = 0.55
     ) -> None:
-        """Write one line, shortened to fit, and leave ``gap`` ems below it."""
+        """Writes one line, shortened to fit, and leaves ``gap`` ems below it."""
         self.y += 0.75 * size
         content = shortened(content, size, self.width, bold)
         self.scene.text((self.x, self.y), content, size, bold=bold, fill=fill, middle=False)
@@ -71,14 +71,14 @@ class Column:
     def paragraph(
         self, content: str, size: float, bold: bool = False, fill: str = BLACK, indent: float = 0.0
     ) -> None:
-        """Write as many lines as it takes, ``indent`` page units further in."""
+        """Writes as many lines as it takes, ``indent`` page units further in."""
         for line in wrapped(content, size, self.width - indent, bold):
             self.y += 0.75 * size
             self.scene.text((self.x + indent, self.y), line, size, bold=bold, fill=fill, middle=False)
             self.y += 0.55 * size
 
     def fact(self, name: str, value: str, size: float = 14.0, bold: bool = False) -> None:
-        """Write a name at the left and its value at the right of one line, smaller where it would reach the name."""
+        """Writes a name at the left and its value at the right of one line, in type that fits."""
         self.y += 0.75 * size
         self.scene.text((self.x, self.y), name, FACT_NAME, fill=GREY, middle=False)
         room = self.width - text_width(name, FACT_NAME) - FACT_GAP
@@ -87,13 +87,13 @@ class Column:
         self.y += 0.62 * size
 
     def rule(self, width: float = 1.0) -> None:
-        """Draw a line across."""
+        """Draws a line across."""
         self.y += 4
         self.scene.line([(self.x, self.y), (self.x + self.width, self.y)], BLACK, width)
         self.y += 9
 
     def row(self, cells: Sequence[str], ends: Sequence[float], size: float, bold: bool = False) -> None:
-        """Write one row of a table: the first cell at the left, the others ending at shares ``ends`` of the width."""
+        """Writes a row of a table: the first cell at the left, the others ending at shares of the width."""
         self.y += 0.75 * size
         self.scene.text((self.x, self.y), cells[0], size, bold=True, middle=False)
         for cell, end in zip(cells[1:], ends, strict=True):
@@ -101,7 +101,7 @@ class Column:
         self.y += 0.7 * size
 
     def table(self, header: Sequence[str], rows: Sequence[Sequence[str]], size: float) -> None:
-        """Write a table, its first column from the left and the others flush right, in type that fits the width."""
+        """Writes a table in type that fits the width, its first column flush left, the others flush right."""
         while True:
             widths = [
                 max(
@@ -175,15 +175,15 @@ def plural(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
 
 
 def offset_words(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
-    """How far the rows of the carrier that slides lie above or below those of the first one; None where they are level."""
+    """The offset of the sliding carrier's rows from the first one's, in words; None where they are level."""
     offset = toolkit.moving.offset[1] - toolkit.plates[0].offset[1]
     return f"{lengths.words(abs(offset))} {'above' if offset > 0 else 'below'}" if offset else None
 
 
 def draw_title(
-    column: Column, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, title: str | None
+    column: TextColumn, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, title: str | None
 ) -> None:
-    """Write the part's name, the fixture's and its type."""
+    """Writes the part's name, the fixture's and its type."""
     fitting = [size for size in (26, 22, 18) if text_width(workpiece.name, size, bold=True) <= column.width]
     column.words(workpiece.name, fitting[0] if fitting else 18, bold=True, gap=0.5)
     column.words(title or "Fixture", 18, gap=0.5)
@@ -191,8 +191,8 @@ def draw_title(
     column.rule(2.0)
 
 
-def draw_settings(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
-    """Write what to set, with the travel first."""
+def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
+    """Writes what to set, with the travel first."""
     first, settings, several = toolkit.plates[0], settings_of(fixture, toolkit), len(fixture.travels) > 1
     # What moves in this fixture, which of several clamps the toolkit has need not be its first.
     moving = settings[0].carrier
@@ -245,8 +245,8 @@ def diameter_words(carrier: Carrier, lengths: LengthUnit) -> str:
     return f"Ø {lengths.short(2 * carrier.peg_radius)}" if carrier.peg_radius else "points, no diameter"
 
 
-def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
-    """Write the pegs: hole, face, place and force."""
+def draw_peg_table(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
+    """Writes the pegs: hole, face, place and force."""
     first, rows = toolkit.plates[0], []
     for peg, name in zip(fixture.pegs, contact_names(fixture, toolkit), strict=True):
         carrier, force = toolkit.carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
@@ -262,7 +262,7 @@ def draw_peg_table(column: Column, fixture: Fixture, toolkit: Toolkit, lengths: 
 
 
 def pegs_words(toolkit: Toolkit) -> str:
-    """What its pegs are called, such as "peg" or "locator or clamp"."""
+    """The nouns of a toolkit's pegs, such as "peg" or "locator or clamp"."""
     return " or ".join(
         dict.fromkeys(carrier.peg for carrier in toolkit.carriers if carrier.contact.is_placed)
     )
@@ -275,39 +275,39 @@ WORDS = 11.5
 
 
 def peg(scene: Scene, at: Point) -> None:
-    """Draw a peg."""
+    """Draws a peg."""
     scene.circle(at, 7, PEG_FILL, BLACK, 1.2)
 
 
 def hole(scene: Scene, at: Point) -> None:
-    """Draw an empty hole."""
+    """Draws an empty hole."""
     scene.circle(at, 7, "#ffffff", GREY, 0.9)
 
 
 def push(scene: Scene, at: Point) -> None:
-    """Draw the arrow behind a clamp."""
+    """Draws the arrow behind a clamp."""
     block_arrow(scene, at, (-1.0, 0.0), 0.55)
 
 
 def line(scene: Scene, at: Point) -> None:
-    """Draw the line that the tip of a clamp is on."""
+    """Draws the line that the tip of a clamp is on."""
     scene.line([(at[0] - 15, at[1]), (at[0] + 16, at[1])], BLACK, 1.0, stroke_dasharray="7 4")
 
 
 def wall(scene: Scene, at: Point) -> None:
-    """Draw a piece of a wall."""
+    """Draws a piece of a wall."""
     draw_wall(scene, Box(at[0] - 15, -at[1] - 6, at[0] + 16, -at[1] + 3), View(1.0, 0.0, 0.0))
 
 
 def force(scene: Scene, at: Point) -> None:
-    """Draw the arrow of a force from its contact."""
+    """Draws the arrow of a force from its contact."""
     x, y = at
     scene.circle((x - 14, y), 2.8, ARROW)
     scene.arrow((x - 14, y), (x + 16, y), ARROW, 2.4, 12)
 
 
 def face(scene: Scene, at: Point) -> None:
-    """Draw a face that is touched."""
+    """Draws a face that is touched."""
     ends = [(at[0] - 15, at[1]), (at[0] + 16, at[1])]
     scene.line(ends, TOUCHED, 8)
     scene.line(ends, BLACK, 2.2)
@@ -328,8 +328,8 @@ OF_CONTACTS: Mapping[ContactKind, tuple[tuple[Sign, str], ...]] = {
 }
 
 
-def draw_legend(column: Column, toolkit: Toolkit, fill: str = GREY) -> None:
-    """Explain the signs; ``fill`` is the colour of the words."""
+def draw_legend(column: TextColumn, toolkit: Toolkit, fill: str = GREY) -> None:
+    """Explains the signs; ``fill`` is the colour of the words."""
     first = toolkit.plates[0]
     named = f"{first.noun}, column, row" if first.letter else "column, row"
     signs: list[tuple[Sign, str]] = [

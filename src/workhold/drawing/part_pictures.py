@@ -1,4 +1,4 @@
-"""Pictures to choose by number from: the part with its faces numbered, and the parts of a file with their numbers."""
+"""Pictures to choose by number from: a part's faces, and the parts of a file."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ __all__ = ["draw_features", "draw_parts"]
 EDGE = 32.0
 HEADER = 62.0
 FOOTER = 30.0
-# Room around the part for numbers, and beyond it for dimensions.
+# Room around the part for numbers, and outside it for dimensions.
 NUMBERS, MORE_NUMBERS = 54.0, 84.0
 MANY_FACES, VERY_MANY_FACES = 30, 80
 DIMENSIONS = 36.0
@@ -42,7 +42,7 @@ LEADER = "#6b4a00"
 
 
 def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit: Unit = MILLIMETRE) -> str:
-    """Draw the part with numbered faces, its overall size and a scale, on A4, or on A3 or A2 for more than 80 faces.
+    """Draws the part with numbered faces, overall size and scale, on A4; on A3 or A2 above 80 faces.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def sheet(faces: int, page: tuple[float, float]) -> tuple[float, float]:
 def draw_header(
     scene: Scene, workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit
 ) -> None:
-    """Write what the part is."""
+    """Writes what the part is."""
     group = scene.group("header")
     width = float(scene.element.attrib["viewBox"].split()[2]) - 2 * EDGE
     group.text((EDGE, EDGE + 12), shortened(workpiece.name, 26, width, bold=True), 26, bold=True)
@@ -99,7 +99,7 @@ def draw_header(
 
 
 def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
-    """Draw the part with a tick across every joint of two segments."""
+    """Draws the part with a tick across every joint of two segments."""
     part = scene.group("part", view)
     d = outline_path(workpiece.loop_segments, view)
     part.path(d, BLACK, 2.2, PART_FILL, fill_rule="evenodd", **{"class": "outline"})
@@ -123,7 +123,7 @@ def first_parameter(segment: Segment) -> float:
 
 
 def draw_contact_features(scene: Scene, workpiece: Workpiece, view: View, peg_radius: float) -> None:
-    """Draw the contact features, dashed."""
+    """Draws the contact features, dashed."""
     group = scene.group("contact-features", view)
     for feature in contact_features(workpiece, peg_radius):
         group.path(segment_path(feature.segment, view), ARROW, 1.4, stroke_dasharray="7 4")
@@ -132,7 +132,7 @@ def draw_contact_features(scene: Scene, workpiece: Workpiece, view: View, peg_ra
 def draw_numbers(
     scene: Scene, workpiece: Workpiece, view: View, bounds: Box, peg_radius: float | None
 ) -> None:
-    """Write the numbers of all faces on the side away from the material, each with a leader."""
+    """Writes the numbers of all faces on the side away from the material, each with a leader."""
     count = len(workpiece.faces)
     size = 15.0 if count <= MANY_FACES else 12.0
     shares = (0.0, 0.3, -0.3, 0.6, -0.6) if count <= VERY_MANY_FACES else (0.0,)
@@ -158,9 +158,10 @@ def draw_numbers(
 
 
 def number_label(face: Face, view: View, size: float, shares: Sequence[float], outer: bool) -> Label:
-    """Candidates for the number of a face: along its normal at shares of its half extent, then turned and further off.
+    """Candidates for the number of a face: along its normal, then turned and further off.
 
-    Inside the material is a last resort, and meant for holes too small to hold a number.
+    They begin at shares of the face's half extent. Inside the material is a last resort, meant for holes too
+    small to hold a number.
     """
     height = size + 6
     width = max(height, text_width(str(face.number), size, bold=True) + 10)
@@ -180,7 +181,7 @@ def number_label(face: Face, view: View, size: float, shares: Sequence[float], o
 
 
 def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths: LengthUnit) -> None:
-    """Dimension the overall width below the part and its height at the left."""
+    """Dimensions the overall width below the part and its height at the left."""
     group = scene.group("overall")
     box = view.box(bounds)
     y = box.y1 + numbers + 22
@@ -195,14 +196,14 @@ def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths:
 
 PARTS_EDGE, PARTS_HEADER, PARTS_FOOTER = 32.0, 62.0, 30.0
 OTHER_FILL, PARTS_LEADER = "#eef0f3", "#6b4a00"
-# Parts by decreasing area; specks beyond these are drawn without a number.
+# Parts by decreasing area; smaller ones are drawn without a number.
 MOST_NUMBERS = 60
 
 
 def draw_parts(
     name: str, parts: Sequence[Sequence[NDArray[np.float64]]], chosen: int, *, unit: Unit = MILLIMETRE
 ) -> str:
-    """Draw the parts of a file where they lie, each with its number, on A4.
+    """Draws the parts of a file where they lie, each with its number, on A4.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """SVG text to PDF: the same picture as vectors, with the bundled typeface embedded.
 
-Only what :class:`workhold.drawing.scene.Scene` writes is understood, and anything else is refused, so that no picture
-loses a shape on its way to paper: ``g``, ``rect``, ``circle``, ``path`` with the commands M, L, A and Z, and ``text``
-with an anchor, a halo and a turn.
+Only what :class:`workhold.drawing.scene.Scene` writes is understood: ``g``, ``rect``, ``circle``, ``path``
+with the commands M, L, A and Z, and ``text`` with an anchor, a halo and a turn. Anything else is refused, so
+that no picture loses a shape on its way to paper.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ STYLE = {"fill", "fill-rule", "fill-opacity", "stroke", "stroke-width", "stroke-
 
 
 def svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
-    """Turn pages of SVG into a PDF.
+    """Turns pages of SVG into a PDF.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
 
 
 def draw_children(pdf: FPDF, group: ET.Element) -> None:
-    """Draw the elements of a group one after another; neighbouring shapes share one drawing context."""
+    """Draws the elements of a group one after another; neighbouring shapes share one drawing context."""
     shapes: list[PaintedPath] = []
     for element in group:
         tag = element.tag.rpartition("}")[2]
@@ -89,7 +89,7 @@ def draw_children(pdf: FPDF, group: ET.Element) -> None:
 
 
 def draw_shapes(pdf: FPDF, shapes: list[PaintedPath]) -> None:
-    """Put shapes on the page."""
+    """Puts shapes on the page."""
     if not shapes:
         return
     context: DrawingContext
@@ -99,7 +99,7 @@ def draw_shapes(pdf: FPDF, shapes: list[PaintedPath]) -> None:
 
 
 def refuse_unknown(tag: str, attributes: dict[str, str], known: set[str]) -> None:
-    """Refuse attributes that would be lost on paper.
+    """Refuses attributes that would be lost on paper.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def shape(tag: str, attributes: dict[str, str]) -> PaintedPath:
 
 
 def trace(path: PaintedPath, d: str) -> None:
-    """Follow SVG path data with absolute commands."""
+    """Follows SVG path data with absolute commands."""
     here = (0.0, 0.0)
     for letter, numbers in COMMAND.findall(d):
         values = [float(word) for word in NUMBER.findall(numbers)]
@@ -152,10 +152,11 @@ def trace(path: PaintedPath, d: str) -> None:
 
 
 def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
-    """Follow a circular arc of at most half a turn as two Bezier curves.
+    """Follows a circular arc of at most half a turn as two Bezier curves.
 
-    A piece of sweep s has its inner control points 4/3 tan(s/4) radii from its ends along the tangents (A. Riskus,
-    *Approximation of a cubic Bezier curve by circular arcs and vice versa*, 2006); two quarter turns are off by 3e-4 radii.
+    A piece of sweep s has its inner control points 4/3 tan(s/4) radii from its ends along the tangents (A.
+    Riskus, *Approximation of a cubic Bezier curve by circular arcs and vice versa*, 2006); two quarter turns
+    are off by 3e-4 radii.
 
     Parameters
     ----------
@@ -169,7 +170,8 @@ def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
     if chord == 0:
         return
     half = asin(min(chord / (2 * radius), 1.0))
-    # From the middle of the chord, the middle of the arc lies on the side its sense tells, y running down the page.
+    # From the middle of the chord, the middle of the arc lies on the side of its sense, y running down the
+    # page.
     direction, height = atan2(y1 - y0, x1 - x0), sense * chord / 2 * tan(half / 2)
     middle = ((x0 + x1) / 2 + height * sin(direction), (y0 + y1) / 2 - height * cos(direction))
     reach = 4 / 3 * tan(half / 4) * chord / (2 * sin(half))
@@ -186,7 +188,7 @@ def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
 
 
 def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
-    """Take fill and stroke over from an element's attributes."""
+    """Sets fill and stroke from an element's attributes."""
     style.auto_close = False
     style.stroke_join_style = "round"
     style.stroke_cap_style = attributes.get("stroke-linecap", "butt")
@@ -203,7 +205,7 @@ def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
 
 
 def draw_text(pdf: FPDF, element: ET.Element) -> None:
-    """Write a line of text, its halo below it."""
+    """Writes a line of text, its halo below it."""
     attributes = element.attrib
     known = {"x", "y", "font-size", "font-weight", "text-anchor", "transform", "paint-order", "fill"}
     refuse_unknown("text", attributes, known | {"stroke", "stroke-width"} | SILENT)
@@ -226,7 +228,7 @@ def draw_text(pdf: FPDF, element: ET.Element) -> None:
 
 
 def write(pdf: FPDF, x: float, y: float, content: str, attributes: dict[str, str]) -> None:
-    """Write a line of text whose left end is at a page point."""
+    """Writes a line of text whose left end is at a page point."""
     if "stroke" in attributes:
         width = float(attributes["stroke-width"])
         with pdf.local_context(

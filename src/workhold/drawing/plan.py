@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from workhold.drawing.annotation import (
-    BEYOND,
+    PAST_END,
     Label,
     LabelPlacer,
     Place,
@@ -41,8 +41,8 @@ SETTING_SIZE = 17.0
 TAG_SIZE, TAG_HEIGHT = 12.0, 18.0
 ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
 MARK_RADIUS = 5.0
-# From the plates to the line of a dimension above them, where columns are named, or beside them, and how much farther a
-# second one along the same way is, page units.
+# From the plates to the line of a dimension above them, where columns are named, or beside them, and how much
+# farther a second one along the same way is, page units.
 ABOVE, BESIDE, FARTHER = 42.0, 26.0, 24.0
 RIM_WORD = 10.0
 # Between the names of carriers, page units.
@@ -64,7 +64,7 @@ def draw_plan(
     marks: Sequence[tuple[Point, str]] = (),
     angle: str | None = None,
 ) -> None:
-    """Draw a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels.
+    """Draws a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels.
 
     Parameters
     ----------
@@ -84,10 +84,9 @@ def draw_plan(
 
 
 def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[Box]:
-    """Write column letters above and below the plates and row numbers beside them, as on the rim of a map, but none
-    where another plate stands.
+    """Writes column letters above and below the plates and row numbers beside them, as on a map's rim.
 
-    Returns where they stand.
+    Where another plate stands there are none. Returns the boxes of the names.
     """
     group, names = scene.group("hole-names"), []
     for shown in bench.shown.carriers:
@@ -112,8 +111,10 @@ def draw_hole_names(scene: Scene, bench: Bench, view: View, frame: Box) -> list[
 
 
 def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> list[Box]:
-    """Write column letters and row numbers, those of pegs (the third entry) first and beside their place where another
-    stands on it; of the others those that have room. Returns where they stand.
+    """Writes column letters and row numbers; returns their boxes.
+
+    Those of pegs (the third entry is True) come first, and move aside where another name stands. The others
+    are written where there is room.
     """
     boxes: list[Box] = []
     for at, name, used, wanted in sorted(names, key=lambda each: not each[2]):
@@ -133,7 +134,7 @@ def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> 
 
 
 def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
-    """Say at the left rim which names are rows and which are columns, where no name stands, and return the room taken."""
+    """Writes "row" and "column" at the left rim where no name stands; returns the boxes of the words."""
     boxes = []
     for word, y in (("row", frame.y0 - 14), ("column", frame.y1 + 14)):
         right = frame.x0 - 5
@@ -145,7 +146,7 @@ def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
 
 
 def inner_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
-    """How the letter of a column stands: beside its column when the plates all but meet there, else on it."""
+    """The anchor of a column's letter: beside the column where plates all but meet, else on it."""
     if gap >= 20:
         return "middle"
     if "right" in shown.facing and column == shown.columns[-1]:
@@ -154,7 +155,7 @@ def inner_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
 
 
 def ruling(scene: Scene, rim: Point, plate: Point) -> None:
-    """Draw a faint line that leads from a name at the rim to a plate that lies further in."""
+    """Draws a faint line that leads from a name at the rim to a plate that lies further in."""
     if abs(rim[0] - plate[0]) + abs(rim[1] - plate[1]) > 12:
         scene.line([rim, plate], "#9aa1aa", 0.6, stroke_dasharray="1.5 3")
 
@@ -170,10 +171,9 @@ def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
 def draw_travel(
     scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box, lengths: LengthUnit
 ) -> list[Box]:
-    """Dimension the lengths to set, above the plates or at their right, and return where the words stand, all of them within
-    the bounds.
+    """Dimensions the lengths to set, above the plates or at their right; returns the boxes of the words.
 
-    Of two along the same way the second stands farther out.
+    All words are within the bounds. Of two lengths along the same way the second stands farther out.
     """
     group, boxes, lines = scene.group("opening"), [], []
     for number, measured in enumerate(bench.shown.measured):
@@ -192,22 +192,22 @@ def draw_travel(
     # The words come last: they are read where a line passes below them.
     for upright, setting, start, end in lines:
         words = f"{setting.sign} = {lengths.words(setting.length)}"
-        # The upper right corner has room for the words of one length only, and no words may end beyond the drawing.
+        # The upper right corner has room for the words of one length only, and no words may end outside the
+        # drawing.
         shared = any(one.is_upright != upright for one in bench.shown.measured)
-        room = text_width(words, SETTING_SIZE, bold=True) + BEYOND
+        room = text_width(words, SETTING_SIZE, bold=True) + PAST_END
         top, bottom = sorted((start[1], end[1]))
-        beyond: Literal["upper", "lower"] | None = "upper"
+        past: Literal["upper", "lower"] | None = "upper"
         if top - room < (frame.y0 if shared else bounds.y0):
-            beyond = "lower" if bottom + room <= bounds.y1 else None
-        boxes.append(dimension(group, start, end, words, SETTING_SIZE, bold=True, beyond=beyond))
+            past = "lower" if bottom + room <= bounds.y1 else None
+        boxes.append(dimension(group, start, end, words, SETTING_SIZE, bold=True, past=past))
     return boxes
 
 
 def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box) -> list[Box]:
-    """Name the carriers below them and show with an arrow which way one slides to clamp; where clamps are drawn they and
-    the one plate need no names.
+    """Names the carriers below them, with an arrow which way one slides to clamp; returns the boxes.
 
-    Returns the room this takes.
+    Where clamps are drawn, they and the one plate need no names.
     """
     if bench.shown.clamps:
         return []
@@ -242,8 +242,7 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
 
 
 def side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) -> list[float]:
-    """Where pieces of some widths begin, from left to right near where they would, apart and not beyond the right.
-
+    """The left ends of pieces of some widths, moved apart and kept left of ``right``.
     >>> side_by_side([0.0, 10.0], [20.0, 20.0], 100.0), side_by_side([50.0, 60.0], [30.0, 30.0], 100.0)
     ([0.0, 36.0], [24.0, 70.0])
     """
@@ -267,8 +266,10 @@ def draw_labels(
     marks: Sequence[tuple[Point, str]],
     angle: str,
 ) -> None:
-    """Label pegs by their holes, touched faces by their numbers, the part's turn and marked page points, where the labels
-    hide nothing."""
+    """Labels pegs, touched faces, the part's turn and marked page points, where that hides nothing.
+
+    Pegs are named by their holes, faces by their numbers.
+    """
     center = view(bench.fixture.pose.apply(*workpiece.center))
     placer = LabelPlacer(Box(bounds.x0, bounds.y0 + 62, bounds.x1, bounds.y1 - 30))
     avoid_drawing(placer, bench, view, center)
@@ -306,7 +307,7 @@ def draw_labels(
 
 
 def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) -> None:
-    """Tell where the drawing is, so that labels keep off; the part's turn is drawn around ``center``."""
+    """Marks where the drawing is, so that labels keep off; the part's turn is drawn around ``center``."""
     for outline in bench.outlines(view, 4.0):
         placer.avoid_ink(outline, 3.0)
         placer.avoid_walls(outline[::3])
@@ -373,7 +374,7 @@ def face_tag(bench: Bench, face_number: int, view: View) -> Label:
 
 
 def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
-    """Draw the label of a peg: a framed name, and a leader when it stands off."""
+    """Draws the label of a peg: a framed name, and a leader when it stands off."""
     peg = place.anchor
     x, y = leader_end(peg, place.box)
     gap = hypot(x - peg[0], y - peg[1])
@@ -385,14 +386,14 @@ def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
 
 
 def draw_mark(scene: Scene, place: Place, name: str) -> None:
-    """Draw the sign of a zero point, a quartered disc, and its name with a leader."""
+    """Draws the sign of a zero point, a quartered disc, and its name with a leader."""
     scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
     draw_zero(scene, place.anchor, MARK_RADIUS)
     scene.text(place.box.center, name, TAG_SIZE, "middle", halo=2.5)
 
 
 def draw_tag(scene: Scene, place: Place, name: str) -> None:
-    """Draw the number of a face in a rounded frame with a short leader to the face."""
+    """Draws the number of a face in a rounded frame with a short leader to the face."""
     scene.line([place.anchor, leader_end(place.anchor, place.box)], BLACK, 0.8)
     scene.rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
     scene.text(place.box.center, name, TAG_SIZE, "middle")

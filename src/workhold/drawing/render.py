@@ -1,15 +1,17 @@
-"""SVG text to the bytes of a picture file."""
+"""SVG text to the bytes of a picture file, and several pages as one picture."""
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 from zlib import crc32
 
 import resvg_py
 
-from workhold.drawing.scene import font_files
+from workhold.drawing.scene import SVG_NAMESPACE, Scene, font_files, number
 from workhold.errors import InputError
 
-__all__ = ["render", "svg_to_png"]
+__all__ = ["render", "stacked", "svg_to_png"]
 
 DEFAULT_WIDTH = 2400
 # Bytes of a PNG's signature and first chunk, and the chunk after them that says which program made it.
@@ -19,7 +21,7 @@ MARK = (len(SOFTWARE) - 4).to_bytes(4, "big") + SOFTWARE + crc32(SOFTWARE).to_by
 
 
 def svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
-    """Render SVG text to a PNG of a width in pixels, with the bundled fonts only.
+    """Renders SVG text to a PNG of a width in pixels, with the bundled fonts only.
 
     Raises
     ------
@@ -59,3 +61,18 @@ def render(svg: str, ending: str) -> bytes:
     raise InputError(
         f"{ending or 'no ending'} is not a kind of picture workhold writes: end the file in .svg or .png."
     )
+
+
+def stacked(pages: Sequence[str]) -> str:
+    """Pages of SVG of one size as a single picture, one below the other; a single page stays as it is."""
+    if len(pages) == 1:
+        return pages[0]
+    ET.register_namespace("", SVG_NAMESPACE)
+    roots = [ET.fromstring(page.encode("utf-8")) for page in pages]
+    _, _, width, height = (float(word) for word in roots[0].attrib["viewBox"].split())
+    whole = Scene.page((width, len(pages) * height), roots[0].findtext(f"{{{SVG_NAMESPACE}}}title") or "")
+    text = whole.svg().removesuffix("</svg>\n")
+    for k, root in enumerate(roots):
+        root.attrib |= {"width": number(width), "height": number(height), "y": number(k * height)}
+        text += ET.tostring(root, encoding="unicode") + "\n"
+    return text + "</svg>\n"

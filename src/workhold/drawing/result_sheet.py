@@ -26,8 +26,9 @@ __all__ = ["result_cautions", "result_details", "result_sheet"]
 
 
 def result_sheet(result: Result, rank: int, **asked: Any) -> tuple[str, ...]:
-    """The pages of the setup sheet of one fixture, as SVG text; what is asked is told by :func:`result_details`, which also
-    says what is raised.
+    """The pages of the setup sheet of one fixture, as SVG text.
+
+    Its arguments and errors are those of :func:`result_details`.
     """
     fixture, details = result_details(result, rank, **asked)
     return draw_sheet(fixture, result.workpiece, result.toolkit, details)
@@ -70,7 +71,7 @@ def result_details(
     count: int | None = None,
     seating: bool | None = None,
 ) -> tuple[Fixture, SheetDetails]:
-    """One fixture with all figures of quality, and what its setup sheet tells besides.
+    """One fixture with all figures of quality, and the further details of its setup sheet.
 
     Parameters
     ----------
@@ -79,10 +80,12 @@ def result_details(
     jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
     zero : part zero, see :func:`workhold.model.setup.part_zero`; its numbers are in ``unit``.
     others : how many other fixtures use the same holes; counted in the result if None.
-    number, count : the rank in a larger result and how many that lists, of a fixture that was taken out of it.
-    seating : whether to tell what else the pegs can do with the part; None tells it where the result has it.
-    result_hash, day, paper, unit, part_name, jaw_force, friction, machine_position, thickness, peg_length, peg_height,
-        dowel : see :class:`SheetDetails`.
+    number, count : the rank in a larger result and how many that lists, for a fixture taken out of it.
+    seating : whether the sheet shows where else the pegs can hold the part; None shows it where the result
+        has it.
+    result_hash, day, paper, unit, part_name, jaw_force, friction, machine_position : see
+        :class:`SheetDetails`.
+    thickness, peg_length, peg_height, dowel : see :class:`SheetDetails`.
 
     Raises
     ------
@@ -96,13 +99,13 @@ def result_details(
         result.workpiece,
         result.toolkit,
     )
-    told, not_seated = result[rank - 1].seating if seating is not False else None, ""
+    known, not_seated = result[rank - 1].seating if seating is not False else None, ""
     if seating is None and not toolkit.closes_at_once:
         seating = rank <= (result.query.seating or 0)
     put_in = None if not seating or toolkit.closes_at_once else by_hand(fixture, workpiece, toolkit)
-    if seating and told is None and put_in is None:
+    if seating and known is None and put_in is None:
         try:
-            told = Solver(workpiece, toolkit).of(fixture)
+            known = Solver(workpiece, toolkit).of(fixture)
         except InputError as error:
             not_seated = f"{str(error)[:1].upper()}{str(error)[1:]}"
     details = SheetDetails(
@@ -125,7 +128,7 @@ def result_details(
         peg_height=peg_height,
         dowel=dowel,
         others=result.table.same_holes(rank - 1) if others is None else others,
-        seating=told,
+        seating=known,
         by_hand=put_in,
         not_seated=not_seated,
     )

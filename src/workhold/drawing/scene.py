@@ -1,9 +1,9 @@
-"""A page of SVG: the bundled typeface, lengths in words, the map from millimetres to the page, and a few shapes.
-
+"""A page of SVG: typeface, lengths in words, the map from millimetres to the page, and shapes.
 Glossary
 --------
-page unit : a quarter of a millimetre on A4 paper; a page is 1188 by 840 units, or 840 by 1188. Line widths and text
-    sizes are page units, so a part of half a millimetre and one of two metres look alike. y runs down the page.
+page unit : a quarter of a millimetre on A4 paper; a page is 1188 by 840 units, or 840 by 1188. Line widths
+    and text sizes are page units, so a part of half a millimetre and one of two metres look alike. y runs
+    down the page.
 model : a frame in millimetres whose y runs up: the vise frame, or that of the workpiece.
 view : the map from a model frame to the page, a scale and a shift.
 """
@@ -34,12 +34,10 @@ __all__ = [
     "LengthUnit",
     "Scene",
     "View",
-    "decimals_for",
     "font_files",
     "has_character",
     "number",
     "shortened",
-    "stacked",
     "text_width",
     "wrapped",
 ]
@@ -99,7 +97,7 @@ def shortened(content: str, size: float, width: float, bold: bool = False) -> st
 
 
 def wrapped(content: str, size: float, width: float, bold: bool = False) -> list[str]:
-    """The text in lines no wider than ``width`` page units, broken at spaces, or inside words that are too long.
+    """The text in lines no wider than ``width`` page units, broken at spaces, or inside long words.
 
     >>> wrapped("a plate with holes", 10, 50)
     ['a plate', 'with', 'holes']
@@ -145,7 +143,7 @@ def number(value: float) -> str:
 
 
 def decimals_for(length: float) -> int:
-    """Decimals for dimensions in mm in a picture whose typical length is ``length`` mm: three, more for tiny parts.
+    """Decimals for dimensions in mm where ``length`` mm is typical: three, more for tiny parts.
 
     >>> decimals_for(10.0), decimals_for(0.05)
     (3, 5)
@@ -163,7 +161,7 @@ class View:
 
     @classmethod
     def fitting(cls, model: Box, page: Box, scale: float | None = None) -> View:
-        """Centre a model box in a page box, as large as fits or at a given scale in page units per mm."""
+        """Centres a model box in a page box, as large as fits or at a scale in page units per mm."""
         if scale is None:
             scale = min(page.width / model.width, page.height / model.height)
         (mx, my), (px, py) = model.center, page.center
@@ -182,21 +180,6 @@ class View:
     def matrix(self) -> str:
         """The map as an SVG ``matrix(a b c d e f)``."""
         return f"matrix({self.scale:.12g} 0 0 {-self.scale:.12g} {self.left:.12g} {self.top:.12g})"
-
-
-def stacked(pages: Sequence[str]) -> str:
-    """Pages of SVG of one size as a single picture, one below the other; a single page stays as it is."""
-    if len(pages) == 1:
-        return pages[0]
-    ET.register_namespace("", SVG_NAMESPACE)
-    roots = [ET.fromstring(page.encode("utf-8")) for page in pages]
-    _, _, width, height = (float(word) for word in roots[0].attrib["viewBox"].split())
-    whole = Scene.page((width, len(pages) * height), roots[0].findtext(f"{{{SVG_NAMESPACE}}}title") or "")
-    text = whole.svg().removesuffix("</svg>\n")
-    for k, root in enumerate(roots):
-        root.attrib |= {"width": number(width), "height": number(height), "y": number(k * height)}
-        text += ET.tostring(root, encoding="unicode") + "\n"
-    return text + "</svg>\n"
 
 
 class Scene:
@@ -241,11 +224,11 @@ class Scene:
         )
 
     def add(self, tag: str, attributes: Attributes) -> ET.Element:
-        """Add any element."""
+        """Adds any element."""
         return ET.SubElement(self.element, tag, attributes)
 
     def group(self, name: str, view: View | None = None, **attributes: str) -> Scene:
-        """Add a group of the class ``name``; its ``data-model-to-page`` holds the map from mm, if a view is given."""
+        """Adds a group of the class ``name``; with a view, ``data-model-to-page`` holds the map from mm."""
         found = {"class": name, **{key.replace("_", "-"): value for key, value in attributes.items()}}
         if view is not None:
             found["data-model-to-page"] = view.matrix
@@ -254,7 +237,7 @@ class Scene:
     def path(
         self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str
     ) -> ET.Element:
-        """Add a path."""
+        """Adds a path."""
         attributes = {"d": d, "fill": fill}
         if stroke != "none":
             attributes |= {"stroke": stroke, "stroke-width": number(width)}
@@ -263,20 +246,20 @@ class Scene:
     def line(
         self, points: Sequence[Point], stroke: str = BLACK, width: float = 1.0, **more: str
     ) -> ET.Element:
-        """Add an open polyline."""
+        """Adds an open polyline."""
         return self.path("M" + "L".join(f"{number(x)} {number(y)}" for x, y in points), stroke, width, **more)
 
     def polygon(
         self, points: Sequence[Point], fill: str, stroke: str = "none", width: float = 1.0
     ) -> ET.Element:
-        """Add a closed polygon."""
+        """Adds a closed polygon."""
         d = "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + "Z"
         return self.path(d, stroke, width, fill)
 
     def rectangle(
         self, box: Box, fill: str, stroke: str = "none", width: float = 1.0, round_by: float = 0.0
     ) -> ET.Element:
-        """Add a rectangle."""
+        """Adds a rectangle."""
         attributes = {
             "x": number(box.x0),
             "y": number(box.y0),
@@ -299,7 +282,7 @@ class Scene:
         width: float = 1.0,
         **more: str,
     ) -> ET.Element:
-        """Add a circle."""
+        """Adds a circle."""
         attributes = {"cx": number(center[0]), "cy": number(center[1]), "r": number(radius), "fill": fill}
         if stroke != "none":
             attributes |= {"stroke": stroke, "stroke-width": number(width)}
@@ -317,11 +300,11 @@ class Scene:
         middle: bool = True,
         turned: float = 0.0,
     ) -> ET.Element:
-        """Add a line of text.
+        """Adds a line of text.
 
         Parameters
         ----------
-        at : where it stands; ``anchor`` tells which end ("start", "middle", "end").
+        at : where it stands; ``anchor`` is which end ("start", "middle", "end").
         size : font size in page units.
         halo : width of a white rim that keeps it readable over lines, in page units.
         middle : whether ``at`` is at half the height of the figures rather than on the baseline.
@@ -344,7 +327,7 @@ class Scene:
     def arrow(
         self, tail: Point, tip: Point, stroke: str = BLACK, width: float = 1.0, head: float = 8.0
     ) -> None:
-        """Add an arrow; ``head`` is the length of its head."""
+        """Adds an arrow; ``head`` is the length of its head."""
         dx, dy = tip[0] - tail[0], tip[1] - tail[1]
         length = hypot(dx, dy)
         head = min(head, length) if length > 0 else head
@@ -354,7 +337,7 @@ class Scene:
         self.arrow_head(tip, atan2(dy, dx), stroke, head)
 
     def arrow_head(self, tip: Point, angle: float, fill: str, length: float) -> None:
-        """Add the head of an arrow that points along ``angle`` (radians on the page, y down)."""
+        """Adds the head of an arrow that points along ``angle`` (radians on the page, y down)."""
         c, s = cos(angle), sin(angle)
         half = 0.34 * length
         back = (tip[0] - length * c, tip[1] - length * s)
@@ -365,17 +348,13 @@ class Scene:
 
 @frozen
 class LengthUnit:
-    """How a picture writes lengths.
-
-    Parameters
-    ----------
-    unit : what they are written in.
-    decimals : of a length.
+    """How a picture writes lengths: in which unit, with how many decimals.
 
     Examples
     --------
     >>> from workhold.units import INCH
-    >>> LengthUnit.mm().words(24.125), LengthUnit.suiting(INCH, 10.0).words(-25.4), LengthUnit.mm().number(-0.0)
+    >>> mm, inch = LengthUnit.mm(), LengthUnit.suiting(INCH, 10.0)
+    >>> mm.words(24.125), inch.words(-25.4), mm.number(-0.0)
     ('24.125 mm', '−1.0000 in', '0.000')
     """
 
@@ -389,7 +368,7 @@ class LengthUnit:
 
     @classmethod
     def suiting(cls, unit: Unit, length: float) -> LengthUnit:
-        """A unit with decimals that suit a picture whose typical length is ``length`` mm, such as a vise's pitch."""
+        """The unit with decimals for a picture in which ``length`` mm is typical, such as the pitch."""
         return cls(unit, unit.decimals + decimals_for(length) - decimals_for(1.0))
 
     @property
@@ -414,5 +393,5 @@ class LengthUnit:
         return f"{self.short_number(length, digits)} {self.sign}"
 
     def short_number(self, length: float, digits: int = 6) -> str:
-        """As `short`, without the sign of the unit."""
+        """A length in mm as :meth:`short` writes it, without the sign of the unit."""
         return f"{length / self.unit.millimetres:.{digits}g}"

@@ -1,4 +1,4 @@
-"""What a fixture's seating means for who sets it up, in words: for the sheet and the page alike."""
+"""Sentences on what a fixture's seating means for the machinist, for the sheet and the page alike."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import Gauge
 from workhold.seating.part_features import Silhouette
 
-__all__ = ["SeatingWords", "down"]
+__all__ = ["SeatingSentences", "down"]
 
-# More than this is told without a bound, in degrees.
+# A larger turn has no bound, in degrees.
 ANY_TURN = 180.0
 # Where what moves ends, by what is set on it.
 CLAMP_STOPS, JAWS_STOP = "the clamp goes as far as it can", "the jaws meet their stop"
@@ -27,7 +27,7 @@ STOPPED: Mapping[Measure, str] = {"opening": JAWS_STOP, "stroke": CLAMP_STOPS, "
 
 
 def down(value: float, digits: int = 2) -> str:
-    """A bound that what is below it must not pass, rounded down to so many significant digits.
+    """An upper bound in words, rounded down to ``digits`` significant digits.
 
     >>> down(0.4475), down(12.99), down(123.4), down(0.02999), down(0.0)
     ('0.44', '12', '120', '0.029', '0')
@@ -40,23 +40,23 @@ def down(value: float, digits: int = 2) -> str:
 
 
 @frozen(slots=False)
-class SeatingWords:
+class SeatingSentences:
     """The words of one fixture.
 
     Parameters
     ----------
-    told : its seating.
+    seating : how the part can come to rest on its pegs.
     lengths : how lengths are written.
     """
 
-    told: Seating
+    seating: Seating
     fixture: Fixture
     toolkit: Toolkit
     lengths: LengthUnit
 
     @property
     def gauge(self) -> Gauge:
-        """What tells the seats."""
+        """The gauge whose readings distinguish the seats."""
         return Gauge(self.fixture, self.toolkit)
 
     @property
@@ -78,39 +78,38 @@ class SeatingWords:
         return f"{down(length / unit.millimetres)} {unit.abbreviation}"
 
     def short_of(self, opened: float) -> float:
-        """What is read when the jaws are opened by a length in mm, rounded to the decimals written so that they are not
-        opened further."""
+        """The reading when the jaws are opened by a length in mm, rounded so that they open no further."""
         step = self.lengths.unit.millimetres * 10.0**-self.lengths.decimals
-        reading = self.gauge.at(self.own.jaw_separation + self.told.clamping * opened) / step
+        reading = self.gauge.at(self.own.jaw_separation + self.seating.clamping * opened) / step
         return (floor(reading) if self.gauge.grows else ceil(reading)) * step
 
     @cached_property
     def own(self) -> Seat:
         """The fixture's own seat."""
-        return next(seat for seat in self.told.seats if seat.is_own)
+        return next(seat for seat in self.seating.seats if seat.is_own)
 
     @cached_property
     def wrong(self) -> list[Seat]:
-        """The wrong seats that the jaws open far enough for, those first that could be taken for right by their reading."""
+        """The wrong seats that the jaws open far enough for, those nearest to the right reading first."""
         return sorted(
-            self.told.wrong_within(),
+            self.seating.wrong_within(),
             key=lambda seat: (abs(seat.difference), seat.mirrored, seat.pose.theta_deg),
         )
 
     @property
     def alike(self) -> int:
-        """In how many seats but its own the part covers its place."""
-        return sum(seat.same_place and not seat.is_own for seat in self.told.seats)
+        """The number of seats besides its own in which the part covers its place."""
+        return sum(seat.same_place and not seat.is_own for seat in self.seating.seats)
 
     def within(self, workpiece: Workpiece) -> tuple[float, float] | None:
-        """By how much in mm, and in degrees at the same time, the part may lie off and is sure to come home; None where
-        nothing bounds it.
+        """The shift in mm and turn in degrees by which the part may lie off and is sure to come home.
 
-        Half of ``placing`` is for the shift, half for 2 R sin(turn / 2), R the farthest point of the part from its middle.
+        It is None where nothing bounds them. Half of ``placing`` is for the shift, half for 2 R sin(turn /
+        2), R the farthest point of the part from its middle.
         """
-        if self.told.placing is None:
+        if self.seating.placing is None:
             return None
-        half = self.told.placing / 2.0
+        half = self.seating.placing / 2.0
         arm = Silhouette.of(workpiece).arm
         return half, min(2.0 * degrees(asin(min(half / (2.0 * arm), 1.0))), ANY_TURN)
 
@@ -123,47 +122,48 @@ class SeatingWords:
 
     def steps(self, workpiece: Workpiece) -> list[str]:
         """What to do and what to read, one step each."""
-        told, right = self.told, self.reads(self.reading(self.own))
+        seating, right = self.seating, self.reads(self.reading(self.own))
         ways, (most, more) = (
             self.gauge.ways,
             ("at most", "more") if self.gauge.grows else ("at least", "less"),
         )
-        capture, room = told.capture_opening, told.drop_room
-        widest = inf if told.most is None else told.most
-        if told.is_untold:
+        capture, room = seating.capture_opening, seating.drop_room
+        widest = inf if seating.most is None else seating.most
+        if seating.is_untold:
             steps = ["From where on the part is caught is not known: put it in its place and hold it there."]
         elif capture is None or room is None:
             steps = [f"{ways.open} as far as you like: the part cannot get to another place on these pegs."]
-        elif self.own.jaw_separation + self.told.clamping * capture > widest:
+        elif self.own.jaw_separation + self.seating.clamping * capture > widest:
             steps = [f"{ways.open} as far as possible: nowhere on the way can the part get to another place."]
         else:
             steps = [
-                f"{ways.open} to {self.reads(self.short_of(capture))} {most}, {self.bound(capture)} from where {ways.hold} "
-                f"the part. That leaves about {self.bound(room)} of room at every peg."
+                f"{ways.open} to {self.reads(self.short_of(capture))} {most}, {self.bound(capture)} from "
+                f"where {ways.hold} the part. That leaves about {self.bound(room)} of room at every peg."
             ]
         within = self.within(workpiece)
         if within is not None:
             shift, turn = within
             steps.append(
-                f"Put the part in within {self.bound(shift)} and {down(turn)}° of its place, as far as the pegs let it: "
-                "from there it comes home."
+                f"Put the part in within {self.bound(shift)} and {down(turn)}° of its place, as far as the "
+                "pegs let it: from there it comes home."
             )
         steps.append(
-            f"{ways.close.capitalize()}. Right is {right}. While {more} is read, the part is stuck short of its place: tap "
-            "it home."
+            f"{ways.close.capitalize()}. Right is {right}. While {more} is read, the part is stuck short of "
+            "its place: tap it home."
         )
-        least = f"{told.sticking_friction:.2f}"
-        if told.sticking_friction < DRY_STEEL:
+        least = f"{seating.sticking_friction:.2f}"
+        if seating.sticking_friction < DRY_STEEL:
             steps.append(
-                f"It can stick from a friction of {least} on, and dry steel has 0.1 to 0.2: tap it home meanwhile."
+                f"It can stick from a friction of {least} on, and dry steel has 0.1 to 0.2: tap it home "
+                "meanwhile."
             )
         return steps
 
     def wrong_words(self) -> list[str]:
-        """How many wrong seats there are, and what no reading tells."""
-        told, reach = self.told, ""
-        if told.opening is not None:
-            reach = f", {self.gauge.ways.done.lower()} by no more than {self.bound(told.opening)},"
+        """Sentences on how many wrong seats there are, and on what no reading shows."""
+        seating, reach = self.seating, ""
+        if seating.opening is not None:
+            reach = f", {self.gauge.ways.done.lower()} by no more than {self.bound(seating.opening)},"
         wrong, over = self.wrong, sum(seat.mirrored for seat in self.wrong)
         turned = (
             "" if not over else ", turned over" if over == len(wrong) else f", {over} of them turned over"
@@ -172,17 +172,17 @@ class SeatingWords:
         words = [f"The same pegs{reach} hold the part in no wrong place."]
         if wrong:
             plain = abs(wrong[0].difference) >= CLOSE_READING
-            tells = "the reading tells" if plain else "see how the part lies, the reading alone does not tell"
-            words = [f"The same pegs{reach} can hold the part in {places}{turned}: {tells}."]
+            hint = "the reading tells" if plain else "see how the part lies, the reading alone does not tell"
+            words = [f"The same pegs{reach} can hold the part in {places}{turned}: {hint}."]
         if self.alike:
             words.append(
-                f"In {self.alike} more it lies turned round or over and covers its place all the same, which no reading "
-                "tells: mark the part."
+                f"In {self.alike} more it lies turned round or over and covers its place all the same, which "
+                "no reading tells: mark the part."
             )
-        return [*words, *told_in_sentences(told.unsettled)]
+        return [*words, *in_sentences(seating.unsettled)]
 
     def ended(self, ending: str, seat: Seat | None, travelled: float) -> str:
-        """What a closing ended in, one of ``seating.closing_simulation.ENDINGS``, with what is read then."""
+        """A sentence on how a closing ended, see ``seating.closing_simulation.ENDINGS``, with the reading."""
         read, stop = self.reads(self.gauge.at(travelled)), STOPPED[self.gauge.carrier.measure]
         if seat is not None and ending == "right":
             return f"It comes home: {read}."
@@ -194,8 +194,8 @@ class SeatingWords:
                 seat.kind, ""
             )
             off = self.difference(seat)
-            tells = "as when it is right" if off == "the same" else f"{off} than when it is right"
-            return f"It comes to rest in a wrong place{kind}: {read}, {tells}."
+            read_as = "as when it is right" if off == "the same" else f"{off} than when it is right"
+            return f"It comes to rest in a wrong place{kind}: {read}, {read_as}."
         return {
             "stop": f"The part lies loose beside the pegs: {stop}, {read}.",
             "outside": f"The part slips out: {stop}, {read}.",
@@ -203,19 +203,19 @@ class SeatingWords:
         }.get(ending, f"The way could not be followed to its end; the last reading is {read}.")
 
     def cautions(self) -> list[tuple[str, str]]:
-        """What to beware of: a word for it, "capture" or "reading", and a sentence."""
-        told, found = self.told, list[tuple[str, str]]()
-        if told.is_untold:
+        """The cautions: of each its kind, "capture" or "reading", and a sentence."""
+        seating, found = self.seating, list[tuple[str, str]]()
+        if seating.is_untold:
             found.append(
                 ("capture", "From where on the part is caught is not known: hold it in its place meanwhile.")
             )
-        elif told.capture_opening is not None and told.is_hardly_caught:
+        elif seating.capture_opening is not None and seating.is_hardly_caught:
             found.append(
                 (
                     "capture",
                     f"The part is caught from next to nothing: {self.gauge.ways.done.lower()} by "
-                    f"{self.bound(told.capture_opening)} it may come to rest elsewhere. Hold it in its place meanwhile, and "
-                    "compare the reading.",
+                    f"{self.bound(seating.capture_opening)} it may come to rest elsewhere. Hold it in its "
+                    "place meanwhile, and compare the reading.",
                 )
             )
         near = self.wrong[0] if self.wrong else None
@@ -230,6 +230,6 @@ class SeatingWords:
         return found
 
 
-def told_in_sentences(words: Sequence[str]) -> list[str]:
+def in_sentences(words: Sequence[str]) -> list[str]:
     """Sentences that begin with a capital letter."""
     return [f"{sentence[:1].upper()}{sentence[1:]}" for sentence in words]

@@ -1,7 +1,7 @@
-"""How a part can come to rest on a fixture's pegs, drawn and told on a setup sheet: its own seat and the wrong ones.
+"""Pictures of how a part can come to rest on a fixture's pegs, and the blocks of a setup sheet about it.
 
-The seats stand side by side, to know them by sight. The blocks of the sheet tell whether the part ends up where it should,
-and how it looks where it does not.
+The fixture's own seat and the wrong ones stand side by side, to know them by sight. The blocks say whether
+the part ends up where it should, and how it looks where it does not.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, outline_path
 from workhold.drawing.fixture_pictures import CAPTION, EDGE, MOST_THUMBNAILS, grid
-from workhold.drawing.panel import Column
+from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View, shortened, text_width
-from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Segment
@@ -22,9 +22,9 @@ from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import WHY, Gauge
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["ALIKE", "RIGHT", "Placed", "draw_lying", "draw_seats", "write_seating", "write_wrong_seats"]
+__all__ = ["RIGHT", "Placed", "draw_seats", "write_seating", "write_wrong_seats"]
 
-# The right seat, and one that no reading tells from it.
+# The right seat, and one that no reading distinguishes from it.
 RIGHT, ALIKE = "#2e7d32", "#8a6d00"
 # The far side of a part that is turned over.
 OVER_FILL = "#dfe6ee"
@@ -41,7 +41,7 @@ def draw_seats(
     title: str = "Fixture",
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw up to twelve seats of a fixture's pegs on one A4 sheet, all to the same scale, with what is read in each.
+    """Draws up to twelve seats of a fixture's pegs on an A4 sheet to one scale, with their readings.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class Placed:
 
     Parameters
     ----------
-    seat : which.
+    seat : the seat.
     loops : of the part.
     pegs : places, radii, and whether each touches.
     reading : what is read there, and in the fixture's own pose.
@@ -129,7 +129,10 @@ class Placed:
 
 
 def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) -> None:
-    """Draw the part as it lies and the pegs, those that touch filled; ``weight`` is the width of lines in page units."""
+    """Draws the part as it lies and the pegs, those that touch filled.
+
+    Lines are ``weight`` page units wide.
+    """
     for _ in range(placed.walls):
         x0, x1 = placed.extent.x0, placed.extent.x1
         scene.polygon([view(at) for at in ((x0, 0.0), (x1, 0.0), (x1, -WALL), (x0, -WALL))], WALL_FILL)
@@ -142,7 +145,7 @@ def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) ->
 
 
 def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
-    """Draw one seat with its number, what is read, and how that differs."""
+    """Draws one seat with its number, what is read, and how that differs."""
     seat, (reading, own) = placed.seat, placed.reading
     colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
     scene.rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)
@@ -162,13 +165,14 @@ def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, 
 
 # Pictures in a row, and at most; the first is the right seat.
 ACROSS, MOST = 3, 6
-# Room between pictures, height of a picture by its width, and height and sizes of the lines below one, page units.
+# Room between pictures, height of a picture by its width, and height and sizes of the lines below one, page
+# units.
 GAP, TALL = 8.0, 0.95
 LINE, READING, SMALL = 12.5, 11.0, 9.5
 
 
-def write_seating(column: Column, sheet: Sheet) -> None:
-    """Write how far to open, how near to put the part, and what to read; or how to put it into two clamps."""
+def write_seating(column: TextColumn, sheet: Sheet) -> None:
+    """Writes how far to open, where to put the part and what to read; or how to put it into two clamps."""
     heading(column, "Will it end up there?")
     put_in, steps = sheet.details.by_hand, list[str]()
     if sheet.seating is not None:
@@ -185,8 +189,8 @@ def write_seating(column: Column, sheet: Sheet) -> None:
         column.y += 2
 
 
-def write_wrong_seats(column: Column, sheet: Sheet) -> None:
-    """Draw the right seat and the wrong ones that read most like it, each with its reading."""
+def write_wrong_seats(column: TextColumn, sheet: Sheet) -> None:
+    """Draws the right seat and the wrong ones that read most like it, each with its reading."""
     words = sheet.seating
     assert words is not None
     heading(column, "What it looks like")
@@ -224,9 +228,9 @@ def write_wrong_seats(column: Column, sheet: Sheet) -> None:
         column.paragraph(f"Drawn are the nearest readings; {which} off by more.", NOTE)
 
 
-def caption(words: SeatingWords, seat: Seat) -> list[str]:
-    """The lines below the picture of a seat: what is read, how that differs, and what else is to be said."""
-    told = ["turned over"] * seat.mirrored + ["not located"] * (seat.kind == "loose")
-    told += ["not settled"] * (seat.kind == "unsettled")
+def caption(words: SeatingSentences, seat: Seat) -> list[str]:
+    """The lines below the picture of a seat: the reading, how it differs, and what is wrong."""
+    notes = ["turned over"] * seat.mirrored + ["not located"] * (seat.kind == "loose")
+    notes += ["not settled"] * (seat.kind == "unsettled")
     lines = [words.reads(words.reading(seat)), "right" if seat.is_own else words.difference(seat)]
-    return [*lines, ", ".join(told)] if told else lines
+    return [*lines, ", ".join(notes)] if notes else lines

@@ -1,9 +1,9 @@
-"""The setup sheet: one fixture on paper, to a standard scale, with all that is needed to build it without asking.
+"""The setup sheet: one fixture on paper, to a standard scale, with all that is needed to build it.
 
-There is one page when that costs the drawing nothing, else two or more: the first with the plan and what is set at the
-machine, the others with the rest. Plan and blocks of words are arranged so that the part shows largest. Scales are 1, 2 and
-5 times powers of ten, up or down (ISO 5455:1979), and round ones between these, as that standard allows where a drawing
-would else be needlessly small.
+There is one page when that costs the drawing nothing, else two or more. The first has the plan and what is
+set at the machine, the others have the rest. Plan and blocks of words are arranged so that the part shows
+largest. Scales are 1, 2 and 5 times powers of ten, up or down (ISO 5455:1979). Round scales between these are
+used too, as the standard allows where a drawing would be needlessly small.
 
 Glossary
 --------
@@ -23,7 +23,7 @@ from attrs import evolve, frozen
 from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import bench_of
 from workhold.drawing.carriers import most_holes
-from workhold.drawing.panel import Column
+from workhold.drawing.panel import TextColumn
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
 from workhold.drawing.scene import BLACK, UNITS_PER_MM, Box, LengthUnit, Scene, View, shortened, text_width
 from workhold.drawing.sheet_blocks import blocks_of
@@ -34,17 +34,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.setup import part_zero
 from workhold.model.workpiece import Workpiece
 
-__all__ = [
-    "FOOT",
-    "MARGIN",
-    "Arrangement",
-    "Filled",
-    "StandardScale",
-    "arranged",
-    "draw_sheet",
-    "plan_room",
-    "standard_scale",
-]
+__all__ = ["FOOT", "MARGIN", "Filled", "arranged", "draw_sheet", "standard_scale"]
 
 # A drawing that is larger by rounding alone still fits.
 ROUNDING = 1e-9
@@ -98,7 +88,7 @@ Filled = tuple[Box, tuple[Block, ...]]
 
 
 @frozen
-class Arrangement:
+class PageLayout:
     """Where things go.
 
     Parameters
@@ -117,10 +107,11 @@ class Arrangement:
     scale: StandardScale
 
 
-def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence[Block]) -> Arrangement:
-    """The arrangement of blocks and a plan of an extent (mm) on a paper (width and height when upright, page units).
+def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence[Block]) -> PageLayout:
+    """The best layout of blocks and a plan of an extent (mm) on paper.
 
-    Of needed blocks that leave no room for a plan the last ones go to the second page.
+    ``paper`` is width and height when upright, page units. Where the needed blocks leave no room for a plan,
+    the last ones go to the second page.
     """
     lying_page, blocks = (paper[1], paper[0]), [*needed, *others]
     least = len(needed)
@@ -144,7 +135,7 @@ def arranged(paper: Page, extent: Box, needed: Sequence[Block], others: Sequence
     return best
 
 
-def runs_over(choice: Arrangement) -> bool:
+def runs_over(choice: PageLayout) -> bool:
     """Whether words run over the foot of a further page."""
     columns = (column for page in choice.more for column in page)
     return any(sum(height_of(block, box.width) for block in blocks) > box.height for box, blocks in columns)
@@ -155,20 +146,20 @@ def plan_room(plan: Box) -> Box:
     return Box(plan.x0 + LEFT, plan.y0 + TOP, plan.x1 - RIGHT, plan.y1 - BOTTOM - SCALE_BAR)
 
 
-def arrangement_of(
+def layout_of(
     page: Page, extent: Box, plan: Box, columns: Sequence[Filled], rest: Sequence[Block]
-) -> Arrangement | None:
-    """An arrangement with the rest of the blocks on further pages; None when no room is left for the plan."""
+) -> PageLayout | None:
+    """A layout with the rest of the blocks on further pages; None when no room is left for the plan."""
     room = plan_room(plan)
     if min(room.width, room.height) < SMALLEST_PLAN:
         return None
     largest = min(room.width / extent.width, room.height / extent.height)
-    return Arrangement(
+    return PageLayout(
         page, plan, tuple(columns), pages_of_words(page, rest), standard_scale(largest / UNITS_PER_MM)
     )
 
 
-def beside(page: Page, extent: Box, blocks: Sequence[Block], least: int, count: int) -> Arrangement | None:
+def beside(page: Page, extent: Box, blocks: Sequence[Block], least: int, count: int) -> PageLayout | None:
     """Plan at the left and a panel of ``count`` columns; None when the ``least`` first blocks do not fit."""
     inner, width = inner_box(page), PANELS[count]
     heights = [height_of(block, width) for block in blocks]
@@ -183,23 +174,21 @@ def beside(page: Page, extent: Box, blocks: Sequence[Block], least: int, count: 
     if first < least:
         return None
     plan = Box(inner.x0, inner.y0, columns[0][0].x0 - GUTTER, inner.y1)
-    return arrangement_of(page, extent, plan, columns, blocks[first:])
+    return layout_of(page, extent, plan, columns, blocks[first:])
 
 
-def below(page: Page, extent: Box, blocks: Sequence[Block], first: int) -> Arrangement | None:
+def below(page: Page, extent: Box, blocks: Sequence[Block], first: int) -> PageLayout | None:
     """Plan above and the ``first`` blocks in a strip of two columns."""
     inner = inner_box(page)
     width = (inner.width - GUTTER) / 2
     runs, height = level_runs(blocks[:first], [height_of(block, width) for block in blocks[:first]], 2)
     top = inner.y1 - height
     columns = side_by_side(Box(inner.x0, top, inner.x1, inner.y1), runs)
-    return arrangement_of(
-        page, extent, Box(inner.x0, inner.y0, inner.x1, top - GUTTER), columns, blocks[first:]
-    )
+    return layout_of(page, extent, Box(inner.x0, inner.y0, inner.x1, top - GUTTER), columns, blocks[first:])
 
 
 def pages_of_words(page: Page, blocks: Sequence[Block]) -> tuple[tuple[Filled, ...], ...]:
-    """The columns of as few pages of words only as hold the blocks: three on a lying page, two on an upright one."""
+    """The columns of as few pages as hold the blocks: three on a lying page, two on an upright one."""
     if not blocks:
         return ()
     inner, count = inner_box(page), 3 if page[0] > page[1] else 2
@@ -246,17 +235,17 @@ def level_runs(
 PAPER_NAMES = {"a4": "A4", "letter": "Letter"}
 # A cell for the part's name narrower than this, in page units, is left out of the foot.
 NARROWEST_NAME = 90.0
-# Part zero and the hole that places are told from are shown on the plan up to so many pitches beside it.
+# Part zero and the hole that places are measured from are shown on the plan up to so many pitches beside it.
 NEAR = 2
 
 
 def draw_sheet(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails
 ) -> tuple[str, ...]:
-    """Draw the setup sheet of a fixture on one page or more, lying or upright, whichever shows the part largest.
+    """Draws the setup sheet of a fixture, lying or upright, whichever shows the part largest.
 
-    The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their attribute
-    ``data-model-to-page``, written as an SVG matrix; on paper it is a standard scale.
+    The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their
+    attribute ``data-model-to-page``, written as an SVG matrix. On paper its scale is a standard one.
 
     Returns
     -------
@@ -275,49 +264,49 @@ def draw_sheet(
     extent = bench.extent.union(zero_box) if sheet.zero_shown else bench.extent
     extent = extent.union(origin_box) if sheet.origin_shown else extent
     width, height = (UNITS_PER_MM * side for side in PAPERS[details.paper])
-    arrangement = arranged((width, height), extent, *blocks_of(sheet))
-    scene = new_page(arrangement, sheet)
-    room = arrangement.plan
-    view = View.fitting(extent, plan_room(room), arrangement.scale.factor * UNITS_PER_MM)
+    layout = arranged((width, height), extent, *blocks_of(sheet))
+    scene = new_page(layout, sheet)
+    room = layout.plan
+    view = View.fitting(extent, plan_room(room), layout.scale.factor * UNITS_PER_MM)
     marks = [(zero, "X0 Y0")] if sheet.zero_shown else []
     if sheet.origin_shown and all(peg.hole != sheet.datum.name for peg in fixture.pegs):
         marks.append(((0.0, 0.0), sheet.datum.mark))
     draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ")
-    words = f", scale {arrangement.scale.name}"
+    words = f", scale {layout.scale.name}"
     if not most_holes(view, bench.shown):
         words += "; only the holes near the pegs are drawn"
     scale_bar(scene, (room.x0, room.y1), view.scale, lengths, more=words)
     pages = [scene]
-    write_columns(scene, arrangement.columns)
-    for columns in arrangement.more:
-        pages.append(new_page(arrangement, sheet))
+    write_columns(scene, layout.columns)
+    for columns in layout.more:
+        pages.append(new_page(layout, sheet))
         write_columns(pages[-1], columns)
     for number, page in enumerate(pages, 1):
-        draw_foot(page, arrangement, sheet, f"{number} of {len(pages)}")
+        draw_foot(page, layout, sheet, f"{number} of {len(pages)}")
     return tuple(page.svg() for page in pages)
 
 
-def new_page(arrangement: Arrangement, sheet: Sheet) -> Scene:
+def new_page(layout: PageLayout, sheet: Sheet) -> Scene:
     """An empty page."""
-    return Scene.page(arrangement.page, f"{sheet.name}: setup sheet of fixture {sheet.details.number}")
+    return Scene.page(layout.page, f"{sheet.name}: setup sheet of fixture {sheet.details.number}")
 
 
 def write_columns(scene: Scene, columns: tuple[Filled, ...]) -> None:
-    """Write the blocks of each column."""
+    """Writes the blocks of each column."""
     group = scene.group("words")
     for box, blocks in columns:
-        column = Column(group, box.x0, box.y0, box.width)
+        column = TextColumn(group, box.x0, box.y0, box.width)
         for block in blocks:
             block(column)
 
 
-def draw_foot(scene: Scene, arrangement: Arrangement, sheet: Sheet, page: str) -> None:
-    """Draw the foot, a line of cells as in the title block of a drawing."""
-    details, (width, height) = sheet.details, arrangement.page
+def draw_foot(scene: Scene, layout: PageLayout, sheet: Sheet, page: str) -> None:
+    """Draws the foot, a line of cells as in the title block of a drawing."""
+    details, (width, height) = sheet.details, layout.page
     box = Box(MARGIN, height - MARGIN - FOOT + 10, width - MARGIN, height - MARGIN)
     cells = [
         ("Fixture", f"{details.number} of {details.count}"),
-        ("Scale", f"{arrangement.scale.name} on {PAPER_NAMES[details.paper]}"),
+        ("Scale", f"{layout.scale.name} on {PAPER_NAMES[details.paper]}"),
         ("Print at", "100 %"),
         ("Lengths", sheet.lengths.unit.name),
         ("Date", details.day.isoformat()),

@@ -1,9 +1,9 @@
-"""The blocks of words and tables on a setup sheet; each writes itself down a column and can be measured beforehand.
+"""The blocks of words and tables on a setup sheet: title, steps, quality, loads, and the part's upper side.
 
-Here are the title, the steps, the figures of quality, what the loads do, and which side of the part is up. A part turned
-over shows the mirror image of its outline. Where that is the outline itself, nothing tells the sides apart. Else two marks
-do that can be told from all others: whatever way a part is turned round, going counter-clockwise about its middle from the
-one to the other is less than half a turn or more, and turned over it is the other way.
+A part turned over shows the mirror image of its outline. Where that is the outline itself, nothing
+distinguishes the sides. Else two marks do that look like no others: the way from one to the other,
+counter-clockwise about the middle, is less than half a turn on one side only. Turning the part round does not
+change that.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from math import atan2, hypot, pi
 from attrs import frozen
 
 from workhold.drawing.bench import draw_inset
-from workhold.drawing.panel import Column, draw_legend, fixture_words, pegs_words
+from workhold.drawing.panel import TextColumn, draw_legend, fixture_words, pegs_words
 from workhold.drawing.scene import BLACK, Box, LengthUnit, shortened, text_width, wrapped
 from workhold.drawing.seats import write_seating, write_wrong_seats
 from workhold.drawing.sheet_setting import CLAMPS, OPENING, write_counting, write_pegs
@@ -48,17 +48,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import jaw_words
 from workhold.units import INCH
 
-__all__ = [
-    "Mark",
-    "blocks_of",
-    "marks_of",
-    "side_words",
-    "telling_marks",
-    "write_loads",
-    "write_part",
-    "write_quality",
-    "write_side",
-]
+__all__ = ["Mark", "blocks_of", "distinguishing_marks", "marks_of", "side_words"]
 
 ON_THE_SHEET = (
     CLOSURE_MARGIN,
@@ -74,8 +64,8 @@ MOST_LOADS = 6
 WIDEST_LOAD = 0.3
 
 
-def write_quality(column: Column, sheet: Sheet) -> None:
-    """Write the figures of quality that are known, but for those that cautions, loads and the angle tell of."""
+def write_quality(column: TextColumn, sheet: Sheet) -> None:
+    """Writes the figures of quality that are known, but for those that other blocks show."""
     heading(column, "Quality")
     for figure in (FIGURES[number] for number in ON_THE_SHEET):
         value = sheet.fixture.quality.get(figure.key)
@@ -91,9 +81,11 @@ def write_quality(column: Column, sheet: Sheet) -> None:
         column.fact(figure.words + (" (largest peg force)" if figure.key == "load_reaction" else ""), words)
     tolerance, lengths = sheet.details.tolerance, sheet.lengths
     if "location_error" in sheet.fixture.quality:
-        allowed = f"pegs off by up to {lengths.short(tolerance.peg, 3)}, faces by {lengths.short(tolerance.face, 3)}"
-        read = f", of which {lengths.short(tolerance.departure, 3)} because the drawing's curves were read as arcs"
-        column.paragraph(f"Location error: {allowed}{read if tolerance.departure else ''}.", NOTE)
+        sizes = (tolerance.peg, tolerance.face, tolerance.departure)
+        peg, face, off = (lengths.short(size, 3) for size in sizes)
+        read = f", of which {off} because the drawing's curves were read as arcs"
+        allowed = f"pegs off by up to {peg}, faces by {face}{read if tolerance.departure else ''}"
+        column.paragraph(f"Location error: {allowed}.", NOTE)
 
 
 def load_words(load: Load, lengths: LengthUnit) -> str:
@@ -119,8 +111,8 @@ def load_words(load: Load, lengths: LengthUnit) -> str:
     return "; ".join(words)
 
 
-def write_loads(column: Column, sheet: Sheet) -> None:
-    """Write what acts on the part, the jaw force it needs and each peg's largest force, the hardest load first."""
+def write_loads(column: TextColumn, sheet: Sheet) -> None:
+    """Writes the loads, the hardest first, with the jaw force needed and each peg's largest force."""
     details, unit, moving = sheet.details, sheet.lengths.unit, sheet.toolkit.moving
     heading(column, f"Loads and reactions, {unit.force}")
     cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
@@ -143,8 +135,8 @@ def write_loads(column: Column, sheet: Sheet) -> None:
             f"The other {len(cases) - MOST_LOADS} loads need no more {moving.noun} force than these.", NOTE
         )
     at = unit.force_words(cases[0][1].jaw_force)
-    what = jaw_words(cases[0][1].jaw_stiffness, sheet.toolkit)
-    what = f"the {moving.noun} force below which a peg lets go in {what}"
+    what = f"the {moving.noun} force below which a peg lets go in "
+    what += jaw_words(cases[0][1].jaw_stiffness, sheet.toolkit)
     column.paragraph(f"{header[1].capitalize()}: {what}, without friction.", NOTE)
     if not sheet.is_closed_at_once:
         column.paragraph(
@@ -152,19 +144,21 @@ def write_loads(column: Column, sheet: Sheet) -> None:
         )
     if details.friction is not None:
         column.paragraph(
-            f"µ {details.friction:g}: the least {moving.noun} force that could hold at all with that friction.",
+            f"µ {details.friction:g}: the least {moving.noun} force that could hold at all with that "
+            "friction.",
             NOTE,
         )
     column.paragraph(
-        f"Under each {pegs_words(sheet.toolkit)}: its largest force on the part at a {moving.noun} force of {at}.",
+        f"Under each {pegs_words(sheet.toolkit)}: its largest force on the part at a {moving.noun} force "
+        f"of {at}.",
         NOTE,
     )
 
 
-# Of the larger one: lengths and radii of two marks that differ by less are not told apart by eye.
+# Of the larger one: lengths and radii of two marks that differ by less look the same.
 SEEN = 0.025
-# The sine of the angle between two marks, seen from the middle, is at least this; and of the part's diagonal each is so far
-# from the middle.
+# The sine of the angle between two marks, seen from the middle, is at least this; and of the part's diagonal
+# each is so far from the middle.
 APART, AWAY = 0.3, 0.08
 # So many of the longest marks are compared.
 MOST_MARKS = 60
@@ -173,16 +167,16 @@ EIGHTHS = ("right", "upper right", "top", "upper left", "left", "lower left", "b
 TALLEST_INSET, HIGHEST_INSET, INSET_ROOM = 0.75, 230.0, 56.0
 
 
-def write_side(column: Column, sheet: Sheet) -> None:
-    """Write the part's thickness, and which side is up."""
+def write_side(column: TextColumn, sheet: Sheet) -> None:
+    """Writes the part's thickness, and which side is up."""
     heading(column, "Part and its upper side")
     thickness = sheet.details.thickness
     fact_or_field(column, "thickness", None if thickness is None else sheet.lengths.words(thickness))
     column.paragraph(side_words(sheet.workpiece, sheet.fixture, sheet.lengths), BODY)
 
 
-def write_part(column: Column, sheet: Sheet) -> None:
-    """Draw the part as it was drawn."""
+def write_part(column: TextColumn, sheet: Sheet) -> None:
+    """Draws the part as it was drawn."""
     x0, y0, x1, y1 = sheet.workpiece.bounds
     height = INSET_ROOM + min(HIGHEST_INSET, column.width * min(TALLEST_INSET, (y1 - y0) / (x1 - x0)))
     column.y += 10
@@ -247,9 +241,11 @@ def marks_of(workpiece: Workpiece) -> list[Mark]:
     return (ordered[0] + ordered[1])[:MOST_MARKS]
 
 
-def telling_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
-    """The two marks, each like no other, that are plainest to see: those that span the largest triangle with the middle,
-    which counts twice with one hole and three times with two. None where there are no two.
+def distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
+    """The two marks, each like no other, that are plainest to see; None where there are no two.
+
+    They span the largest triangle with the middle. A triangle counts twice with one hole and three times with
+    two.
     """
     marks = marks_of(workpiece)
     x0, y0, x1, y1 = workpiece.bounds
@@ -271,17 +267,17 @@ def telling_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
 
 
 def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
-    """Which side is up and how to see it, where the part lies as a fixture has it."""
+    """Sentences on which side is up in a fixture and how to see it."""
     if is_own_mirror_image([face.segment for face in workpiece.faces]):
         return (
-            "The outline is its own mirror image: either side up looks alike and lies in the same pegs. If the sides "
-            "differ, mark the upper one first."
+            "The outline is its own mirror image: either side up looks alike and lies in the same pegs. If "
+            "the sides differ, mark the upper one first."
         )
-    marks = telling_marks(workpiece)
+    marks = distinguishing_marks(workpiece)
     if marks is None:
         return (
-            "The outline differs from its mirror image, but by nothing that is plain to see: mark the upper side first, "
-            "and hold the part beside the plan."
+            "The outline differs from its mirror image, but by nothing that is plain to see: mark the upper "
+            "side first, and hold the part beside the plan."
         )
     (x, y), places = fixture.pose.apply(*workpiece.center), []
     for mark in marks:
@@ -311,16 +307,15 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     if sheet.details.loads:
         others.append(write_loads)
     others += [write_quality, write_counting, write_legend]
-    return [bound(writer, sheet) for writer in needed], [bound(writer, sheet) for writer in others]
+
+    def bound(writer: Writer) -> Block:
+        return lambda column: writer(column, sheet)
+
+    return list(map(bound, needed)), list(map(bound, others))
 
 
-def bound(writer: Writer, sheet: Sheet) -> Block:
-    """A writer with its sheet."""
-    return lambda column: writer(column, sheet)
-
-
-def write_title(column: Column, sheet: Sheet) -> None:
-    """Write which fixture of which part this is."""
+def write_title(column: TextColumn, sheet: Sheet) -> None:
+    """Writes which fixture of which part this is."""
     size = next(
         (s for s in NAME_SIZES if text_width(sheet.name, s, bold=True) <= column.width), NAME_SIZES[-1]
     )
@@ -334,12 +329,12 @@ def write_title(column: Column, sheet: Sheet) -> None:
     column.words(f"Fixture {sheet.details.number} of {sheet.details.count}", 16, bold=True, gap=0.5)
     column.paragraph(fixture_words(sheet.fixture, sheet.toolkit), BODY)
     x0, y0, x1, y1 = sheet.workpiece.bounds
-    lengths = sheet.lengths
-    column.words(f"Outside {lengths.number(x1 - x0)} × {lengths.words(y1 - y0)}, as drawn", BODY, gap=0.3)
+    outside = f"{sheet.lengths.number(x1 - x0)} × {sheet.lengths.words(y1 - y0)}"
+    column.words(f"Outside {outside}, as drawn", BODY, gap=0.3)
 
 
-def write_zero(column: Column, sheet: Sheet) -> None:
-    """Write what the part's zero is, where it lies and how the part is turned, and the lines that tell a control."""
+def write_zero(column: TextColumn, sheet: Sheet) -> None:
+    """Writes part zero, its place, the part's turn, and the lines to program a control with."""
     zero, lengths = sheet.zero, sheet.lengths
     (x, y), turn = sheet.zero_place, f"{sheet.fixture.pose.theta_deg:.4f}"
     heading(column, "Part zero X0 Y0 and angle")
@@ -363,7 +358,8 @@ def write_zero(column: Column, sheet: Sheet) -> None:
     )
     unit = "G20" if sheet.lengths.unit is INCH else "G21"
     column.paragraph(
-        f"{sheet.datum.name} at machine {' and '.join(map(lengths.words, machine))}, x along the machine's X:",
+        f"{sheet.datum.name} at machine {' and '.join(map(lengths.words, machine))}, x along the "
+        "machine's X:",
         NOTE,
     )
     column.y += 3
@@ -371,8 +367,8 @@ def write_zero(column: Column, sheet: Sheet) -> None:
     column.words(f"G54 {turning}" if float(word) else "G54", BODY, bold=True)
 
 
-def write_cautions(column: Column, sheet: Sheet) -> None:
-    """Write what to beware of, each behind a sign."""
+def write_cautions(column: TextColumn, sheet: Sheet) -> None:
+    """Writes what to beware of, each behind a sign."""
     heading(column, "Beware")
     for caution in sheet.cautions:
         y = column.y
@@ -381,8 +377,8 @@ def write_cautions(column: Column, sheet: Sheet) -> None:
         column.y += 2
 
 
-def write_steps(column: Column, sheet: Sheet) -> None:
-    """Write what to do, in order."""
+def write_steps(column: TextColumn, sheet: Sheet) -> None:
+    """Writes what to do, in order."""
     heading(column, "Setting up")
     given = "as given under part zero X0 Y0, or touch off the part there"
     zero = f"Set the machine's zero, G54, from {sheet.datum.name} {given}."
@@ -392,7 +388,7 @@ def write_steps(column: Column, sheet: Sheet) -> None:
         column.y += 2
 
 
-def write_legend(column: Column, sheet: Sheet) -> None:
-    """Explain the signs of the plan."""
+def write_legend(column: TextColumn, sheet: Sheet) -> None:
+    """Explains the signs of the plan."""
     heading(column, "Signs")
     draw_legend(column, sheet.toolkit, BLACK)

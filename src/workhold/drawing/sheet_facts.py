@@ -1,5 +1,4 @@
-"""What a setup sheet tells beyond the fixture itself: its details, what calipers measure, and what to beware of.
-
+"""What a setup sheet shows besides the fixture: its details, what calipers measure, and cautions.
 The details are paper, unit, names, dates, and what the loads do.
 """
 
@@ -12,7 +11,7 @@ from math import dist, inf
 from attrs import field, frozen
 
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.seating_words import SeatingSentences
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.requirements import Tolerance
@@ -25,15 +24,7 @@ from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfi
 from workhold.statics.loads import LoadCase
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = [
-    "PAPERS",
-    "CaliperCheck",
-    "Caution",
-    "SheetDetails",
-    "caliper_check",
-    "cautions_of",
-    "edge_distances",
-]
+__all__ = ["PAPERS", "Caution", "SheetDetails", "caliper_check", "cautions_of", "edge_distances"]
 
 # Width and height in mm, upright: ISO 216 and ANSI/ASME Y14.1.
 PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
@@ -41,7 +32,7 @@ PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
 
 @frozen
 class SheetDetails:
-    """Everything on a setup sheet that the fixture does not tell.
+    """Everything on a setup sheet that does not follow from the fixture.
 
     Parameters
     ----------
@@ -57,14 +48,15 @@ class SheetDetails:
     friction : coefficient of friction that was asked for with the loads.
     loads : what acts on the part, and the peg forces that answer it.
     zero : what the machinist programs from; the drawing's origin if None.
-    machine_position : of the hole that places are told from, in mm in the machine's own coordinates; None when not known.
+    machine_position : of the hole that places are measured from, in mm in the machine's own coordinates; None
+        when not known.
     thickness : of the part, in mm; None where it is to be written on the paper, as are the next three.
     peg_length, peg_height : of the pegs, and how far they stand out of the jaws, in mm.
     dowel : what the pegs are and how they fit their holes, in the user's words instead of the tolerance's.
     others : how many other fixtures of the result use the same holes.
-    seating : what else the pegs can do with the part; None where the sheet does not tell.
-    by_hand : how the part is put into two clamps; None where the sheet does not tell.
-    not_seated : why seating is not told though it was asked for, in a sentence.
+    seating : where else the pegs can hold the part; None where the sheet does not show it.
+    by_hand : how the part is put into two clamps; None where the sheet does not show it.
+    not_seated : why there is no seating though it was asked for, in a sentence.
     """
 
     number: int
@@ -110,7 +102,7 @@ class Caution:
 
 @frozen
 class CaliperCheck:
-    """Two holes whose distance tells the jaw opening.
+    """Two holes whose distance gives the jaw opening.
 
     Parameters
     ----------
@@ -128,8 +120,9 @@ class CaliperCheck:
 def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
     """The pair of holes, one in either carrier's column at the opening, to measure the opening between.
 
-    They are as level as possible, so that calipers held square to the plates span them; among those, with as many pegs of
-    the fixture as possible, then the lowest. Columns at the opening are the first carrier's last and the other one's first.
+    They are as level as possible, so that calipers held square to the plates span them; among those, with as
+    many pegs of the fixture as possible, then the lowest. Columns at the opening are the first carrier's last
+    and the other one's first.
     """
     first, second = toolkit.carriers
     rows = sorted({peg.row for peg in fixture.pegs})
@@ -154,8 +147,10 @@ def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
 
 
 def edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> list[float]:
-    """How far in mm each peg's centre is from the nearer end of its contact feature at which an edge or another face
-    waits; infinite where it ends in none (a whole circle, tangent joints).
+    """Distances in mm of the pegs' centres from the ends of their contact features at an edge or another
+    face.
+
+    The nearer end counts; without any (a whole circle, tangent joints) the distance is infinite.
     """
     return [float(edge) for edge in Touched.of(workpiece, toolkit).of_fixture(fixture, toolkit).edges[0]]
 
@@ -163,8 +158,10 @@ def edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
 def cautions_of(
     fixture: Fixture, toolkit: Toolkit, distances: Sequence[float], details: SheetDetails, lengths: LengthUnit
 ) -> list[Caution]:
-    """What to beware of, the contacts first; those of ``statics.judging``, and other ways to lie in the same holes: as its
-    seating tells, where that is known.
+    """The cautions of ``statics.judging``, those about contacts first, and other ways to lie in the same
+    holes.
+
+    These come from the seating where it is known.
 
     Parameters
     ----------
@@ -208,8 +205,8 @@ def cautions_of(
             )
             found.append(Caution("load", f"{words}: clamp with more than {more} {lengths.unit.force}."))
     if details.seating is not None:
-        told = SeatingWords(details.seating, fixture, toolkit, lengths)
-        return found + [Caution(kind, sentence) for kind, sentence in told.cautions()]
+        sentences = SeatingSentences(details.seating, fixture, toolkit, lengths)
+        return found + [Caution(kind, sentence) for kind, sentence in sentences.cautions()]
     if details.others:
         holes = "holes" if toolkit.tips else "four holes"
         ways = "one other way" if details.others == 1 else f"{details.others} other ways"

@@ -1,8 +1,8 @@
-"""The blocks of a setup sheet for what is set: pegs, and the jaws or clamps that move, with how holes are counted.
+"""The blocks of a setup sheet for what is set: pegs, moving jaws or clamps, and how holes are counted.
 
-Of pegs a sheet says where each stands, which face it touches, and the first thing to do with them. Two jaws have their
-opening and how to measure it; a plate with locators and clamps has blocks in place of these. Counted holes tell as well how
-far the whole set-up may be moved along them.
+The block of the pegs says where each stands and which face it touches. Two jaws have a block about their
+opening and how to measure it. A plate with locators and clamps has blocks about the clamps instead. The block
+about counting holes also says how far the whole set-up may be moved along them.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import partial
 from math import ceil
 
-from workhold.drawing.panel import NUMBERS, Column, diameter_words, holes_words, offset_words
+from workhold.drawing.panel import NUMBERS, TextColumn, diameter_words, holes_words, offset_words
 from workhold.drawing.sheet_facts import caliper_check
 from workhold.drawing.sheet_writing import (
     BODY,
@@ -29,15 +29,15 @@ from workhold.drawing.sheet_writing import (
 from workhold.fixels.carrier import Carrier, column_letters, hole_name
 from workhold.fixels.contacts import WALL_END
 from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words, second_over_first
-from workhold.model.setup import Setting
+from workhold.model.setup import LengthSetting
 from workhold.model.shown import shown
 from workhold.plain import listed
 
-__all__ = ["CLAMPS", "OPENING", "put_words", "touch_words", "write_counting", "write_pegs"]
+__all__ = ["CLAMPS", "OPENING", "touch_words", "write_counting", "write_pegs"]
 
 
-def write_pegs(column: Column, sheet: Sheet) -> None:
-    """Write where the pegs stand, and the tips of clamps."""
+def write_pegs(column: TextColumn, sheet: Sheet) -> None:
+    """Writes where the pegs stand, and the tips of clamps."""
     toolkit, plates = sheet.toolkit, sheet.toolkit.plates
     first, noun = plates[0], toolkit.moving.noun
     heading(column, f"{toolkit.setup_words.standing} {peg_size(sheet, first)}")
@@ -75,8 +75,8 @@ def peg_size(sheet: Sheet, carrier: Carrier) -> str:
     return f"Ø {lengths.short(2 * carrier.peg_radius)}{body}"
 
 
-def write_flush(column: Column, sheet: Sheet, wall: Carrier) -> None:
-    """Write where the part lies flush on a wall, and how far the plate is from it."""
+def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
+    """Writes where the part lies flush on a wall, and how far the plate is from it."""
     plate, edge = sheet.toolkit.plates[0], sheet.datum.edge
     ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.carrier == wall.name))
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
@@ -115,8 +115,8 @@ def opening_writers(sheet: Sheet) -> list[Writer]:
     return [write_opening]
 
 
-def write_opening(column: Column, sheet: Sheet) -> None:
-    """Write the opening and how to measure it."""
+def write_opening(column: TextColumn, sheet: Sheet) -> None:
+    """Writes the opening and how to measure it."""
     fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
     first, moving = toolkit.plates[0], toolkit.moving
     heading(column, f"Opening S of the {moving.noun}s")
@@ -127,7 +127,10 @@ def write_opening(column: Column, sheet: Sheet) -> None:
     check = caliper_check(fixture, toolkit)
     one, other = (column_letters(hole[0]) for hole in (check.left, check.right))
     column.paragraph(
-        f"x from the centres of column {one} of the {first.title} to those of column {other} of the {moving.title}.",
+        (
+            f"x from the centres of column {one} of the {first.title} to those of column {other} of the "
+            f"{moving.title}."
+        ),
         NOTE,
     )
     left, right = hole_name(first.name, *check.left), hole_name(moving.name, *check.right)
@@ -161,9 +164,12 @@ def opening_steps(sheet: Sheet) -> list[str]:
     pegs = "both" if count == 2 else f"all {NUMBERS[count]}"
     return [
         put_words(sheet),
-        f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.jaw_separation)} and lay the part in "
-        f"as drawn, {lies_words(sheet)}{against}.{inside_words(sheet)}",
-        f"{back} the {moving.title} until {pegs} pegs touch. The opening is then S; if not, the part lies another way.",
+        f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.jaw_separation)} and "
+        f"lay the part in as drawn, {lies_words(sheet)}{against}.{inside_words(sheet)}",
+        (
+            f"{back} the {moving.title} until {pegs} pegs touch. The opening is then S; if not, the part "
+            "lies another way."
+        ),
         f"Clamp{with_force}. The pegs touch: {touch_words(sheet)}",
     ]
 
@@ -181,8 +187,8 @@ def clamp_writers(sheet: Sheet) -> list[Writer]:
     return each if sheet.is_closed_at_once else [*each, write_order]
 
 
-def write_clamp(column: Column, sheet: Sheet, setting: Setting, share: float) -> None:
-    """Write where a clamp is bolted, which way it pushes, how far its tip is out and with what share of the force."""
+def write_clamp(column: TextColumn, sheet: Sheet, setting: LengthSetting, share: float) -> None:
+    """Writes a clamp's place, its direction, its stroke and its share of the force."""
     clamp, lengths = setting.carrier, sheet.lengths
     heading(column, f"{setting.label} {setting.place}")
     column.words(lengths.words(setting.length), 28 if sheet.is_closed_at_once else 22, bold=True, gap=0.4)
@@ -208,8 +214,8 @@ def needed_force(sheet: Sheet) -> float:
     return max(case.needed.value for case in sheet.details.loads)
 
 
-def write_order(column: Column, sheet: Sheet) -> None:
-    """Write in which order two clamps are tightened, and in which ratio."""
+def write_order(column: TextColumn, sheet: Sheet) -> None:
+    """Writes in which order two clamps are tightened, and in which ratio."""
     fixture, (first, second) = sheet.fixture, clamp_names(sheet.fixture)
     heading(column, "Order of tightening")
     column.paragraph(order_words(fixture), BODY, bold=True)
@@ -217,8 +223,8 @@ def write_order(column: Column, sheet: Sheet) -> None:
     freedom = fixture.quality["clamp_freedom"]
     column.fact("clamp freedom, of 90°", f"{freedom:.1f}°", bold=True)
     column.paragraph(
-        f"{freedom_words(freedom).capitalize()}. Forces here are told for {second} with {ratio:.2f} times the force of "
-        f"{first}, the middle of what holds.",
+        f"{freedom_words(freedom).capitalize()}. Forces here are told for {second} with {ratio:.2f} times "
+        f"the force of {first}, the middle of what holds.",
         NOTE,
     )
 
@@ -234,8 +240,8 @@ def clamp_steps(sheet: Sheet) -> list[str]:
         one = f"the {noun}" if alone else tip.hole
         what = setting.mounting.then.format(name=setting.name, title=setting.title)
         ups.append(
-            f"Bring {one} up until its tip touches face {tip.face}. {what} is then {lengths.words(setting.length)}"
-            f"{'; if not, the part lies another way.' if alone else '.'}"
+            f"Bring {one} up until its tip touches face {tip.face}. {what} is then "
+            f"{lengths.words(setting.length)}{'; if not, the part lies another way.' if alone else '.'}"
         )
     if not alone:
         ups.append("If a length is not as told, the part lies another way.")
@@ -264,15 +270,15 @@ def clamping_words(sheet: Sheet) -> str:
 CLAMPS = MovingBlocks(clamp_writers, clamp_steps)
 
 
-def write_counting(column: Column, sheet: Sheet) -> None:
-    """Write how holes are counted."""
+def write_counting(column: TextColumn, sheet: Sheet) -> None:
+    """Writes how holes are counted."""
     heading(column, "Counting holes")
     several = len(sheet.toolkit.plates) > 1
     (write_jaws if several else write_plate)(column, sheet)
 
 
-def write_jaws(column: Column, sheet: Sheet) -> None:
-    """Write how the holes of two plates are counted."""
+def write_jaws(column: TextColumn, sheet: Sheet) -> None:
+    """Writes how the holes of two plates are counted."""
     lengths, first, moving = sheet.lengths, sheet.toolkit.plates[0], sheet.toolkit.moving
     pitch_x, pitch_y = (lengths.short(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]
@@ -290,8 +296,8 @@ def write_jaws(column: Column, sheet: Sheet) -> None:
         column.paragraph(f"Row 1 of the {moving.title} lies {offset} that of the {first.name}.", BODY)
 
 
-def write_plate(column: Column, sheet: Sheet) -> None:
-    """Write how the holes of the only plate are counted, and how far the whole set-up may be moved."""
+def write_plate(column: TextColumn, sheet: Sheet) -> None:
+    """Writes how the holes of the only plate are counted, and how far the whole set-up may be moved."""
     plate, lengths = sheet.toolkit.plates[0], sheet.lengths
     peg = next(peg for peg in sheet.fixture.pegs if peg.carrier == plate.name)
     pitch_x, pitch_y = plate.pitch
@@ -305,7 +311,7 @@ def write_plate(column: Column, sheet: Sheet) -> None:
     size = "" if plate.columns is None and plate.rows is None else f", {holes_words(plate)}"
     column.paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
     column.paragraph(moving_words(sheet), BODY)
-    for side, way, count, noun in beyond_plate(sheet):
+    for side, way, count, noun in overhangs(sheet):
         by = f"{count} {noun}{'' if count == 1 else 's'}"
         column.paragraph(
             f"As named, the part reaches beyond the {side} of the {plate.noun}; {by} {way} it does not.", BODY
@@ -338,9 +344,11 @@ def spare_holes(sheet: Sheet) -> tuple[int | None, int | None]:
     )
 
 
-def beyond_plate(sheet: Sheet) -> list[tuple[str, str, int, str]]:
-    """The lower sides of a plate that the part reaches beyond as holes are named, and by how many columns or rows the set-up
-    has to be moved, and can be, so that it no longer does.
+def overhangs(sheet: Sheet) -> list[tuple[str, str, int, str]]:
+    """The lower sides of a plate over which the part hangs, as holes are named.
+
+    Each has the direction, number and noun of the columns or rows by which the set-up has to be moved so that
+    it does not. Sides where that is impossible are left out.
     """
     plate, part = sheet.toolkit.plates[0], shown(sheet.fixture, sheet.toolkit, sheet.workpiece).part
     sides = (("left side", "further right", part.x0, "column"), ("lower side", "further up", part.y0, "row"))

@@ -1,4 +1,4 @@
-"""What the blocks of a setup sheet are written with: what they speak of, headings, tables, fields to fill in."""
+"""Tools to write the blocks of a setup sheet: its data, headings, tables, fields to fill in."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 from attrs import frozen
 
-from workhold.drawing.panel import FACT_NAME, Column, pegs_words
+from workhold.drawing.panel import FACT_NAME, TextColumn, pegs_words
 from workhold.drawing.scene import BLACK, GREY, LengthUnit, Scene, text_width
-from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.sheet_facts import Caution, SheetDetails
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.setup_words import Datum
@@ -17,7 +17,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
 from workhold.model.dowels import fit_words
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.setup import PartZero, Setting, contact_names, part_zero, settings_of
+from workhold.model.setup import LengthSetting, PartZero, contact_names, part_zero, settings_of
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
 
@@ -43,12 +43,12 @@ KILO = 1000.0
 # Least and largest width of a field to fill in, page units.
 FIELD = 60.0, 150.0
 
-Block = Callable[[Column], None]
+Block = Callable[[TextColumn], None]
 
 
 @frozen
 class Sheet:
-    """What the blocks speak of; ``zero_shown`` and ``origin_shown`` tell whether part zero and hole A1 are on the plan."""
+    """The data of a setup sheet; ``zero_shown`` and ``origin_shown`` are whether these are on the plan."""
 
     fixture: Fixture
     workpiece: Workpiece
@@ -76,10 +76,12 @@ class Sheet:
         return float(x), float(y)
 
     @property
-    def seating(self) -> SeatingWords | None:
-        """What else the pegs can do with the part, in words; None where it is not told."""
-        told = self.details.seating
-        return None if told is None else SeatingWords(told, self.fixture, self.toolkit, self.lengths)
+    def seating(self) -> SeatingSentences | None:
+        """Sentences on where else the pegs can hold the part; None where the sheet does not show it."""
+        seating = self.details.seating
+        return (
+            None if seating is None else SeatingSentences(seating, self.fixture, self.toolkit, self.lengths)
+        )
 
     @property
     def datum(self) -> Datum:
@@ -92,12 +94,12 @@ class Sheet:
         return len(self.fixture.travels) == 1
 
     @property
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[LengthSetting, ...]:
         """What is set on each thing that moves."""
         return settings_of(self.fixture, self.toolkit)
 
 
-Writer = Callable[[Column, Sheet], None]
+Writer = Callable[[TextColumn, Sheet], None]
 
 
 @frozen
@@ -116,19 +118,19 @@ class MovingBlocks:
 
 def height_of(block: Block, width: float) -> float:
     """Height of a block in a column of a width, page units."""
-    column = Column(Scene(ET.Element("g")), 0.0, 0.0, width)
+    column = TextColumn(Scene(ET.Element("g")), 0.0, 0.0, width)
     block(column)
     return column.y
 
 
-def heading(column: Column, words: str) -> None:
-    """Write the heading of a block below a line."""
+def heading(column: TextColumn, words: str) -> None:
+    """Writes the heading of a block below a line."""
     column.rule(1.4)
     column.words(words, HEADING, bold=True, gap=0.65)
 
 
-def fact_or_field(column: Column, name: str, value: str | None) -> None:
-    """Write a fact, or where it is not known a line to write it on."""
+def fact_or_field(column: TextColumn, name: str, value: str | None) -> None:
+    """Writes a fact, or where it is not known a line to write it on."""
     if value is not None:
         column.fact(name, value, bold=True)
         return
@@ -165,13 +167,14 @@ def looks_words(peg: Peg) -> str:
     return "–" if peg.flat_deg is None else f"{peg.flat_deg:.2f}°"
 
 
-def write_flats(column: Column, sheet: Sheet) -> None:
-    """Write what the flats of the pegs are and how they are turned, where they have some."""
+def write_flats(column: TextColumn, sheet: Sheet) -> None:
+    """Writes what the flats of the pegs are and how they are turned, where they have some."""
     flat = sheet.toolkit.plates[0].flat
     if flat is not None:
         column.paragraph(
             "flat: which way it looks, counter-clockwise from +x; it is "
-            f"{sheet.lengths.short(flat.distance)} from the centre. Turn the peg until its flat lies on the part.",
+            f"{sheet.lengths.short(flat.distance)} from the centre. Turn the peg until its flat lies on the "
+            "part.",
             NOTE,
         )
 
@@ -192,8 +195,8 @@ def inside_words(sheet: Sheet) -> str:
     )
 
 
-def write_dowel(column: Column, sheet: Sheet) -> None:
-    """Write what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
+def write_dowel(column: TextColumn, sheet: Sheet) -> None:
+    """Writes what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
     details, lengths, carrier = sheet.details, sheet.lengths, sheet.toolkit.plates[0]
     diameter = 2 * carrier.peg_radius
     fit = details.tolerance.fit

@@ -1,16 +1,17 @@
 """Several copies of one part on one plate, and their picture: a fixture repeated by whole columns and rows.
 
-Two copies are clear of each other when their outlines are at least a gap apart, no peg or clamp of one comes nearer to the
-part of the other than that, and pegs and clamps do not overlap. That depends on the columns and rows between them alone. So
-the most copies are the largest set of places no two of which are at such a distance: a largest independent set,
-solved by HiGHS over sets of places that are pairwise too near, each of which holds one copy at most.
+Two copies are clear of each other when pegs and clamps do not overlap and everything else is a gap apart.
+That is the two outlines, and the pegs and clamps of one copy from the part of the other. That depends only on
+the columns and rows between the copies. So the most copies are a largest set of places no two of which are
+too near: a maximum independent set. HiGHS finds it. Each set of places that are pairwise too near is a
+constraint: it holds one copy at most.
 
 The picture shows every hole of the plate, and every copy with its pegs and clamps.
 
 Glossary
 --------
 shift : whole columns and rows by which a copy is moved beside the fixture that is repeated.
-too near : of a shift: two copies so far apart are not clear of each other.
+too near : a shift is too near when two copies that far apart are not clear of each other.
 """
 
 from __future__ import annotations
@@ -46,7 +47,8 @@ __all__ = ["Packing", "copies_of", "draw_copies", "packing_of", "too_near_shifts
 Array = NDArray[np.float64]
 Shift = tuple[int, int]
 
-# Outlines are looked at as chords no farther than this from them, in mm; that much is added to the gap on either side.
+# Outlines are looked at as chords no farther than this from them, in mm; that much is added to the gap on
+# either side.
 SAGITTA = 1e-3
 # More places than this are packed without a proof.
 MOST_PLACES = 4000
@@ -127,7 +129,8 @@ def distances(one: Array, other: Array) -> Array:
 def is_clear(bodies: Bodies, move: Array, gap: float) -> bool:
     """Whether two copies, one of them moved (2,) in mm, are clear of each other.
 
-    Boundaries alone tell that: neither copy fits within the other, so where they overlap, their outlines cross.
+    Comparing boundaries is enough: neither copy fits within the other, so where they overlap, their outlines
+    cross.
     """
     outline, cores = bodies.outline + move, bodies.cores + move
     slack = GAP_SLACK
@@ -144,7 +147,7 @@ def is_clear(bodies: Bodies, move: Array, gap: float) -> bool:
 def too_near_shifts(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, gap: float, spread: Shift
 ) -> set[Shift]:
-    """The shifts between two copies, up to so many columns and rows either way, at which they are not clear."""
+    """The shifts, up to ``spread`` columns and rows either way, at which two copies are not clear."""
     bodies, pitch = bodies_of(fixture, workpiece, toolkit), np.array(toolkit.carriers[0].pitch)
     points = np.concatenate([bodies.outline.reshape(-1, 2), bodies.cores.reshape(-1, 2)])
     reach = np.ptp(points, axis=0) + 2 * bodies.radius.max() + gap + 2 * SAGITTA
@@ -175,7 +178,8 @@ def places_on(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> li
     if max(used_columns) - min(used_columns) >= columns or max(used_rows) - min(used_rows) >= rows:
         raise InputError(
             f"a plate of {columns} × {rows} holes does not hold this fixture once: it takes "
-            f"{max(used_columns) - min(used_columns) + 1} columns and {max(used_rows) - min(used_rows) + 1} rows."
+            f"{max(used_columns) - min(used_columns) + 1} columns and {max(used_rows) - min(used_rows) + 1} "
+            "rows."
         )
     upward = range(1) if toolkit.datum.fixes_rows else range(-min(used_rows), rows - max(used_rows))
     return [(i, j) for j in upward for i in range(-min(used_columns), columns - max(used_columns))]
@@ -196,17 +200,18 @@ def packing_of(
     ----------
     columns, rows : of holes of the plate.
     gap : smallest distance in mm between a part and anything of another copy.
-    seconds : after which the best packing known then is told; None proves it.
+    seconds : time limit, after which the best packing known is returned; None proves it.
 
     Raises
     ------
     InputError
-        For a vise, whose one jaw cannot press several parts alike, a plate that holds no copy, and without SciPy.
+        For a vise, whose one jaw cannot press several parts alike, a plate that holds no copy, and without
+        SciPy.
     """
     if len(toolkit.plates) > 1:
         raise InputError(
-            f"a {toolkit.noun} holds one part: its {toolkit.moving.noun} presses several copies unlike; take a plate or a "
-            "fence."
+            f"a {toolkit.noun} holds one part: its {toolkit.moving.noun} presses several copies unlike; take "
+            "a plate or a fence."
         )
     places = places_on(fixture, toolkit, columns, rows)
     spread = (
@@ -236,7 +241,7 @@ def in_rows(places: list[Shift]) -> tuple[Shift, ...]:
 
 
 def crowds(near: set[Shift]) -> list[list[Shift]]:
-    """Sets of shifts that are pairwise too near, so many that every shift that is too near is between two of one."""
+    """Sets of shifts that are pairwise too near; every shift that is too near is between two of one set."""
     left, out = near - {(0, 0)}, []
     ordered = sorted(left, key=lambda shift: (abs(shift[0]) + abs(shift[1]), shift))
     for one in ordered:
@@ -317,7 +322,7 @@ def draw_copies(
     *,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw copies on a plate of so many columns and rows, on A4, as SVG text."""
+    """Draws copies on a plate of so many columns and rows, on A4, as SVG text."""
     plate, (columns, rows) = toolkit.carriers[0], size
     benches = [bench_of(fixture, workpiece, toolkit) for fixture in copies]
     holes = Box(*plate.place(0, 0), *plate.place(columns - 1, rows - 1)).grown(max(plate.pitch) / 2)
@@ -359,7 +364,7 @@ def taken_up(bench: Bench) -> Iterator[Box]:
 
 
 def draw_whole_plate(scene: Scene, holes: Box, plate: Carrier, size: tuple[int, int], view: View) -> None:
-    """Draw a plate with all its holes and the names of its columns and rows."""
+    """Draws a plate with all its holes and the names of its columns and rows."""
     box, (columns, rows) = view.box(holes), size
     fill, edge = STILL
     scene.group("plate").rectangle(box, fill, edge, 2.0)

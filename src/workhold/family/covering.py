@@ -1,7 +1,8 @@
 """The fewest sets that together hold all members, exactly: set cover, solved by HiGHS.
 
-HiGHS (Huangfu & Hall, *Parallelizing the dual revised simplex method*, Math. Prog. Comp. 10, 2018) branches and bounds; it
-comes with SciPy. Its answer is taken as the least only when its lower bound, rounded up, is the number of sets it found.
+HiGHS (Huangfu & Hall, *Parallelizing the dual revised simplex method*, Math. Prog. Comp. 10, 2018) branches
+and bounds; it comes with SciPy. Its answer is taken as the least only when its lower bound, rounded up, is
+the number of sets it found.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ class Cover:
 
 
 def load_solver() -> None:
-    """Load HiGHS.
+    """Loads HiGHS.
 
     Raises
     ------
@@ -73,7 +74,10 @@ def load_solver() -> None:
 
 
 def maximal(masks: WordArray) -> NDArray[np.int64]:
-    """The sets (K,) of some (S, W), given as bits, that are in no other one; of equal ones the first. Larger ones first."""
+    """The sets (K,) of some (S, W), given as bits, that are in no other one, larger ones first.
+
+    Of equal sets it is the first.
+    """
     words = list(masks.T)
     by_mask = np.lexsort(words)
     first = np.sort(by_mask[changes([word[by_mask] for word in words])])
@@ -90,7 +94,10 @@ def maximal(masks: WordArray) -> NDArray[np.int64]:
 
 
 def greedy(sets: BoolArray) -> tuple[int, ...]:
-    """A cover by taking each time the set (of S, M) that holds most of what is still left; every member is in some set."""
+    """A cover by the greedy algorithm: each time the set (of S, M) that holds most of what is left.
+
+    Every member has to be in some set.
+    """
     left, chosen = np.ones(sets.shape[1], np.bool_), []
     while left.any():
         chosen.append(int(np.argmax((sets & left).sum(axis=1))))
@@ -103,7 +110,8 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
 
     Parameters
     ----------
-    deadline : of the clock ``time.monotonic``; when it comes, the best cover known so far and what is proven of the least.
+    deadline : of the clock ``time.monotonic``; when it comes, the best cover known so far and what is proven
+        of the least.
     """
     from scipy.optimize import Bounds, LinearConstraint, milp
 
@@ -134,7 +142,7 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
 
 
 def packing(sets: BoolArray) -> int:
-    """How many members no two of which are in one set are found at once; so many sets every cover needs."""
+    """A lower bound of covers: a number of members no two of which are in one set, found greedily."""
     beside = sets.T.astype(np.int64) @ sets.astype(np.int64) > 0
     left, count = np.ones(len(beside), np.bool_), 0
     while left.any():
@@ -172,7 +180,7 @@ def first_cover(
 def completed(
     sets: BoolArray, left: BoolArray, first: int, count: int, deadline: float | None
 ) -> tuple[int, ...] | None:
-    """At most so many sets from the ``first`` on that hold what is left, or None where there are none, or time is over."""
+    """Up to ``count`` sets from the ``first`` on that hold what is left; None if none are found."""
     if not left.any():
         return ()
     some = sets[first:, left]

@@ -1,9 +1,10 @@
 """The curve: for each number of set-ups the least worst loss among the members, proven.
 
-At a bound on the loss only the sets of members that patterns hold matter, and of these only the ones inside no other: few,
-even of 10^6 patterns. The fewest of them that hold every member, f(bound), fall as the bound grows, and only at losses that
-occur; halving the losses between two bounds at which f differs finds where it falls. A pattern that at the upper bound
-holds no more than another one already at the lower one is left out between the two, so the work soon gets small.
+At a bound on the loss only the sets of members that patterns hold matter, and of these only the ones inside
+no other: few, even of 10^6 patterns. Let f(bound) be the fewest of them that hold every member. It falls as
+the bound grows, and only at losses that occur. Bisection over the losses between two bounds at which f
+differs finds where it falls. Between two bounds a pattern is left out that at the upper one holds no more
+than another at the lower one, so the work soon gets small.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from workhold.family.covering import WORD, Cover, as_sets, cover, first_cover, m
 from workhold.family.members import Member
 from workhold.listing.canonical_form import changes
 
-__all__ = ["Point", "Search", "Table", "curve_of", "points_of", "table_of"]
+__all__ = ["LossTable", "Point", "Search", "curve_of", "points_of", "table_of"]
 
 IntArray = NDArray[np.int64]
 
@@ -44,7 +45,7 @@ class Point:
 
 
 @frozen(eq=False)
-class Table:
+class LossTable:
     """Which pattern holds which member with what loss, the smallest loss first.
 
     Parameters
@@ -72,13 +73,13 @@ class Table:
         np.bitwise_or.at(out, place, np.uint64(1) << (member % np.uint64(WORD)))
         return out
 
-    def only(self, chosen: IntArray) -> Table:
+    def only(self, chosen: IntArray) -> LossTable:
         """The table of the patterns at some places, in order."""
         place = np.full(len(self.words), -1)
         place[chosen] = np.arange(len(chosen))
         kept = place[self.pattern] >= 0
         entries = place[self.pattern[kept]], self.member[kept], self.loss[kept]
-        return Table(self.members, self.words[chosen], self.number[chosen], *entries)
+        return LossTable(self.members, self.words[chosen], self.number[chosen], *entries)
 
     def losses_of(self, patterns: Sequence[int]) -> NDArray[np.float64]:
         """The loss (K, M) of the patterns at some places on each member, NaN where one does not hold it."""
@@ -89,7 +90,7 @@ class Table:
         return out
 
 
-def table_of(members: Sequence[Member]) -> Table:
+def table_of(members: Sequence[Member]) -> LossTable:
     """The table of some members, at least one, each of which some pattern holds."""
     words = np.concatenate([one.words for one in members])
     owner = np.repeat(np.arange(len(members)), [len(one.words) for one in members])
@@ -100,7 +101,9 @@ def table_of(members: Sequence[Member]) -> Table:
     pattern[order] = np.cumsum(fresh) - 1
     by_loss = np.argsort(loss, kind="stable")
     words = words[order[fresh]]
-    return Table(len(members), words, np.arange(len(words)), pattern[by_loss], owner[by_loss], loss[by_loss])
+    return LossTable(
+        len(members), words, np.arange(len(words)), pattern[by_loss], owner[by_loss], loss[by_loss]
+    )
 
 
 @define
@@ -116,23 +119,23 @@ class Search:
     covers : what was found at bounds, by their places: numbers of patterns, and the least number of them.
     """
 
-    table: Table
+    table: LossTable
     bounds: NDArray[np.float64]
     deadline: float | None
     progress: Callable[[float], None]
     covers: dict[int, Cover] = field(factory=dict)
     done: float = 0.0
 
-    def at(self, place: int, table: Table) -> None:
-        """Find the fewest patterns of a table that are a cover at a bound."""
+    def at(self, place: int, table: LossTable) -> None:
+        """Finds the fewest patterns of a table that are a cover at a bound."""
         masks = table.masks(float(self.bounds[place]))
         kept = maximal(masks)
         found = cover(as_sets(masks[kept], table.members), self.deadline)
         numbers = tuple(sorted(table.number[kept[list(found.sets)]].tolist()))
         self.covers[place] = Cover(numbers, found.at_least)
 
-    def between(self, low: int, high: int, table: Table, share: float) -> None:
-        """Find covers at the bounds between two at which they are known, wherever they may differ."""
+    def between(self, low: int, high: int, table: LossTable, share: float) -> None:
+        """Finds covers at the bounds between two at which they are known, wherever they may differ."""
         if high - low < 2 or len(self.covers[low].sets) == len(self.covers[high].sets):
             self.done += share
             self.progress(self.done)
@@ -143,7 +146,7 @@ class Search:
         self.between(low, middle, table, share / 2)
         self.between(middle, high, table, share / 2)
 
-    def worth_trying(self, low: int, high: int, table: Table) -> IntArray:
+    def worth_trying(self, low: int, high: int, table: LossTable) -> IntArray:
         """The places of patterns that between two bounds may hold what no other one does."""
         least, most = (table.masks(float(self.bounds[place])) for place in (low, high))
         largest = maximal(least)
@@ -155,18 +158,18 @@ class Search:
 
 
 def curve_of(
-    table: Table,
+    table: LossTable,
     most_loss: float = np.inf,
     deadline: float | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> tuple[Point, ...]:
-    """The curve, from the fewest set-ups to as many as lose the least that can be; numbers that gain nothing over fewer are
-    left out.
+    """The curve, from the fewest set-ups to the least loss; numbers that gain nothing over fewer are left
+    out.
 
     Parameters
     ----------
     most_loss : larger losses are not accepted; every member can be held within it.
-    deadline : of the clock ``time.monotonic``; when it comes, points tell what is known then.
+    deadline : of the clock ``time.monotonic``; points after it are what was known then.
     """
     least = float(np.max([table.loss[table.member == one].min() for one in range(table.members)]))
     bounds = np.unique(table.loss[(table.loss >= least) & (table.loss <= most_loss)])
@@ -192,8 +195,10 @@ def points_of(search: Search) -> Iterator[Point]:
 
 
 def named(search: Search, place: int) -> tuple[int, ...]:
-    """The numbers of the patterns at a point: of all covers by sets that are in no other one, each set by the first pattern
-    that has it, the first in lexicographic order."""
+    """The numbers of the patterns at a point: the lexicographically first cover.
+
+    Covers are of sets that are in no other one, each named by the first pattern that has it.
+    """
     table = search.table
     masks = table.masks(float(search.bounds[place]))
     kept = np.sort(maximal(masks))

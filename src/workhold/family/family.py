@@ -1,8 +1,8 @@
 """A family of parts in one toolkit: its members, what was left out, the curve, and its file.
 
-The file has the members, the curve, and the plan at every point of it, as JSON. Its bytes depend on nothing but the family.
-Lengths are rounded to 1e-9 mm, angles to 1e-10 degree; figures and losses have twelve significant digits. A loss that is not
-finite is null.
+The file has the members, the curve, and the plan at every point of it, as JSON. Its bytes depend on nothing
+but the family. Lengths are rounded to 1e-9 mm, angles to 1e-10 degree; figures and losses have twelve
+significant digits. A loss that is not finite is null.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from attrs import define, evolve, frozen
 
 from workhold.errors import InputError
 from workhold.family.covering import load_solver
-from workhold.family.curve import Point, Table, curve_of, table_of
+from workhold.family.curve import LossTable, Point, curve_of, table_of
 from workhold.family.members import OTHER_SIDE, Member, Threshold, member_of, other_side, zero_of_other_side
 from workhold.family.plan import Holding, Plan, SetUp, plan_of
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees
@@ -35,7 +35,7 @@ from workhold.version import __version__
 
 __all__ = ["FORMAT", "Asked", "Family", "LeftOut", "family_of", "family_text"]
 
-# The share of the work that the searches are, as progress tells it.
+# The share of the searches in the work, for the progress.
 SEARCHES = 0.95
 
 
@@ -87,7 +87,7 @@ class Family:
     Parameters
     ----------
     toolkit : in which all members are held.
-    figure : of which losses are told.
+    figure : of which losses are computed.
     members : the parts that some pattern holds.
     left_out : the others.
     points : of the curve, fewest set-ups first; none without a member.
@@ -99,7 +99,7 @@ class Family:
     members: tuple[Member, ...]
     left_out: tuple[LeftOut, ...]
     points: tuple[Point, ...]
-    table: Table | None
+    table: LossTable | None
 
     @cached_property
     def plans(self) -> tuple[Plan, ...]:
@@ -111,7 +111,7 @@ class Family:
         )
 
     def plan(self, setups: int | None = None) -> Plan:
-        """The plan with the least loss that has at most so many set-ups; None asks for as few set-ups as there can be.
+        """The plan with the least loss and at most ``setups`` set-ups; None asks for the fewest set-ups.
 
         Raises
         ------
@@ -147,16 +147,17 @@ def family_of(
     asked : at least one part; all with the same toolkit and the same first figure of the ranking.
     thresholds, unfit : which fixtures may be used, see ``family.members.may_be_used``.
     most_loss : larger losses are not accepted; None is any.
-    seconds : after which the curve tells what is known until then; None proves all of it.
-    same_zero : whether the zeros of all parts of a set-up must lie at one place, and the parts be turned alike.
+    seconds : time limit, after which the curve is what is known by then; None proves all of it.
+    same_zero : whether the zeros of all parts of a set-up must lie at one place, and the parts be turned
+        alike.
     left_out : parts that are left out already.
     progress : called with the fraction done and how many fixtures were found.
 
     Raises
     ------
     InputError
-        When SciPy is not installed, a loss below 1 is asked for, parts are asked for in different toolkits or for different
-        figures, and as ``search.design.answer``.
+        When SciPy is not installed, a loss below 1 is asked for, parts are asked for in different toolkits or
+        for different figures, and as ``search.design.answer``.
 
     Examples
     --------
@@ -164,7 +165,8 @@ def family_of(
     >>> vise, by = Vise(pitch=10, columns=1, peg_radius=3), ("location_error",)
     >>> def triangle(width, height):
     ...     return Workpiece.from_loops("", [[[0, 0, 0], [width, 0, 0], [width / 3, height, 0]]])
-    >>> parts = [Asked(str(size), Query(triangle(*size), vise, ranking=by)) for size in ((40, 35), (50, 40), (62, 31))]
+    >>> sizes = (40, 35), (50, 40), (62, 31)
+    >>> parts = [Asked(str(size), Query(triangle(*size), vise, ranking=by)) for size in sizes]
     >>> [(point.setups, round(point.loss, 2)) for point in family_of(parts).points]
     [(1, 1.17), (2, 1.07), (3, 1.0)]
     """

@@ -1,8 +1,8 @@
-"""A member of a family: a part, or its other side, with the patterns that hold it, each with its best fixture.
+"""A member of a family: a part, or its other side, with the best fixture of each pattern that holds it.
 
-A fixture is judged by its loss, and by whether it may be used at all. Turned over about its y axis for the second operation,
-a part shows the mirrored outline, and whatever was said of it in its own coordinates is mirrored with it: faces, zones,
-loads, and its zero, which stays the same point of the part.
+A fixture is judged by its loss, and by whether it may be used at all. Turned over about its y axis for the
+second operation, a part shows the mirrored outline. Whatever is given in its own coordinates is mirrored too:
+faces, zones, loads, and part zero, which stays the same point of the part.
 """
 
 from __future__ import annotations
@@ -44,10 +44,11 @@ __all__ = [
     "zero_of_other_side",
 ]
 
-# A family is asked for what it loses in location; after that what a machinist looks at counts, by how many things move.
+# A family is asked for what it loses in location; after that what a machinist looks at counts, by how many
+# things move.
 LOCATION = "location_error"
 RANKINGS = {1: (LOCATION, *DEFAULT_RANKING), 2: (LOCATION, *PAIR_RANKING)}
-# Losses are told apart to so many decimals.
+# Losses are rounded to this number of decimals.
 LOSS_DECIMALS = 9
 
 
@@ -114,7 +115,10 @@ def loss_text(loss: float) -> str:
 def may_be_used(
     table: FixtureTable, thresholds: Sequence[Threshold], tolerance: Tolerance, with_unfit: bool
 ) -> NDArray[np.bool_]:
-    """Which fixtures (N,) may be used: those for a workshop, unless all are asked for, that reach every threshold."""
+    """Whether each fixture (N,) may be used: it reaches every threshold, and is fit for a workshop.
+
+    ``with_unfit`` asks for no fitness.
+    """
     good = np.ones(len(table), np.bool_) if with_unfit else ~unfit(table.quality, tolerance)
     for one in thresholds:
         values = np.round(table.quality[:, FIGURES.index(one.figure)], FIGURE_DECIMALS)
@@ -141,7 +145,7 @@ def mirrored_load(load: Load) -> Load:
 
 
 def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
-    """For each segment of a part its number in the part turned over: its loops run the other way round."""
+    """The number of each segment in the part turned over, whose loops run the other way round."""
     out, first = dict[int, int](), 0
     for loop in workpiece.loops:
         out |= {first + k: first + len(loop) - 1 - k for k in range(len(loop))}
@@ -150,13 +154,14 @@ def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
 
 
 def other_side(query: Query) -> Query:
-    """What is asked for a part, for the same part turned over; angles in the vise stay as they are.
+    """The query for the part turned over; angles in the vise stay as they are.
 
     Examples
     --------
     >>> from workhold import Vise, Workpiece
     >>> part = Workpiece.from_loops("wedge", [[[0, 0, 0], [40, 0, 0], [10, 30, 0]]])
-    >>> turned = other_side(Query(part, Vise(pitch=10, columns=1, peg_radius=3), restrictions=Restrictions(avoid=(1,))))
+    >>> vise = Vise(pitch=10, columns=1, peg_radius=3)
+    >>> turned = other_side(Query(part, vise, restrictions=Restrictions(avoid=(1,))))
     >>> turned.workpiece.name, turned.workpiece.loops[0][:, 0].tolist(), turned.restrictions.avoid
     ('wedge, side 2', [0.0, -10.0, -40.0], (1,))
     """
@@ -201,7 +206,7 @@ class Member:
     zero : its zero, X0 Y0.
     fixtures : how many fixtures it has.
     patterns : how many patterns hold it, one and its half turn counted once.
-    best : the best value of the figure that losses are told of; NaN where it has no fixture.
+    best : the best value of the figure of which losses are computed; NaN where it has no fixture.
     words : (P, W) the patterns that hold it, in lexicographic order.
     loss : (P,) of each pattern.
     number : (P,) place of the best fixture with each pattern in the list of all fixtures, from 0.
@@ -241,7 +246,7 @@ def member_of(
     result : all fixtures, ranked; the first figure of its ranking is that of losses.
     thresholds, unfit : what may be used, see ``family.members.may_be_used``.
     zero : the part's zero; the usual one if None.
-    same_zero : whether patterns are told apart by where the zero lies as well, and how the part is turned.
+    same_zero : whether patterns also differ where the zero lies elsewhere or the part is turned otherwise.
 
     Raises
     ------
@@ -271,8 +276,10 @@ def member_of(
 
 
 def distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]) -> int:
-    """How many patterns (N, W) there are when one and its half turn count once; ``number`` (N,) tells the fixtures, and
-    ``turn`` (N,) which are after the half turn."""
+    """The number of patterns (N, W) when one and its half turn count once.
+
+    ``number`` (N,) are the numbers of the fixtures, and ``turn`` (N,) whether they are after the half turn.
+    """
     ahead = np.full((int(number.max(initial=-1)) + 1, words.shape[1]), np.iinfo(np.int64).max)
     # What comes first is the smaller of the two of each fixture, whatever the order in which they are given.
     for some in (~turn, turn):
@@ -286,8 +293,12 @@ def distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]
 
 
 def with_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, IntArray]:
-    """Fixtures, and after them those that half a turn of everything makes of them where their arrangement stays as it is and
-    nothing forbids it: a range of angles, or holes that are blocked; and the place (N,) of each in the list."""
+    """Fixtures, and after them their images under half a turn of everything; and the place (N,) of each in
+    the list.
+
+    There is an image where the arrangement stays as it is, and neither a range of angles nor blocked holes
+    forbid it.
+    """
     toolkit = query.toolkit
     tables, numbers = [table], [np.arange(len(table))]
     blocked = any(plate.blocked for plate in toolkit.plates)
@@ -299,14 +310,15 @@ def with_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, In
         number = np.flatnonzero(kind & at_angle(np.degrees(table.theta) + 180.0, query))
         if len(number):
             after = turned(table.take(number), toolkit)
-            # Where another jaw stands still the location error changes; the locators of a plate stay what they are.
+            # Where another jaw stands still the location error changes; the locators of a plate stay what
+            # they are.
             tables.append(after if places[0] == 0 else measured(after, Problem.of(query)))
             numbers.append(number)
     return FixtureTable.joined(tables), np.concatenate(numbers)
 
 
 def at_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
-    """Which orientations (N,) in degrees lie in one of the ranges allowed, which are all where none is given."""
+    """Whether orientations (N,) in degrees lie in a range allowed; without ranges all do."""
     inside = np.full(len(degrees), not query.restrictions.angles)
     for low, high in query.restrictions.angles:
         inside |= (degrees - low + ANGLE_SLACK) % 360.0 <= high - low + 2 * ANGLE_SLACK

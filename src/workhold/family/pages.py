@@ -1,8 +1,9 @@
 """The pages of a family: its curve drawn, and the sheets of a plan, a page for each set-up.
 
-On the curve the number of set-ups grows to the right and the worst loss upward. On the page of a set-up stands at the left
-its plan, the pegs with their holes, holding its first part; at the right every part as it lies, to one scale, and below
-them a table of what is set and programmed for each. Parts beyond ``MOST_BESIDE`` have their own pages.
+On the curve the number of set-ups grows to the right and the worst loss upward. The page of a set-up has at
+the left its plan, the pegs with their holes, holding its first part. At the right it has every part as it
+lies, to one scale, above a table of what is set and programmed for each. More parts than ``MOST_BESIDE`` go
+on further pages.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ from workhold.model.setup import settings_of
 from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
 
-__all__ = ["MOST_BESIDE", "draw_curve", "draw_setups"]
+__all__ = ["draw_curve", "draw_setups"]
 
 CURVE_EDGE, CURVE_HEADER = 32.0, 84.0
 CURVE_LINE, CHOSEN, GRID = "#0b3a82", "#b3122a", "#d5d9de"
@@ -51,7 +52,7 @@ MOST_LINES = 9
 
 
 def draw_curve(family: Family, chosen: Point | None = None) -> str:
-    """Draw the curve of a family on A4, as SVG text.
+    """Draws the curve of a family on A4, as SVG text.
 
     Parameters
     ----------
@@ -62,7 +63,10 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
     width, height = LANDSCAPE
     group = scene.group("heading")
     group.text((CURVE_EDGE, CURVE_EDGE + 12), held, 26, bold=True)
-    words = f"The loss is the {family.figure.words} over the best that each part has; at each point that of the worst part."
+    words = (
+        f"The loss is the {family.figure.words} over the best that each part has; at each point that of the "
+        "worst part."
+    )
     group.text((CURVE_EDGE, CURVE_EDGE + 44), words, 15, fill=GREY)
     room = Box(
         CURVE_EDGE + AT_LEFT, CURVE_EDGE + CURVE_HEADER, width - CURVE_EDGE - 30, height - CURVE_EDGE - BELOW
@@ -76,7 +80,7 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
 
 
 def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: Point | None) -> None:
-    """Draw the axes with their numbers, and the points with theirs."""
+    """Draws the axes with their numbers, and the points with theirs."""
     last, most = points[-1].setups, points[0].loss
     step = nice_step(max(most - 1.0, 0.02) / MOST_LINES)
     top = 1.0 + step * max(ceil((most - 1.0) / step - 1e-9), 1)
@@ -157,11 +161,11 @@ class Titles:
 
 
 def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) -> tuple[str, ...]:
-    """Draw the sheets of a plan, as SVG text of every page.
+    """Draws the sheets of a plan, as SVG text of every page.
 
     Parameters
     ----------
-    figure : of which losses are told.
+    figure : of which losses are computed.
     day : the date written on the sheets.
     unit : of the lengths written.
     """
@@ -221,13 +225,16 @@ def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
     here, there = Counter(holes_of(setup)), Counter(holes_of(before))
     placed, taken = sorted((here - there).elements()), sorted((there - here).elements())
     if placed:
-        yield f"After the set-up before: take out {', '.join(taken)}, place {', '.join(placed)}; the rest stays."
+        yield (
+            f"After the set-up before: take out {', '.join(taken)}, place {', '.join(placed)}; the rest "
+            "stays."
+        )
     else:
         yield "After the set-up before: all pegs stay."
 
 
 def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -> None:
-    """Draw the plan of a set-up with the names of its holes, holding the first part that stands in them."""
+    """Draws the plan of a set-up with the names of its holes, holding the first part that stands in them."""
     one = setup.standing
     workpiece, toolkit = one.member.query.workpiece, one.member.query.toolkit
     bench = bench_of(one.fixture, workpiece, toolkit)
@@ -239,7 +246,7 @@ def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -
 
 
 def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box, titles: Titles) -> None:
-    """Draw parts as they lie, all to the same scale, each in a cell with its name, and below them their table."""
+    """Draws parts as they lie, to one scale, each in a cell with its name, and below them their table."""
     rows = [table_row(one, titles) for one, _ in benches]
     notes = [
         line for note in notes_of([one for one, _ in benches]) for line in wrapped(note, SMALL, room.width)
@@ -318,13 +325,13 @@ def table_row(one: Holding, titles: Titles) -> list[str]:
 
 
 def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
-    """What stands below the table: what signs mean, what is a part's zero, and whose pegs stand in other columns."""
+    """The notes below the table: the signs, the zero, and the parts whose pegs stand in other columns."""
     zeros = {one.member.zero.words for one in holdings}
     toolkit = holdings[0].member.query.toolkit
     first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
     yield (
-        f"X0 Y0 is {first}, x and y from {toolkit.datum.start}, θ counter-clockwise. Fixture: its number in the part's "
-        "list."
+        f"X0 Y0 is {first}, x and y from {toolkit.datum.start}, θ counter-clockwise. Fixture: its number in "
+        "the part's list."
     )
     if any(one.turned for one in holdings):
         swapped = f", which swaps the {toolkit.moving.noun}s" if len(toolkit.plates) > 1 else ""
@@ -335,7 +342,7 @@ def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
 
 
 def draw_table(scene: Scene, room: Box, head: list[str], rows: list[list[str]], notes: list[str]) -> None:
-    """Draw the table of parts, numbers on the right of their columns, and the notes below it."""
+    """Draws the table of parts, numbers on the right of their columns, and the notes below it."""
     heads = [in_two(words) for words in head]
     widths = [
         max(
@@ -376,7 +383,7 @@ def in_two(words: str) -> tuple[str, str]:
 
 
 def draw_foot(scene: Scene, titles: Titles, page: str) -> None:
-    """Write date, program and page at the foot."""
+    """Writes date, program and page at the foot."""
     width, height = LANDSCAPE
     words = f"{titles.day.isoformat()} · workhold {__version__} · {page}"
     scene.text((width - EDGE, height - EDGE - 4), words, 11, "end", fill=GREY)

@@ -1,9 +1,9 @@
-"""The pattern of each fixture of a table, and a fixture moved so that its pegs stand where those of a set-up do.
+"""The pattern of each fixture of a table, and a fixture moved onto the pegs of a set-up.
 
-A pattern is written as packed whole numbers that are equal for equal patterns. A move is by whole lattice steps or half a
-turn. What is moved stays a fixture: it touches the faces it touched with the forces it had. Of a vise the half turn changes
-which jaw stands still, and with it the location error, so a fixture and its half turn are one fixture in a list, but not
-the same to a part that is machined.
+A pattern is written as packed whole numbers that are equal for equal patterns. A move is by whole lattice
+steps or half a turn. What is moved stays a fixture: it touches the same faces with the same forces. The half
+turn of a vise changes which jaw stands still, and with it the location error. So a fixture and its half turn
+are one fixture in a list, but not the same to a part that is machined.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from workhold.model.setup import PartZero
 __all__ = [
     "NOTHING",
     "Hole",
-    "column_groups",
     "half_turn",
     "holes_of",
     "moved_onto",
@@ -37,22 +36,24 @@ BoolArray = NDArray[np.bool_]
 
 # Columns, rows and arrangements in packed numbers; more columns or rows than this no search can look through.
 MOST_STEPS, MOST_ARRANGEMENTS = (1 << 18) - 1, 15
-# Places of part zeros within this, in mm, and turns of parts within this, in degrees, are one. Where one such step ends and
-# the next begins is at no round number, so that rounding does not tell apart what is equal.
+# Places of part zeros within this, in mm, and turns of parts within this, in degrees, are one. Where one such
+# step ends and the next begins is at no round number, so that rounding does not make equal values differ.
 SAME_ZERO, SAME_TURN, BEGINNING = 1e-3, 1e-4, 0.3819660113
 # Larger than any column or row.
-BEYOND = 1 << 40
+NO_PLACE = 1 << 40
 
 
 def column_groups(toolkit: Toolkit) -> list[int]:
-    """For each carrier the number of those whose columns it shares: a jaw that slides has its own."""
+    """The group of carriers that share their columns, for each carrier: a jaw that slides has its own."""
     slides = [carrier.has_lattice and carrier.travel is not None for carrier in toolkit.carriers]
     return [number if own else 0 for number, own in enumerate(slides)]
 
 
 def half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
-    """For each carrier the one whose place it takes after half a turn of everything, where that turn leaves an arrangement
-    as it is; None where it does not."""
+    """The carrier whose place each carrier takes after half a turn of everything.
+
+    It is None where the turn does not leave the arrangement as it is.
+    """
     places, one = toolkit.half_turned, toolkit.arrangements[arrangement]
     if places is None:
         return None
@@ -84,14 +85,14 @@ def pattern_words(table: FixtureTable, toolkit: Toolkit) -> IntArray:
 
 def least(values: IntArray, inside: BoolArray) -> IntArray:
     """The smallest (N, 1) of the values (N, P) that count, 0 where none does."""
-    found = np.where(inside, values, BEYOND).min(axis=1, keepdims=True, initial=BEYOND)
-    return np.where(found == BEYOND, 0, found)
+    found = np.where(inside, values, NO_PLACE).min(axis=1, keepdims=True, initial=NO_PLACE)
+    return np.where(found == NO_PLACE, 0, found)
 
 
 def zero_words(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArray:
-    """Where the zero of a part lies from the pegs of its fixtures, and how the part is turned, (N, 3) in whole steps.
+    """Part zero relative to the pegs of fixtures, and the turn of the part, (N, 3) in whole steps.
 
-    They are the same for fixtures of one pattern in which parts have their zeros at one place and are turned alike.
+    Fixtures of one pattern have the same steps where the parts' zeros are at one place and their turns equal.
     """
     carriers = toolkit.peg_carriers(table.arrangement).astype(np.int64)
     counts = np.array([one.counted for one in toolkit.carriers])[carriers]
@@ -112,13 +113,15 @@ def zero_words(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArra
 
 # Number of a carrier, column and row.
 Hole = tuple[int, int, int]
-# What stands for a column or a row that tells nothing, as of a clamp of which only the line is known.
+# What stands for a column or row that has no meaning, as of a clamp of which only the line is known.
 NOTHING = 1 << 40
 
 
 def shifted(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: int) -> FixtureTable:
-    """A fixture moved by whole columns, for each group of carriers that share theirs (see
-    ``family.patterns.column_groups``), and rows; the part moves with the first carrier."""
+    """A fixture moved by whole columns and rows; the part moves with the first carrier.
+
+    ``columns`` are by group of carriers, see :func:`column_groups`.
+    """
     carriers = toolkit.peg_carriers(one.arrangement)[0]
     groups, pitch = column_groups(toolkit), toolkit.carriers[0].pitch
     counts = np.array([toolkit.carriers[number].counted for number in carriers])
@@ -214,8 +217,7 @@ def holes_of(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
 
 
 def moved_onto(one: FixtureTable, target: FixtureTable, toolkit: Toolkit) -> FixtureTable | None:
-    """A fixture shifted so that its pegs stand in the holes of another one of the same pattern; None where the jaws would
-    then stand nearer than they may."""
+    """A fixture moved into the holes of another of its pattern; None where the jaws cannot stand so."""
     mine, theirs, groups = holes_of(one, toolkit), holes_of(target, toolkit), column_groups(toolkit)
     steps = {
         groups[number]: column - own

@@ -1,9 +1,10 @@
 """The plan at a point of the curve: its set-ups in order, and how every member lies in the one that holds it.
 
-The order is that in which the fewest pegs are moved. A set-up may stand anywhere on the lattice where the toolkit has no
-end. Two set-ups one after the other share the pegs that stand in the same holes, and the rest is moved. The order is that
-of the shortest path through all set-ups (Held & Karp, *A dynamic programming approach to sequencing problems*, 1962), up to
-``MOST_EXACT`` of them; beyond, it goes from each to the nearest that is left.
+The order is that in which the fewest pegs are moved. A set-up may stand anywhere on the lattice where the
+toolkit has no end. Two set-ups one after the other share the pegs that stand in the same holes, and the rest
+is moved. Up to ``MOST_EXACT`` set-ups the order is the shortest path through all of them (Held & Karp,
+*A dynamic programming approach to sequencing problems*, 1962). With more, it goes from each to the nearest
+that is left.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.family.curve import Point, Table
+from workhold.family.curve import LossTable, Point
 from workhold.family.members import Member
 from workhold.family.patterns import NOTHING, holes_of, moved_onto, shifted
 from workhold.fixels.toolkit import Toolkit
@@ -68,7 +69,7 @@ def freedom_of(toolkit: Toolkit) -> Freedom:
 
 
 def moved(holes: Holes, columns: int, rows: int) -> list[tuple[int, int, int]]:
-    """Holes after a move; a place that tells nothing stays."""
+    """Holes after a move; a column or row without a meaning stays."""
     return [
         (one, column if column == NOTHING else column + columns, row if row == NOTHING else row + rows)
         for one, column, row in holes
@@ -84,7 +85,7 @@ def moves(before: Holes, after: Holes, freedom: Freedom) -> Iterator[tuple[int, 
 
 
 def nearest(before: Holes, after: Holes, freedom: Freedom) -> tuple[int, int, int]:
-    """The fewest pegs to place for a set-up after another one, and the move that needs so few, the first of them."""
+    """The fewest pegs to place for a set-up after another one, and the first move that needs so few."""
     there = Counter(before)
     best = min(
         (sum((Counter(moved(after, *move)) - there).values()), abs(move[0]) + abs(move[1]), move)
@@ -94,9 +95,9 @@ def nearest(before: Holes, after: Holes, freedom: Freedom) -> tuple[int, int, in
 
 
 def best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
-    """The order of set-ups, from the holes of each, moved so that the lowest column and row that may be moved are 0.
+    """The best order of set-ups, from the holes of each; of equal orders the first by numbers.
 
-    Of equal orders it is the first in the order of the numbers.
+    All are moved so that the lowest column and row that may be moved are 0.
     """
     cost = np.array([[nearest(one, other, freedom)[0] for other in setups] for one in setups])
     path = shortest_path(cost) if len(setups) <= MOST_EXACT else greedy_path(cost)
@@ -117,7 +118,7 @@ def best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
 
 
 def shortest_path(cost: NDArray[np.int64]) -> list[int]:
-    """The shortest path through all places, from the costs (S, S) of the ways between them; of equal ones the first."""
+    """The first shortest path through all places, from the costs (S, S) of the ways between them."""
     count = len(cost)
     bit, every = 1 << np.arange(count), np.arange(count)
     # length[v, s]: of the shortest way from place s through all that are not among the bits of v.
@@ -153,10 +154,11 @@ class Holding:
     member : the part.
     number : of the fixture in the list of all of the part's fixtures, best first, from 1.
     loss : of the fixture.
-    turned : whether it is listed as it is half a turn of everything before, so that the other jaw stands still.
+    turned : whether it is listed as it is half a turn of everything before, so that the other jaw stands
+        still.
     row : the fixture as it stands in the set-up, a table of one row.
-    in_place : whether its pegs stand in the holes of the set-up; not so of a vise whose largest opening, or smallest gap,
-        asks for other columns.
+    in_place : whether its pegs stand in the holes of the set-up; not so of a vise whose largest opening, or
+        smallest gap, asks for other columns.
     """
 
     member: Member
@@ -173,7 +175,7 @@ class Holding:
 
     @property
     def figure(self) -> float:
-        """The figure that losses are told of."""
+        """The figure of which losses are computed."""
         return float(self.row.quality[0, figure_number(self.member.query.ranking[0]) or 0])
 
 
@@ -185,7 +187,8 @@ class SetUp:
     ----------
     pattern : its number among all patterns of the family, in the order of their identities.
     holdings : at least one, in the order of the family.
-    moved : how many pegs are to be placed that did not stand there in the set-up before; all of them in the first.
+    moved : how many pegs are to be placed that did not stand there in the set-up before; all of them in the
+        first.
     """
 
     pattern: int
@@ -217,7 +220,7 @@ class Plan:
         return sum(setup.moved for setup in self.setups[1:])
 
 
-def plan_of(point: Point, table: Table, members: Sequence[Member]) -> Plan:
+def plan_of(point: Point, table: LossTable, members: Sequence[Member]) -> Plan:
     """The plan at a point of a family's curve."""
     losses = table.losses_of(point.patterns)
     # Where two patterns suit a member alike, the one with the smaller identity has it.
@@ -240,7 +243,7 @@ def holding(member: Member, words: NDArray[np.int64]) -> Holding:
 
 
 def together(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
-    """Holdings of one pattern in the same holes: those of the first whose holes suit most of the others."""
+    """Members of one pattern moved into the same holes, those of the member whose holes suit most others."""
     best: list[Holding] = []
     for target in holdings:
         toolkit = target.member.query.toolkit

@@ -1,9 +1,9 @@
 """Work on foreign data in a process of its own, for libraries that a damaged file brings down.
 
-Whatever happens to the process, its starter goes on: a crash, a time-out and a lack of memory each become one sentence.
-The process is started through pipes rather than by ``multiprocessing``, so that it works from any script, and its answer
-is JSON, which cannot do anything. It ends with its starter, also where that is killed, and where a library is deaf to
-signals.
+Whatever happens to the process, its starter goes on: a crash, a time-out and a lack of memory each become one
+sentence. The process is started through pipes rather than by ``multiprocessing``, so that it works from any
+script, and its answer is JSON, which cannot do anything. It ends with its starter, also where that is killed,
+and where a library is deaf to signals.
 """
 
 from __future__ import annotations
@@ -19,25 +19,28 @@ from importlib import import_module
 from threading import Event, Timer
 from typing import Any
 
-from workhold.errors import InputError
-from workhold.limits import lacks_memory
+from workhold.errors import InputError, lacks_memory
 
 __all__ = ["limit_memory", "limit_processor", "run_apart"]
 
-# Address space that the libraries themselves take is a third of this; a large file needs some fifty times its size.
+# Address space that the libraries themselves take is a third of this; a large file needs some fifty times its
+# size.
 MEMORY_BYTES, MEMORY_FACTOR = 5 << 29, 50
 # Processor seconds for any file, and for every million bytes of it.
 SECONDS, SECONDS_PER_MILLION = 12.0, 2.0
-# Wall time is longer, since the machine may be busy; it counts from when the process is prepared, which may mean to compile
-# the program's own code.
+# Wall time is longer, since the machine may be busy; it counts from when the process is prepared, which may
+# mean to compile the program's own code.
 WALL_FACTOR = 10.0
 # What the process writes then.
 PREPARED = b"\n"
-START = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); from workhold.files.apart import answer; answer()"
+START = (
+    "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+    "from workhold.files.apart import answer; answer()"
+)
 
 
 def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str) -> Any:
-    """The plain data that ``module.plain(content, **options)`` returns, after ``module.prepare()``, in a process of its own.
+    """Runs ``module.plain(content, **options)`` in a process of its own and returns its plain data.
 
     Parameters
     ----------
@@ -80,7 +83,7 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
             first = process.stdout.read(len(PREPARED))
             clock.start()
             # Its pipe stays open until it has answered: the process ends when it closes.
-            told = first + process.stdout.read()
+            answered = first + process.stdout.read()
             process.wait()
         finally:
             process.kill()
@@ -88,10 +91,10 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
             with suppress(BrokenPipeError):
                 process.stdin.close()
     given_up = late.is_set() or process.returncode == -getattr(signal, "SIGXCPU", 0)
-    return outcome(told, process.returncode, given_up, (seconds, memory), what)
+    return outcome(answered, process.returncode, given_up, (seconds, memory), what)
 
 
-def outcome(told: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
+def outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
     """What a process that has ended answered; its limits are seconds and bytes.
 
     Raises
@@ -102,7 +105,7 @@ def outcome(told: bytes, code: int, given_up: bool, limits: tuple[float, int], w
     kind, value = "", ""
     seconds, memory = limits
     with suppress(ValueError):
-        kind, value = json.loads(told)
+        kind, value = json.loads(answered)
     if kind == "done":
         return value
     if kind == "refused":
@@ -113,7 +116,8 @@ def outcome(told: bytes, code: int, given_up: bool, limits: tuple[float, int], w
         raise InputError(f"{what} needs more than {memory / 1e9:.1f} GB of memory to read: save less in it.")
     if given_up:
         raise InputError(
-            f"{what} was given up after {seconds:.0f} s of reading: it is damaged, or holds too much; save less in it."
+            f"{what} was given up after {seconds:.0f} s of reading: it is damaged, or holds too much; save "
+            "less in it."
         )
     if code == -getattr(signal, "SIGKILL", 0):
         # Nobody else ends a process so: the system does, when it has no memory left for all.
@@ -124,7 +128,7 @@ def outcome(told: bytes, code: int, given_up: bool, limits: tuple[float, int], w
 
 
 def answer() -> None:
-    """Do the work that stands on standard input and write its outcome to standard output; the process's main function."""
+    """Does the work on standard input and writes its outcome to standard output; the process's main."""
     # Libraries write what they like to the usual output, which nobody reads from now on.
     out = os.dup(1)
     os.dup2(2, 1)
@@ -133,15 +137,15 @@ def answer() -> None:
     end_with_starter()
     try:
         limit_memory(order["memory"])
-        told = ("done", worked(order, content, out))
+        reply = ("done", worked(order, content, out))
     except InputError as error:
-        told = ("refused", str(error))
+        reply = ("refused", str(error))
     except Exception as error:
         import traceback
 
-        told = ("memory", "") if lacks_memory(error) else ("fault", traceback.format_exc())
+        reply = ("memory", "") if lacks_memory(error) else ("fault", traceback.format_exc())
     with os.fdopen(out, "wb") as stream:
-        stream.write(json.dumps(told).encode())
+        stream.write(json.dumps(reply).encode())
     # A library that a damaged file has upset may break down while it tidies up.
     os._exit(0)
 
@@ -157,7 +161,7 @@ def worked(order: Mapping[str, Any], content: bytes, out: int) -> Any:
 
 
 def end_with_starter() -> None:
-    """Let the system end this process when its starter has closed the pipe to it, whatever either is doing."""
+    """Lets the system end this process when its starter has closed the pipe to it."""
     if sys.platform == "win32":
         return
     import fcntl
@@ -168,7 +172,7 @@ def end_with_starter() -> None:
 
 
 def limit_memory(size: int) -> None:
-    """Let the process take no more address space than this, where the system can see to it."""
+    """Lets the process take no more address space than this, where the system can see to it."""
     try:
         import resource
     except ImportError:
@@ -180,7 +184,7 @@ def limit_memory(size: int) -> None:
 
 
 def limit_processor(seconds: float) -> None:
-    """Let the system end the process when it has taken so many processor seconds from now on."""
+    """Lets the system end the process when it has taken so many processor seconds from now on."""
     try:
         import resource
     except ImportError:

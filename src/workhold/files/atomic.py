@@ -1,7 +1,8 @@
 """Output files that appear whole or not at all.
 
-Content is written under a temporary name in the same folder and renamed at the end, so that an error, a full disk or
-an interruption leaves an earlier file as it was. Devices and pipes have nothing to protect and are written directly.
+Content is written under a temporary name in the same folder and renamed at the end. So an error, a full
+disk or an interruption leaves an earlier file as it was. Devices and pipes have nothing to protect and are
+written directly.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ unfinished: set[Path] = set()
 
 
 def refuse_unwritable(path: str | Path) -> None:
-    """Refuse an output file that could not be written in the end, before any work is done for it.
+    """Refuses an output file that could not be written in the end, before any work is done for it.
 
     Raises
     ------
@@ -51,7 +52,7 @@ def refuse_unwritable(path: str | Path) -> None:
 
 
 def refuse_unwritable_folder(path: str | Path) -> None:
-    """Refuse an output folder that could not be created or written in the end; creates nothing.
+    """Refuses an output folder that could not be created or written in the end; creates nothing.
 
     Raises
     ------
@@ -100,7 +101,7 @@ def binary_file(path: str | Path) -> Iterator[BinaryIO]:
 
 
 def write_bytes(path: str | Path, content: bytes) -> None:
-    """Write a whole file of bytes, or leave an earlier one as it was.
+    """Writes a whole file of bytes, or leave an earlier one as it was.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def write_bytes(path: str | Path, content: bytes) -> None:
 
 @contextmanager
 def replacement(path: Path) -> Iterator[int]:
-    """A file descriptor whose content replaces the path when the block ends without an error; the block closes it."""
+    """A file descriptor whose content replaces the path when the block ends without an error."""
     target = resolved_file(path)
     with plain_errors(path):
         if is_special(target):
@@ -136,7 +137,7 @@ def replacement(path: Path) -> Iterator[int]:
 
 
 def remove_unfinished() -> None:
-    """Remove what is not to stay, when the process ends out of turn; callable from any thread."""
+    """Removes what is not to stay, when the process ends out of turn; callable from any thread."""
     for path in tuple(unfinished):
         with suppress(OSError):
             path.unlink()
@@ -170,7 +171,7 @@ def resolved_file(path: Path) -> Path:
 
 @contextmanager
 def plain_errors(path: Path) -> Iterator[None]:
-    """Turn the operating system's refusals into a sentence that names the file."""
+    """Turns the operating system's refusals into a sentence that names the file."""
     try:
         yield
     except BrokenPipeError:
@@ -180,7 +181,7 @@ def plain_errors(path: Path) -> Iterator[None]:
 
 
 def probe(folder: Path) -> None:
-    """Create a file in a folder and remove it, the only sure way to know whether that is allowed."""
+    """Creates a file in a folder and remove it, the only sure way to know whether that is allowed."""
     temporary = temporary_name(folder / "probe")
     os.close(os.open(temporary, NEW_FILE, 0o666))
     temporary.unlink()

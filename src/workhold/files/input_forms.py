@@ -2,7 +2,7 @@
 
 They are a module of their own because pydantic takes long to import. What a loads file means is read by
 ``files.loads_file``; its form serves its JSON Schema. Forms of toolkits are made from the tables of
-``fixels.fields``, one for each table, and told apart by the toolkit's kind.
+``fixels.fields``, one for each table, and distinguished by the toolkit's kind.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from workhold.fixels.table import Form, ToolkitField
 __all__ = ["TAGS", "LoadsFile", "checked_toolkit", "checked_workpiece", "forms_by_noun", "one_of", "optional"]
 
 BY_NOUN = {table.noun: table for table in TABLES.values()}
-# What tells the forms apart in a place of pydantic's; they are no keys of a file.
+# What distinguishes the forms in a place of pydantic's; they are no keys of a file.
 TAGS = tuple(f"<{noun}>" for noun in BY_NOUN)
 
 
@@ -45,14 +45,15 @@ def forms_by_noun(
     kind: Callable[[tuple[str, ...]], Any] | None = None,
     summary: str = "{}.",
 ) -> Mapping[str, Any]:
-    """Make a form for each table, by the table's noun.
+    """Makes a form for each table, by the table's noun.
 
     Parameters
     ----------
     base : what all of them have in common.
     name : of the forms; "{}" in it stands for the table's noun.
     entry : type and default of a field, as pydantic's ``create_model`` takes them.
-    kind : type and default of the key ``kind`` for the kinds of a table; None where no form has one of its own.
+    kind : type and default of the key ``kind`` for the kinds of a table; None where no form has one of its
+        own.
     summary : of the forms, in which "{}" stands for what the table describes.
     """
     forms: dict[str, Any] = {}
@@ -185,7 +186,7 @@ def toolkit_fault(error: ValidationError, form: type[ToolkitForm], noun: str) ->
 COLUMNS = ("x", "y", "bulge")
 
 
-class WorkpieceForm(BaseModel):
+class WorkpieceFile(BaseModel):
     """The shape of the file; what the loops mean is checked by the workpiece."""
 
     model_config = ConfigDict(strict=True)
@@ -205,7 +206,7 @@ def checked_workpiece(content: dict[str, Any]) -> dict[str, Any]:
         Naming the place of the first thing that is not of this shape.
     """
     try:
-        return WorkpieceForm.model_validate(content).model_dump()
+        return WorkpieceFile.model_validate(content).model_dump()
     except ValidationError as error:
         raise InputError(workpiece_fault(error)) from error
 

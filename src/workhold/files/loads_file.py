@@ -1,15 +1,17 @@
 """Loads from a file, and the words that describe a load there and on the command line.
 
-A file is TOML, or JSON if its name ends in .json, with a table for each load:
+A file is TOML, or JSON if its name ends in .json, with a table for each load. Without units, forces are in N,
+and moments, positive counter-clockwise, in N mm. Other units are kN, lbf, N.m and lbf.in. Directions are in
+degrees in the part's frame, and any if not given::
 
     unit = "mm"                 # of at and path: mm, cm, m or inch; if not given, what the caller says
 
     [[load]]
     name = "side milling"
-    force = 200                 # N, or with a unit: "0.2 kN", "45 lbf"
     path = [[0, 0], [40, 0]]    # or at = [10, 5]
-    direction = [30, 60]        # degrees in the part's frame; or 30, or "any", which is also meant by none
-    moment = 5000               # N mm, or "5 N.m", "40 lbf.in"; positive counter-clockwise
+    force = 200                 # or "0.2 kN"
+    direction = [30, 60]        # or 30, or "any"
+    moment = 5000               # or "5 N.m"
 """
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([a-zA-
 
 
 def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
-    """Read a loads file.
+    """Reads a loads file.
 
     Parameters
     ----------
@@ -100,7 +102,8 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
 
     Parameters
     ----------
-    words : values of name, force, at, path, direction and moment, as text (as in ``--load``), numbers or lists.
+    words : values of name, force, at, path, direction and moment, as text (as in ``--load``), numbers or
+        lists.
     place : where they come from, for messages.
     unit_scale : millimetres in one unit of ``at`` and ``path``.
 
@@ -227,7 +230,8 @@ def directions(value: Any, place: str) -> tuple[float, float]:
     low, high = angles[0] if angles else None, angles[-1] if angles else None
     if len(angles) > 2 or low is None or high is None:
         raise InputError(
-            f"{place} {shown(value)} cannot be used: give an angle in degrees such as 30, a range such as 30..60, or any."
+            f"{place} {shown(value)} cannot be used: give an angle in degrees such as 30, a range such as "
+            "30..60, or any."
         )
     return low, high
 

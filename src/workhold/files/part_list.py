@@ -36,8 +36,8 @@ class ListedPart:
 
     Parameters
     ----------
-    name : what it is called among the others: a built-in name, the file as it was typed, or its place in the folder that
-        was; no two of a list have the same.
+    name : what it is called among the others: a built-in name, the file as it was typed, or its place in the
+        folder that was. Names in a list differ.
     path : its file.
     """
 
@@ -64,9 +64,9 @@ class ReadPart:
 def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ()) -> tuple[ListedPart, ...]:
     """The parts that files, folders and built-in names stand for, each file once, in the order given.
 
-    Of a folder these are all drawings in it and in the folders in it, whether or not they can be read, numbers in their
-    names counted as numbers: ``plate2.dxf`` comes before ``plate10.dxf``. Hidden files and folders, links to folders, and
-    what workhold wrote are passed over.
+    Of a folder these are all drawings in it and below it, whether or not they can be read. Numbers in names
+    sort as numbers: ``plate2.dxf`` comes before ``plate10.dxf``. Hidden files and
+    folders, links to folders, and what workhold wrote are passed over.
 
     Parameters
     ----------
@@ -91,7 +91,8 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
             drawings = list(drawings_in(path, apart))
             if not drawings:
                 raise InputError(
-                    f"{path} has no drawing in it: give a folder with {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]} files."
+                    f"{path} has no drawing in it: give a folder with {', '.join(ENDINGS[:-1])} or "
+                    f"{ENDINGS[-1]} files."
                 )
             entries = [(drawing.relative_to(path).as_posix(), drawing, drawing) for drawing in drawings]
         else:
@@ -148,7 +149,7 @@ def natural(name: str) -> tuple[list[tuple[bool, int, str]], str]:
 
 
 def is_own(path: Path) -> bool:
-    """Whether a file is JSON of workhold's own making, and no part; one that cannot be opened is for its reader to tell."""
+    """Whether a file is JSON that workhold wrote and no part; False where it cannot be opened."""
     if path.suffix.lower() != ".json":
         return False
     try:
@@ -159,7 +160,7 @@ def is_own(path: Path) -> bool:
 
 
 def read_listed(part: ListedPart, **options: Any) -> ReadPart:
-    """Read a part of a list; whatever is wrong with its file is a sentence, so that the others go on.
+    """Reads a part of a list; whatever is wrong with its file is a sentence, so that the others go on.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
-"""Questions that the readers of a part leave to the user, named in their sentences without a word of who asks.
+"""Questions that the readers of a part leave to the user, in words that any surface can fill in.
 
-A sentence names a question by its mark, such as ``<axis>``. Where a part comes in (``files.part.load.read_workpiece``) the
-mark becomes what the question is called there: an option of the command line, a field of the page, an argument in Python.
+A sentence names a question by its mark, such as ``<axis>``. Where a part comes in
+(``files.part.load.read_workpiece``) the mark becomes what the question is called there: an option of the
+command line, a field of the page, an argument in Python.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class UnitAskedError(InputError):
 
 
 def worded(sentence: str, called: Mapping[str, str] | None) -> str:
-    """A sentence with what questions are called in place of their marks; None and what is not given is for Python.
+    """A sentence with the names of questions in place of their marks; Python's where none are given.
 
     Examples
     --------
@@ -66,7 +67,7 @@ def worded(sentence: str, called: Mapping[str, str] | None) -> str:
 
 
 def refuse_layers(layers: Sequence[str] | None) -> None:
-    """Refuse a choice of layers for a file that has none.
+    """Refuses a choice of layers for a file that has none.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def refuse_layers(layers: Sequence[str] | None) -> None:
 
 
 def refuse_fit(fit: float | None) -> None:
-    """Refuse a fit for a file that holds lines and arcs only.
+    """Refuses a fit for a file that holds lines and arcs only.
 
     Raises
     ------
@@ -90,7 +91,7 @@ def refuse_fit(fit: float | None) -> None:
 
 
 def refuse_axis(axis: str | None, section: float | None) -> None:
-    """Refuse a view of a solid for a file that holds a flat drawing.
+    """Refuses a view of a solid for a file that holds a flat drawing.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""Text files of a user's, JSON and TOML: read whole within a limit of size, and without a guess at what is meant.
+"""Text files of a user's, JSON and TOML, read whole within a limit of size.
 
-Two things that Python's readers let pass are refused: a key that is given twice, of which the last would count, and a
-whole number of so many digits that it is beyond any length.
+Two things that Python's readers let pass are refused. One is a key that is given twice, of which the last
+would count. The other is a whole number too large for a float.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ def read_text(path: Path, largest: int, what: str) -> str:
         size = path.stat().st_size
         if size > largest:
             raise InputError(
-                f"the file has {size / 1e6:.0f} MB, more than the {largest / 1e6:g} MB of a file that describes {what}."
+                f"the file has {size / 1e6:.0f} MB, more than the {largest / 1e6:g} MB of a file that "
+                f"describes {what}."
             )
         return path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -93,12 +94,12 @@ def toml_table(text: str) -> dict[str, Any]:
 
 
 def refuse_constant(name: str) -> NoReturn:
-    """Refuse the NaN and the infinities that JSON does not have."""
+    """Refuses the NaN and the infinities that JSON does not have."""
     raise InputError(f"{name} is not a number: correct it.")
 
 
 def whole_number(digits: str) -> int:
-    """A whole number that is not beyond all floats.
+    """A whole number that a float can hold.
 
     Raises
     ------
@@ -127,7 +128,7 @@ def each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def refuse_long_numbers(value: Any) -> None:
-    """Refuse a whole number beyond all floats, wherever in tables and lists it stands.
+    """Refuses a whole number too large for a float, wherever in tables and lists it stands.
 
     Raises
     ------

@@ -111,8 +111,8 @@ def dowel_size(standard: str, diameter: float) -> DowelSize:
                     return size
             sizes = ", ".join(series.unit.figure(size.nominal) for size in series.sizes)
             raise InputError(
-                f"{series.name} has no dowel of {series.unit.figure(diameter)} {series.unit.abbreviation}: its sizes "
-                f"are {sizes} {series.unit.abbreviation}."
+                f"{series.name} has no dowel of {series.unit.figure(diameter)} {series.unit.abbreviation}: "
+                f"its sizes are {sizes} {series.unit.abbreviation}."
             )
     names = ", ".join(series.name for series in dowel_series())
     raise InputError(f'dowel "{standard[:40]}" is not known: the standards are {names}.')
@@ -236,8 +236,8 @@ def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | N
     if pin is None and hole is None:
         if "hole_position" in entries:
             raise InputError(
-                "hole_position is given without the pin: add dowel, or pin_diameter and hole_diameter, or give "
-                "peg_tolerance alone."
+                "hole_position is given without the pin: add dowel, or pin_diameter and hole_diameter, or "
+                "give peg_tolerance alone."
             )
         return None
     if pin is None:
@@ -307,7 +307,7 @@ def preset(name: str) -> LoadedToolkit:
 
 
 def load_toolkit(name: str | Path) -> LoadedToolkit:
-    """Load a toolkit by the name of a preset or from a TOML file; a file wins.
+    """Loads a toolkit by the name of a preset or from a TOML file; a file wins.
 
     Parameters
     ----------

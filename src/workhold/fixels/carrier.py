@@ -1,44 +1,25 @@
-"""What the contacts of a fixture stand on: a lattice of holes, a clamp on a line of holes, or a straight wall.
+"""What the contacts of a fixture stand on: a lattice of holes, a clamp, or a straight wall.
 
-A carrier is data, and it answers in words and places what drawings, files and sheets need of it. Holes have names: letter
-of the carrier, column letters, row from 1, such as ``L-B3``; a name without a row is a whole column.
-
-Pegs in the holes are round, or have a flat, which lies on straight faces (Wallack and Canny 1996, section 2.3). Such a peg
-is turned in its hole so that its flat lies on the face: there its centre stands nearer to the part than its radius. On arcs
-it touches with its round side. Where its body may be turned any way, it must be clear of all else.
+A carrier is data; drawings, files and sheets take names and places from it. Holes have
+names: letter of the carrier, column letters, row from 1, such as ``L-B3``; a name without a row is a whole
+column.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from functools import cache
-from math import acos, cos, isfinite, nan, pi, radians, sin, sqrt
+from math import cos, sin
 from typing import Any, Literal
 
-from attrs import evolve, field, frozen
+from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, TOWARDS, WALL_END, ContactKind
-from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.limits import real
+from workhold.fixels.pegs import Flat
 
-__all__ = [
-    "WALL",
-    "Carrier",
-    "Flat",
-    "Holes",
-    "Measure",
-    "Travel",
-    "column_letters",
-    "flat_of",
-    "hole_name",
-    "holes_named",
-    "letter_of",
-    "peg_outline",
-    "resolved_flat",
-    "standoff",
-]
+__all__ = ["WALL", "Carrier", "Holes", "Measure", "Travel", "column_letters", "hole_name", "holes_named"]
 
 # The carrier that is the only one with holes.
 ALONE = "plate"
@@ -118,7 +99,8 @@ def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
     carrier = None if match is None else next((one for one in carriers if letter_of(one) == match[1]), None)
     if match is None or carrier is None:
         raise InputError(
-            f"{name!r} names no hole: give {noun}, column letter and row, such as L-B3, or L-B for a whole column."
+            f"{name!r} names no hole: give {noun}, column letter and row, such as L-B3, or L-B for a whole "
+            "column."
         )
     column = 0
     for letter in match[2]:
@@ -126,100 +108,11 @@ def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
     return Holes(carrier, column - 1, None if match[3] is None else int(match[3]) - 1)
 
 
-# Parts of the peg radius; a width that was rounded when it was written down is one still.
-ROUNDED = 1e-6
-
-
-@frozen
-class Flat:
-    """The flat of a peg.
-
-    Parameters
-    ----------
-    distance : from the peg's centre to its flat, in mm; no more than the peg radius.
-    half_width : of the flat in mm; NaN means all that there is at this distance.
-    """
-
-    distance: float = field(converter=real)
-    half_width: float = field(default=nan, converter=real)
-
-
-def flat_of(value: Any) -> Flat | None:
-    """A flat from what stands for it: its distance, that and half its width, or a mapping of both.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-
-    Examples
-    --------
-    >>> flat_of({"distance": 2.0, "half_width": 1.5}) == flat_of((2.0, 1.5))
-    True
-    """
-    if value is None or isinstance(value, Flat):
-        return value
-    if isinstance(value, Mapping) and "distance" in value and set(value) <= {"distance", "half_width"}:
-        return Flat(**value)
-    numbers = (
-        tuple(value) if isinstance(value, Iterable) and not isinstance(value, (str, Mapping)) else (value,)
-    )
-    if not 1 <= len(numbers) <= 2 or any(isinstance(number, (str, Mapping)) for number in numbers):
-        raise InputError(
-            f"flat {value!r} is none: give its distance from the peg's centre, and half its width, in mm."
-        )
-    return Flat(*numbers)
-
-
-def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
-    """A flat on a peg of a radius in mm, as wide as it is.
-
-    Raises
-    ------
-    InputError
-        For a flat that such a peg cannot have.
-    """
-    if flat is None:
-        return None
-    if not (isfinite(flat.distance) and 0 <= flat.distance <= peg_radius):
-        raise InputError(
-            f"a flat {flat.distance:g} mm from the centre is none of a peg of radius {peg_radius:g}: give 0 or more, and no "
-            "more than the radius."
-        )
-    widest = sqrt(peg_radius**2 - flat.distance**2)
-    half_width = widest if flat.half_width != flat.half_width else flat.half_width
-    if not 0 <= half_width <= widest + ROUNDED * peg_radius:
-        raise InputError(
-            f"half a width of {half_width:g} mm is none of a flat {flat.distance:g} mm from the centre of a peg of radius "
-            f"{peg_radius:g}: give up to {widest:.4g}."
-        )
-    return evolve(flat, half_width=half_width)
-
-
-def standoff(peg_radius: float, flat: Flat | None, face: Segment) -> float:
-    """Distance in mm from a face to the centre of a peg that touches it."""
-    return flat.distance if flat is not None and isinstance(face, Line) else peg_radius
-
-
-def peg_outline(
-    center: Point, radius: float, flat: Flat | None = None, flat_deg: float | None = None
-) -> list[Segment]:
-    """The outline of a peg in mm, counter-clockwise: a circle, or one cut off by a flat that looks some way, in degrees."""
-    if flat is None or flat_deg is None or flat.distance >= radius:
-        return [Arc(center, radius, 0.0, pi, 1.0)]
-    looks, half = radians(flat_deg), acos(flat.distance / radius)
-    arc = Arc(center, radius, looks + pi, pi - half, 1.0)
-    end, start = (
-        (center[0] + radius * cos(looks + turn), center[1] + radius * sin(looks + turn))
-        for turn in (-half, half)
-    )
-    return [arc, Line(end, start)]
-
-
 # The name of the carrier that is a wall.
 WALL = "wall"
 
-# What is set on a carrier that moves: the opening of jaws, a clamp's stroke from its hole, or the place of its tip.
+# What is set on a carrier that moves: the opening of jaws, a clamp's stroke from its hole, or the place of
+# its tip.
 Measure = Literal["opening", "stroke", "tip"]
 
 
@@ -259,7 +152,8 @@ class Carrier:
     travel : how it slides; None when it stands still.
     noun : what it is called, such as "jaw".
     peg : what each of its pegs is called, such as "locator".
-    on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has its own holes.
+    on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has
+        its own holes.
     is_wall : whether it is a straight wall along x that the part lies flush against, which has no holes.
     flat : of its pegs, which lies on straight faces; None where they are round.
     """
@@ -308,12 +202,12 @@ class Carrier:
 
     @property
     def stands_on(self) -> str:
-        """The name of the carrier in whose holes what stands on it is, its own or the one that it is bolted to."""
+        """The name of the carrier whose holes are used: this one, or the one that this is bolted to."""
         return self.on or self.name
 
     @property
     def has_lattice(self) -> bool:
-        """Whether it is a plate with holes of its own, rather than a wall or a clamp that is bolted to a plate."""
+        """Whether it is a plate with holes of its own, rather than a wall or a clamp bolted to a plate."""
         return self.contact in (ROUND_PIN, FLAT_PIN)
 
     @property
@@ -328,12 +222,12 @@ class Carrier:
 
     @property
     def direction(self) -> str:
-        """In which a clamp pushes, as files name it, such as "-x"."""
+        """The direction in which a clamp pushes, as files name it, such as "-x"."""
         return self.name.rpartition(" ")[2]
 
     @property
     def towards(self) -> str:
-        """Which way a clamp pushes, in words, on a plan whose y runs up; nothing of what is named for no direction."""
+        """The way a clamp pushes in words, on a plan whose y runs up; empty for other carriers."""
         return TOWARDS.get(self.direction, "")
 
     @property
@@ -350,7 +244,7 @@ class Carrier:
 
     @property
     def has_a_hole(self) -> bool:
-        """Whether what stands on it is in a hole: not so of a clamp of which only the line is told."""
+        """Whether what stands on it is in a hole; a clamp of which only the line is known is in none."""
         return self.on is None or self.travel is None or self.travel.most is not None
 
     @property
@@ -362,14 +256,17 @@ class Carrier:
 
     @property
     def written_as(self) -> tuple[str, str]:
-        """How files name what stands on it: by its carrier where there are several lattices, else by its role, which on
-        the only lattice is that of the jaw if it slides."""
+        """The key and the value by which files name what stands on it.
+
+        That is its carrier where there are several lattices, else its role. On the only lattice the role is
+        that of the jaw if it slides.
+        """
         if self.has_lattice and self.letter and self.name != self.noun:
             return self.noun, self.name
         return "role", self.noun if self.has_lattice and self.travel is not None else self.contact.role
 
     def place_name(self, column: int, row: int) -> str:
-        """The name of a hole for its peg, such as "L-B3"; of a clamp with its hole or, where only that is known, its line.
+        """The name of a hole for its peg, such as "L-B3"; a clamp's noun with its hole or its line.
 
         >>> from workhold import Plate
         >>> clamp = Plate(pitch=20, peg_radius=3).carriers[1]

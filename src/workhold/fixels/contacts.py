@@ -1,10 +1,11 @@
-"""The contacts that hold a part: their kinds, how they are shared out among carriers, and which motions leave that as it is.
+"""The contacts that hold a part: their kinds, how carriers share them, and the symmetries of that.
 
-The kinds are round pins, pins with a flat, a straight wall, and the tips of clamps. Clamps push in directions that have
-names in files.
+The kinds are round pins, pins with a flat, a straight wall, and the tips of clamps. Clamps push in directions
+that have names in files.
 
 Reference: R. C. Brost and K. Y. Goldberg, *A complete algorithm for designing planar fixtures using modular
-components*, IEEE Transactions on Robotics and Automation 12 (1996), who call such elements of a fixture fixels.
+components*, IEEE Transactions on Robotics and Automation 12 (1996), who call such elements of a fixture
+fixels.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ class ContactKind:
     ----------
     name : in a few words.
     role : what it does for the part: it locates it, or it clamps it.
-    is_placed : whether it is a thing by itself that somebody puts in a place; the end of a contact with a wall is not.
+    is_placed : whether it is a thing by itself that somebody puts in a place; the end of a contact with a
+        wall is not.
     is_turned : whether it matters which way it is turned in its hole.
     """
 
@@ -51,8 +53,8 @@ WALL_END = ContactKind("wall", "locator", is_placed=False)
 CLAMP_TIP = ContactKind("clamp tip", "clamp")
 
 
-# In the order in which fixtures are listed. Each has the angle of the line along which the clamp's travel is counted, which
-# is the other way.
+# In the order in which fixtures are listed. Each has the angle of the line along which the clamp's travel is
+# counted, which is the other way.
 DIRECTIONS = {"-x": 0.0, "+x": pi, "-y": pi / 2, "+y": -pi / 2}
 # In words, on a plan whose y runs up.
 TOWARDS = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "upward"}
@@ -75,12 +77,12 @@ class Arrangement:
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """In which its clamps push, one for each; none where no clamp pushes."""
+        """The direction in which each of its clamps pushes; none where no clamp pushes."""
         return tuple((self.direction or "").split())
 
     @property
     def title(self) -> str:
-        """Its name, and the direction where it has one."""
+        """The name, and the directions where there are some."""
         return " ".join((self.name, *self.directions))
 
     @property
@@ -102,7 +104,7 @@ class Arrangement:
 
     @property
     def towards(self) -> str:
-        """Its direction, or those of two clamps, in words, on a plan whose y runs up."""
+        """The direction in words, or those of two clamps, on a plan whose y runs up."""
         return " and ".join(dict.fromkeys(TOWARDS[name] for name in self.directions))
 
     @property

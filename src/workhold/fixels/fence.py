@@ -1,7 +1,8 @@
-"""A fence: a straight wall that the part lies flush against, one locator as a stop, and a clamp (Overmars et al. 1995).
+"""A fence: a straight wall that the part lies flush against, one locator as a stop, and a clamp (Overmars et
+al. 1995).
 
-Reference: M. Overmars, A. Rao, O. Schwarzkopf, C. Wentink, *Immobilizing polygons against a wall*, ACM Symposium on
-Computational Geometry (1995).
+Reference: M. Overmars, A. Rao, O. Schwarzkopf, C. Wentink, *Immobilizing polygons against a wall*, ACM
+Symposium on Computational Geometry (1995).
 """
 
 from __future__ import annotations
@@ -28,14 +29,14 @@ from workhold.fixels.fields import (
 from workhold.fixels.making import finer, made_from_table
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
-from workhold.fixels.table import Label, Table
+from workhold.fixels.table import FieldTable, PageLabel
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Wording
 from workhold.units import Unit
 
 __all__ = ["Fence"]
 
 
-FIELDS = Table(
+FIELDS = FieldTable(
     "fence",
     "A fence with a locator and a clamp",
     (
@@ -45,8 +46,8 @@ FIELDS = Table(
         TRAVEL,
         CLAMPS,
         DIRECTION.shown(
-            Label("The clamp pushes", "any way", several=True, choices=WAYS, when=ONE_CLAMP),
-            Label("The clamps push", "down and aside", several=True, choices=ALL_PAIRS, when=TWO_CLAMPS),
+            PageLabel("The clamp pushes", "any way", several=True, choices=WAYS, when=ONE_CLAMP),
+            PageLabel("The clamps push", "down and aside", several=True, choices=ALL_PAIRS, when=TWO_CLAMPS),
         ),
         FLAT,
     ),
@@ -57,13 +58,16 @@ FIELDS = Table(
 class Fence(Plate):
     """A plate with a straight fence along x at y = 0: the part lies flush against it, above it.
 
-    One locator stands in a hole and one clamp on a row or a column of holes, as on a :class:`workhold.Plate`. The fence
-    touches the part at both ends of a hull edge, a straight piece of the boundary of the part's convex hull.
+    One locator stands in a hole and one clamp on a row or a column of holes, as on a :class:`workhold.Plate`.
+    The fence touches the part at both ends of a hull edge, a straight piece of the boundary of the part's
+    convex hull.
 
     Parameters
     ----------
-    pitch, peg_radius, columns, rows, clamp_radius, travel : see :class:`workhold.Plate`; rows count from the fence.
-    directions : in which the clamp may move when it clamps; None means all four, which are all different here.
+    pitch, peg_radius, columns, rows, clamp_radius, travel : see :class:`workhold.Plate`; rows count from the
+        fence.
+    directions : in which the clamp may move when it clamps; None means all four, which are all different
+        here.
     wall_offset : distance in mm from the fence to the first row of holes, the peg radius or more.
 
     Raises
@@ -79,33 +83,39 @@ class Fence(Plate):
     """
 
     kind: ClassVar[str] = "edge"
-    table: ClassVar[Table] = FIELDS
+    table: ClassVar[FieldTable] = FIELDS
     noun: ClassVar[str] = "fence"
     wording: ClassVar[Wording] = Wording(
         two="fence and locator",
         four="fence, locator and clamp",
         inside="on this fence",
-        within="their places as asked: with the columns and rows given, and clear of the clamp with its stroke",
+        within=(
+            "their places as asked: with the columns and rows given, and clear of the clamp with its stroke"
+        ),
         rules="presses the part against the fence and the locator",
         backwards="the clamp pulls, not when it pushes",
         holes="holes that the plate does not have",
         sets="pairs of locator and clamp",
         reasons=(
-            "The part cannot lie flush against a fence: no straight piece of its convex hull is there to lie on it, or none "
-            "at an angle and on faces that are allowed.",
-            "No locator in a row of holes can touch a side of the part while it lies flush against the fence.",
-            "Every face that locator and clamp could touch is parallel or square to the side that lies against the fence: "
-            "they would have to cover three directions beside the fence's, which takes a second clamp.",
-            "Locator and clamp can touch the part on the fence at the same time, but no such pair presses it against fence "
-            "and locator.",
+            "The part cannot lie flush against a fence: no straight piece of its convex hull is there to lie "
+            "on it, or none at an angle and on faces that are allowed.",
+            (
+                "No locator in a row of holes can touch a side of the part while it lies flush against the "
+                "fence."
+            ),
+            "Every face that locator and clamp could touch is parallel or square to the side that lies "
+            "against the fence: they would have to cover three directions beside the fence's, which takes a "
+            "second clamp.",
+            "Locator and clamp can touch the part on the fence at the same time, but no such pair presses it "
+            "against fence and locator.",
         ),
     )
     setup_words: ClassVar[SetupWords] = SetupWords(
         standing="Fence and locator",
         located_by="Fence and locator",
         put=(
-            "Fix the fence along the rows, its edge {edge} from the centres of row 1, and put the {peg} in {holes} of the "
-            "{plate}."
+            "Fix the fence along the rows, its edge {edge} from the centres of row 1, and put the {peg} in "
+            "{holes} of the {plate}."
         ),
         against="flush on the fence and against the {peg}",
         touching="flush",
@@ -144,7 +154,7 @@ class Fence(Plate):
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """A locator, the two ends of the fence's contact and a clamp, once for each direction; or two clamps."""
+        """A locator, the two ends of the fence's contact and a clamp, or two, once for each direction."""
         names = self.distinct_directions
         if self.clamps == 1:
             return tuple(
@@ -157,7 +167,7 @@ class Fence(Plate):
 
     @property
     def law(self) -> str:
-        """That of a fence, with however many clamps."""
+        """The law of a fence, for any number of clamps."""
         return "fence"
 
     @property

@@ -1,6 +1,8 @@
-"""The fields of every kind of toolkit, one row each, from which files, requests, options and the page are made.
+"""The fields of every kind of toolkit, one row each, from which files, requests, options and the page are
+made.
 
-A field that is new, or means something else for a new kind, is a row here and an argument of the kind's constructor.
+A field that is new, or means something else for a new kind, is a row here and an argument of the kind's
+constructor.
 """
 
 from __future__ import annotations
@@ -9,7 +11,7 @@ from collections.abc import Mapping
 from itertools import combinations_with_replacement
 
 from workhold.fixels.contacts import DIRECTIONS, TOWARDS
-from workhold.fixels.table import CLAMPS_SECTION, REQUIRED, Choice, Label, Lifted, ToolkitField
+from workhold.fixels.table import CLAMPS_SECTION, REQUIRED, Choice, Lifted, PageLabel, ToolkitField
 
 # The names of kinds that people give, and what they are.
 NAMES: Mapping[str, str] = {
@@ -38,7 +40,8 @@ def pair_words(one: str, other: str) -> str:
 
 ONE_CLAMP, TWO_CLAMPS = {"clamps": 1}, {"clamps": 2}
 WAYS = tuple(Choice(way, TOWARDS[way]) for way in DIRECTIONS)
-# Half a turn of a plate makes the other pairs of these; a fence turns with the plate, so that there all pairs differ.
+# Half a turn of a plate makes the other pairs of these; a fence turns with the plate, so that there all pairs
+# differ.
 DISTINCT = (("-x", "-y"), ("-x", "+y"), ("-x", "-x"), ("-y", "-y"), ("-x", "+x"), ("-y", "+y"))
 PAIRS = tuple(Choice([one, other], pair_words(one, other)) for one, other in DISTINCT)
 ALL_PAIRS = tuple(Choice([*two], pair_words(*two)) for two in combinations_with_replacement(DIRECTIONS, 2))
@@ -48,7 +51,7 @@ PITCH = ToolkitField(
     "pitch",
     "X[,Y]",
     "Distance between neighbouring holes, one for both directions or X,Y.",
-    (Label("Pitch", is_usual=True),),
+    (PageLabel("Pitch", is_usual=True),),
     default=REQUIRED,
     entry="write the distance between holes as one number, or [x, y]",
     missing="distance between holes",
@@ -58,7 +61,7 @@ COLUMNS = ToolkitField(
     "count",
     "N",
     "Columns of holes on each jaw, or on the plate: as many as needed if not given.",
-    (Label("Columns a jaw", is_usual=True),),
+    (PageLabel("Columns a jaw", is_usual=True),),
     default=REQUIRED,
     entry="write how many columns of holes each jaw has, such as columns = 2",
     missing="columns",
@@ -69,7 +72,7 @@ PEG_RADIUS = ToolkitField(
     "length",
     "LENGTH",
     "Radius of the pegs where they touch the part.",
-    (Label("Peg radius", is_usual=True),),
+    (PageLabel("Peg radius", is_usual=True),),
     default=REQUIRED,
     entry="write the radius of the pegs as a number",
     missing="pegs' radius",
@@ -80,7 +83,7 @@ BODY_RADIUS = ToolkitField(
     "length",
     "LENGTH",
     "Radius of the pegs' thickest part, such as a shoulder below the part; the peg radius if not given.",
-    (Label("Shoulder radius", "peg radius"),),
+    (PageLabel("Shoulder radius", "peg radius"),),
     figure="radius of the pegs' bodies",
     follows="peg_radius",
     at_least="peg_radius",
@@ -93,8 +96,11 @@ FLAT = ToolkitField(
     "flat",
     "flat",
     "DISTANCE[,WIDTH/2]",
-    "Pegs with a flat so far from their centre, turned so that it lies on straight faces, and half its width.",
-    (Label("Centre to flat", "round, no flat"),),
+    (
+        "Pegs with a flat so far from their centre, turned so that it lies on straight faces, and half its "
+        "width."
+    ),
+    (PageLabel("Centre to flat", "round, no flat"),),
     entry="write its distance from a peg's centre, or that and half its width, such as [2.5, 1.5]",
     least="0",
 )
@@ -103,7 +109,7 @@ ROWS = ToolkitField(
     "count",
     "N",
     "Rows of holes; as many as needed if not given.",
-    (Label("Rows a jaw", "as needed"),),
+    (PageLabel("Rows a jaw", "as needed"),),
     lifted=Lifted("rows of holes", "holes", "with as many rows as needed"),
     most=100_000,
 )
@@ -112,7 +118,7 @@ BLOCKED = ToolkitField(
     "holes",
     "HOLES",
     "Holes that no peg can stand in: L-B3,R-A1; L-B is a whole column. May be repeated.",
-    (Label("Blocked holes", "L-B3, R-A"),),
+    (PageLabel("Blocked holes", "L-B3, R-A"),),
     default=(),
     figure="blocked",
     entry='write a list of holes and columns by name, such as ["L-B3", "R-A"]',
@@ -126,7 +132,7 @@ MIN_GAP = ToolkitField(
     "length",
     "LENGTH",
     "Smallest distance along x from a left peg's centre to a right peg's; the x pitch if not given.",
-    (Label("Smallest gap", "pitch x"),),
+    (PageLabel("Smallest gap", "pitch x"),),
     figure="smallest gap between left and right pegs",
     follows="pitch",
     is_always_shown=True,
@@ -138,7 +144,7 @@ MAX_OPENING = ToolkitField(
     "length",
     "LENGTH",
     "Largest distance from the left jaw's last column to the right jaw's first; no limit if not given.",
-    (Label("Largest opening", "no limit"),),
+    (PageLabel("Largest opening", "no limit"),),
     figure="largest opening",
     unset="no limit",
     at_least="min_gap",
@@ -151,7 +157,7 @@ ROW_OFFSET = ToolkitField(
     "length",
     "LENGTH",
     "Height of the right jaw's rows above the left jaw's.",
-    (Label("Row offset", "0"),),
+    (PageLabel("Row offset", "0"),),
     figure="right rows above left rows",
     default=0.0,
     least="any",
@@ -162,7 +168,7 @@ CLAMPS = ToolkitField(
     "count",
     "1|2",
     "2: two clamps that are needed together, as for a plain rectangle square to the plate; 1 if not given.",
-    (Label("Clamps", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))),),
+    (PageLabel("Clamps", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))),),
     default=1,
     figure="clamps, needed together",
     entry="write 1 or 2",
@@ -176,7 +182,7 @@ CLAMP_RADIUS = ToolkitField(
     "length",
     "LENGTH",
     "Radius of the clamp's round tip; the peg radius if not given.",
-    (Label("Clamp tip radius", "as a locator"),),
+    (PageLabel("Clamp tip radius", "as a locator"),),
     figure="radius of the clamp's tip",
     follows="peg_radius",
     is_always_shown=True,
@@ -188,9 +194,9 @@ TRAVEL = ToolkitField(
     "travel",
     "span",
     "LEAST,MOST",
-    "Least and most from the hole that the clamp is bolted in to its tip; any, with nothing asked of its body, if not "
-    "given.",
-    (Label("Stroke", "any"),),
+    "Least and most from the hole that the clamp is bolted in to its tip; any, with nothing asked of its "
+    "body, if not given.",
+    (PageLabel("Stroke", "any"),),
     figure="from the clamp's hole to its tip",
     unset="any",
     lifted=Lifted("stroke of the clamp", "travel", "with a clamp of any stroke"),
@@ -204,11 +210,11 @@ DIRECTION = ToolkitField(
     "directions",
     "LIST",
     "In which the clamp may push: among -x, +x, -y, +y, such as {option}=-x,-y; all that a turn of the "
-    "plate does not make of another one, if not given. Of two clamps pairs, such as {option}=-x:-y,-x:+y, or single "
-    "ones for all pairs of them.",
+    "plate does not make of another one, if not given. Of two clamps pairs, such as {option}=-x:-y,-x:+y, or "
+    "single ones for all pairs of them.",
     (
-        Label("The clamp pushes", "all that differ", several=True, choices=WAYS, when=ONE_CLAMP),
-        Label("The clamps push", "across each other", several=True, choices=PAIRS, when=TWO_CLAMPS),
+        PageLabel("The clamp pushes", "all that differ", several=True, choices=WAYS, when=ONE_CLAMP),
+        PageLabel("The clamps push", "across each other", several=True, choices=PAIRS, when=TWO_CLAMPS),
     ),
     figure="the part is pushed along",
     entry='write a list of "-x", "+x", "-y" and "+y", or of two clamps a list of pairs such as ["-x", "-y"]',
@@ -221,14 +227,14 @@ WALL_OFFSET = ToolkitField(
     "length",
     "LENGTH",
     "Of a fence: distance from its wall to the first row of holes' centres; must be given.",
-    (Label("Fence to row 1", is_usual=True),),
+    (PageLabel("Fence to row 1", is_usual=True),),
     figure="from the fence to the first row of holes",
     default=REQUIRED,
     entry="write the distance from the fence to the first row of holes",
     missing="distance from the first row of holes",
     at_least="peg_radius",
-    below="wall offset {value:g} is less than the peg radius {least:g}: a locator in the first row would stand in the "
-    "fence; give the distance from the fence to the first row of holes, in mm.",
+    below="wall offset {value:g} is less than the peg radius {least:g}: a locator in the first row would "
+    "stand in the fence; give the distance from the fence to the first row of holes, in mm.",
     belongs_to="wall",
     section=CLAMPS_SECTION,
 )
@@ -254,10 +260,10 @@ OPTIONS = (
 ON_A_PLATE = (
     PITCH,
     COLUMNS.shown(
-        Label("Columns", "as needed", is_usual=True),
+        PageLabel("Columns", "as needed", is_usual=True),
         default=None,
         lifted=Lifted("columns of holes", "holes", "with as many columns as needed"),
     ),
-    ROWS.shown(Label("Rows", "as needed", is_usual=True)),
-    PEG_RADIUS.shown(Label("Locator radius", is_usual=True)),
+    ROWS.shown(PageLabel("Rows", "as needed", is_usual=True)),
+    PEG_RADIUS.shown(PageLabel("Locator radius", is_usual=True)),
 )

@@ -1,4 +1,6 @@
-"""A machine vise with one flat jaw: the part lies flush against it, two pegs on the jaw that moves press it there."""
+"""A machine vise with one flat jaw: the part lies flush against it, two pegs on the jaw that moves press it
+there.
+"""
 
 from __future__ import annotations
 
@@ -7,30 +9,31 @@ from functools import cached_property
 from math import pi
 from typing import ClassVar
 
-from workhold.fixels.carrier import WALL, Flat
+from workhold.fixels.carrier import WALL
 from workhold.fixels.fields import FLAT, MAX_OPENING, MIN_GAP, ON_A_PLATE, PEG_RADIUS
 from workhold.fixels.making import finer, made_from_table, settle
+from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
-from workhold.fixels.table import Label, Table
+from workhold.fixels.table import FieldTable, PageLabel
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.units import Unit
 
 __all__ = ["FlatJaw"]
 
 
-FIELDS = Table(
+FIELDS = FieldTable(
     "flat-jaw vise",
     "A vise with one flat jaw, and pegs on the other",
     (
         *ON_A_PLATE[:3],
         PEG_RADIUS,
         MIN_GAP.shown(
-            Label("Smallest opening", "peg radius"),
+            PageLabel("Smallest opening", "peg radius"),
             follows="peg_radius",
             figure="smallest opening",
             at_least="peg_radius",
-            below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would stand in the "
-            "flat jaw; give the least distance from the flat jaw to that row, in mm.",
+            below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would "
+            "stand in the flat jaw; give the least distance from the flat jaw to that row, in mm.",
         ),
         MAX_OPENING,
         FLAT,
@@ -42,15 +45,16 @@ FIELDS = Table(
 class FlatJaw(Toolkit):
     """A vise whose fixed jaw is flat, along x at y = 0, with a plate of pegs on the jaw that moves, along y.
 
-    The part lies flush against the flat jaw, above it, on a hull edge: a straight piece of the boundary of its convex hull.
-    Two pegs in holes of one lattice press it down as the jaw closes.
+    The part lies flush against the flat jaw, above it, on a hull edge: a straight piece of the boundary of
+    its convex hull. Two pegs in holes of one lattice press it down as the jaw closes.
 
     Parameters
     ----------
     pitch : distance between neighbouring columns and rows in mm, one number or (x, y).
     peg_radius : in mm; 0 is allowed.
     columns, rows : of holes on the jaw that moves, or None for as many as needed.
-    min_gap : smallest distance in mm from the flat jaw to the centres of the first row of holes; None means the peg radius.
+    min_gap : smallest distance in mm from the flat jaw to the centres of the first row of holes; None means
+        the peg radius.
     max_opening : largest such distance in mm, or None for no limit.
     flat : of the pegs, see :class:`workhold.Vise`.
 
@@ -67,7 +71,7 @@ class FlatJaw(Toolkit):
     """
 
     kind: ClassVar[str] = "flat-jaw"
-    table: ClassVar[Table] = FIELDS
+    table: ClassVar[FieldTable] = FIELDS
     noun: ClassVar[str] = "flat-jaw vise"
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("flat", (2, 2)),)
@@ -84,11 +88,15 @@ class FlatJaw(Toolkit):
         sets="pairs of pegs",
         clear="smallest gap, and holes that the jaw has then",
         reasons=(
-            "The part cannot lie flush against the flat jaw: no straight piece of its convex hull is there to lie on it, "
-            "or none at an angle and on faces that are allowed.",
-            "No two pegs of the jaw can touch opposed sides of the part while it lies flush against the flat jaw.",
-            "Every face is parallel or square to the side that lies against the flat jaw: two pegs against two sides, or a "
-            "side and the top, leave the part free to slide; a fence with two clamps holds such a part.",
+            "The part cannot lie flush against the flat jaw: no straight piece of its convex hull is there "
+            "to lie on it, or none at an angle and on faces that are allowed.",
+            (
+                "No two pegs of the jaw can touch opposed sides of the part while it lies flush against the "
+                "flat jaw."
+            ),
+            "Every face is parallel or square to the side that lies against the flat jaw: two pegs against "
+            "two sides, or a side and the top, leave the part free to slide; a fence with two clamps holds "
+            "such a part.",
             "Two pegs can touch the part at the same time, but no such pair presses it against the flat jaw.",
         ),
     )
@@ -130,7 +138,7 @@ class FlatJaw(Toolkit):
 
     @property
     def law(self) -> str:
-        """That of a wall."""
+        """The law of a wall."""
         return "fence"
 
     @property

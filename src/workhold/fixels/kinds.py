@@ -12,7 +12,7 @@ from workhold.fixels.fence import Fence
 from workhold.fixels.flat_jaw import FlatJaw
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import PageWords
-from workhold.fixels.table import Table, ToolkitField
+from workhold.fixels.table import FieldTable, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.fixels.vise import OpeningVise, Vise
 
@@ -20,7 +20,7 @@ __all__ = ["ALIASES", "KINDS", "PAGES", "TABLES", "USUAL", "kind_of", "owner_of"
 
 KINDS: Mapping[str, type[Toolkit]] = {one.kind: one for one in (Vise, OpeningVise, Plate, Fence, FlatJaw)}
 # The fields of each kind; kinds that differ in no field share a table.
-TABLES: Mapping[str, Table] = {name: kind.table for name, kind in KINDS.items()}
+TABLES: Mapping[str, FieldTable] = {name: kind.table for name, kind in KINDS.items()}
 # The kind that is meant where nobody says.
 USUAL = Vise.kind
 # Other names, each with its kind and the fields that it says.
@@ -58,12 +58,12 @@ def kind_of(name: str) -> tuple[str, Mapping[str, Any]]:
     return name, {}
 
 
-def table_of(kind: object) -> Table:
+def table_of(kind: object) -> FieldTable:
     """The table of a kind; of what is none, or an alias that is not resolved, that of the usual kind."""
     return TABLES.get(str(kind), TABLES[USUAL])
 
 
-def owner_of(row: ToolkitField) -> Table:
+def owner_of(row: ToolkitField) -> FieldTable:
     """The first table that has a field of this name."""
     return next(table for table in TABLES.values() if any(one.name == row.name for one in table.fields))
 
@@ -79,7 +79,8 @@ def toolkit_of(kind: str, fields: Mapping[str, Any]) -> Toolkit:
     Raises
     ------
     InputError
-        For a kind that is not known, fields that it does not have or that are missing, and values of which there is none.
+        For a kind that is not known, fields that it does not have or that are missing, and values of which
+        there is none.
 
     Examples
     --------

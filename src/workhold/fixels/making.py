@@ -1,7 +1,8 @@
 """Constructors of toolkits, made from their tables of fields, and what every constructor refuses.
 
-A kind names its fields by annotations alone. What each takes, what stands for nothing given, what it must be at least and
-which limit it sets are in its row of ``fixels.fields``. Lattices of holes are held to the same limits in every kind.
+A kind names its fields by annotations alone. What each takes, what stands for nothing given, what it must be
+at least and which limit it sets are in its row of ``fixels.fields``. Lattices of holes are held to the same
+limits in every kind.
 """
 
 from __future__ import annotations
@@ -16,22 +17,14 @@ from attrs import NOTHING, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import Holes, flat_of, holes_named, resolved_flat
+from workhold.fixels.carrier import Holes, holes_named
 from workhold.fixels.contacts import DIRECTIONS
+from workhold.fixels.pegs import flat_of, resolved_flat
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.limits import MOST_BLOCKED, MOST_HOLES, real, refuse_long
 
-__all__ = [
-    "finer",
-    "made_from_table",
-    "optional_length",
-    "pair",
-    "refuse_lattice",
-    "refuse_many_holes",
-    "settle",
-    "whole",
-]
+__all__ = ["finer", "made_from_table", "optional_length", "pair", "refuse_many_holes", "settle", "whole"]
 
 
 def pair(value: float | Iterable[float]) -> tuple[float, float]:
@@ -55,7 +48,7 @@ def optional_length(value: float | None) -> float:
 def refuse_lattice(
     pitch: tuple[float, float], columns: int | None, rows: int | None, peg_radius: float, noun: str, peg: str
 ) -> None:
-    """Refuse a lattice that cannot be, and pegs too fat for neighbouring holes.
+    """Refuses a lattice that cannot be, and pegs too fat for neighbouring holes.
 
     Parameters
     ----------
@@ -78,13 +71,13 @@ def refuse_lattice(
         raise InputError(f"peg radius {peg_radius} is not a length: give 0 or more, in mm.")
     if 2 * peg_radius > min(pitch):
         raise InputError(
-            f"{peg}s of radius {peg_radius:g} overlap in neighbouring holes {min(pitch):g} apart: use a smaller {peg} or a "
-            "larger pitch."
+            f"{peg}s of radius {peg_radius:g} overlap in neighbouring holes {min(pitch):g} apart: use a "
+            f"smaller {peg} or a larger pitch."
         )
 
 
 def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
-    """Refuse more holes than can be looked through.
+    """Refuses more holes than can be looked through.
 
     Raises
     ------
@@ -94,8 +87,8 @@ def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
     holes = (columns or 1) * (rows or 1)
     if holes > MOST_HOLES:
         raise InputError(
-            f"a {noun} of {holes:,} holes is beyond the {MOST_HOLES:,} this program takes: give fewer columns or rows, as "
-            "many as the part can reach."
+            f"a {noun} of {holes:,} holes is beyond the {MOST_HOLES:,} this program takes: give fewer "
+            "columns or rows, as many as the part can reach."
         )
 
 
@@ -110,7 +103,7 @@ BOUNDS = {
 
 
 def made_from_table(kind: Kind) -> Kind:
-    """Make a frozen attrs class of a kind, whose annotations name the fields, from the table of its fields.
+    """Makes a frozen attrs class of a kind, whose annotations name the fields, from the table of its fields.
 
     Raises
     ------
@@ -124,14 +117,14 @@ def made_from_table(kind: Kind) -> Kind:
 
 
 def attribute_of(row: ToolkitField, *, inherits: bool) -> Any:
-    """Return the attribute of a field; what is needed beside inherited fields is given by name alone."""
+    """Returns the attribute of a field; what is needed beside inherited fields is given by name alone."""
     by_name = row.form == "flat" or inherits
     default = NOTHING if row.is_required else row.default
     return field(default=default, converter=converter_of(row), kw_only=by_name)
 
 
 def converter_of(row: ToolkitField) -> Callable[[Any], Any]:
-    """Return what a field's values are taken with; values that cannot be are refused when all are known."""
+    """Returns the converter of a field's values; values that cannot be are refused when all are known."""
     match row.form:
         case "length" if row.follows:
             return optional_length
@@ -144,12 +137,12 @@ def converter_of(row: ToolkitField) -> Callable[[Any], Any]:
 
 
 def all_holes(holes: Iterable[Holes | str], *, carriers: tuple[str, ...], noun: str) -> tuple[Holes, ...]:
-    """Return holes as a tuple, where they may be given by name."""
+    """Returns holes as a tuple, where they may be given by name."""
     return tuple(holes_named(one, carriers, noun) if isinstance(one, str) else one for one in holes)
 
 
 def least_and_most(value: Iterable[float] | None) -> tuple[float, float] | None:
-    """Return the least and the most that a clamp stretches, or None.
+    """Returns the least and the most that a clamp stretches, or None.
 
     Raises
     ------
@@ -167,7 +160,7 @@ def least_and_most(value: Iterable[float] | None) -> tuple[float, float] | None:
 
 
 def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
-    """Return directions in the order in which they are listed, or pairs of them; none for None, which a kind resolves.
+    """Returns directions, or pairs of them, in the order of ``DIRECTIONS``; none for None.
 
     Raises
     ------
@@ -198,7 +191,7 @@ def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
 
 
 def refuse_direction(name: Any) -> None:
-    """Refuse what is no direction of a clamp.
+    """Refuses what is no direction of a clamp.
 
     Raises
     ------
@@ -221,7 +214,7 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
 
 
 def settle(toolkit: Any, *, noun: str, peg: str) -> None:
-    """Put in what follows from other fields, and refuse values that cannot be.
+    """Puts in what follows from other fields, and refuses values that cannot be.
 
     Parameters
     ----------
@@ -251,7 +244,7 @@ def settle(toolkit: Any, *, noun: str, peg: str) -> None:
 
 
 def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
-    """Refuse a value below what it must be at least, or too large to reckon with.
+    """Refuses a value below what it must be at least, or too large to reckon with.
 
     Raises
     ------
@@ -271,8 +264,8 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
         case "span" if value is not None:
             if not 0 <= value[0] <= value[1] < inf:
                 raise InputError(
-                    f"{row.words} {value[0]:g} to {value[1]:g} is none that a clamp has: give the least and the most "
-                    "from its hole to its tip, in mm."
+                    f"{row.words} {value[0]:g} to {value[1]:g} is none that a clamp has: give the least and "
+                    "the most from its hole to its tip, in mm."
                 )
             refuse_long(row.words, value[1])
         case "pitch":
@@ -282,7 +275,7 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
 
 
 def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
-    """Refuse blocked holes that a toolkit does not have, too many of them, and a carrier without a free hole.
+    """Refuses blocked holes that there are not, too many of them, and a carrier without a free hole.
 
     Raises
     ------
@@ -292,8 +285,8 @@ def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
     blocked, columns, rows, noun = getattr(toolkit, row.name), toolkit.columns, toolkit.rows, row.carrier_noun
     if len(blocked) > MOST_BLOCKED:
         raise InputError(
-            f"{len(blocked):,} blocked holes are more than the {MOST_BLOCKED:,} this program takes: block whole "
-            "columns, such as L-B."
+            f"{len(blocked):,} blocked holes are more than the {MOST_BLOCKED:,} this program takes: block "
+            "whole columns, such as L-B."
         )
     for holes in blocked:
         if holes.column >= columns:

@@ -1,7 +1,7 @@
 """A dowel plate: locators in its holes, and one clamp or two that push along lines of holes.
 
-One clamp: Brost & Goldberg 1996. With two, five pegs hold the part (a shop's 3-2-1): the locators alone fix its pose, and
-the forces of both clamps together press it against them, those of neither alone.
+One clamp is the fixture of Brost & Goldberg 1996. With two clamps five pegs hold the part (a shop's 3-2-1).
+The locators alone fix its pose; only both clamps together press it against all of them.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from typing import Any, ClassVar
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import Flat
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import CLAMP_RADIUS, CLAMPS, DIRECTION, FLAT, ON_A_PLATE, TRAVEL
 from workhold.fixels.making import finer, made_from_table, settle
+from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
-from workhold.fixels.table import Table
+from workhold.fixels.table import FieldTable
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.units import Unit
 
@@ -32,7 +32,7 @@ def turned_half(name: str) -> str:
     return f"{'-' if name[0] == '+' else '+'}{name[1]}"
 
 
-FIELDS = Table(
+FIELDS = FieldTable(
     "plate",
     "A plate with locators and a clamp",
     (*ON_A_PLATE, CLAMP_RADIUS, TRAVEL, CLAMPS, DIRECTION, FLAT),
@@ -41,7 +41,7 @@ FIELDS = Table(
 
 @made_from_table
 class Plate(Toolkit):
-    """A plate with a lattice of holes: three locators anywhere on it, and clamps on rows and columns of holes.
+    """A plate with a lattice of holes: three locators in any of them, and clamps along rows and columns.
 
     Parameters
     ----------
@@ -49,14 +49,14 @@ class Plate(Toolkit):
     peg_radius : of the locators in mm; 0 is allowed.
     columns, rows : of holes, or None for as many as needed.
     clamp_radius : of the clamp's round tip in mm; None means the peg radius.
-    travel : least and most in mm from the hole that the clamp is bolted in to its tip, or None: then the clamp is its tip
-        alone, and nothing is asked of its body.
-    directions : in which the clamp may move when it clamps: among "-x", "+x", "-y" and "+y". None means all that differ by
-        more than a turn of the plate. Of two clamps pairs, such as [("-x", "-y")]; directions that are no pairs stand for
-        all pairs of them.
+    travel : least and most in mm from the hole that the clamp is bolted in to its tip. None makes the clamp
+        its tip alone, and asks nothing of its body.
+    directions : of clamping, among "-x", "+x", "-y" and "+y". None means all
+        that differ by more than a turn of the plate. Two clamps take pairs, such as [("-x", "-y")]; single
+        directions stand for all pairs of them.
     clamps : 1, or 2 that are needed together.
-    flat : of the locators, which lies on straight faces: its distance from a locator's centre, and half its width, in mm;
-        None for round ones. A clamp's tip is round.
+    flat : of the locators, which lies on straight faces: its distance from a locator's centre, and half its
+        width, in mm; None for round ones. A clamp's tip is round.
 
     Raises
     ------
@@ -73,7 +73,7 @@ class Plate(Toolkit):
     """
 
     kind: ClassVar[str] = "translating-clamp"
-    table: ClassVar[Table] = FIELDS
+    table: ClassVar[FieldTable] = FIELDS
     noun: ClassVar[str] = "plate"
     locked: ClassVar[str] = "a screw clamp,"
     clamping: ClassVar[int] = 1
@@ -82,7 +82,10 @@ class Plate(Toolkit):
         two="two locators",
         four="three locators and a clamp",
         inside="on this plate",
-        within="their places as asked: with the columns, rows and angles given, and clear of the clamp with its stroke",
+        within=(
+            "their places as asked: with the columns, rows and angles given, and clear of the clamp with its "
+            "stroke"
+        ),
         rules="closes and is pressed together by the clamp",
         backwards="the clamp pulls, not when it pushes",
         holes="holes that the plate does not have",
@@ -149,7 +152,7 @@ class Plate(Toolkit):
 
     @property
     def distinct_directions(self) -> tuple[str, ...]:
-        """The directions that clamps have, without those that half a turn of the plate makes of another one."""
+        """The clamps' directions, without those that half a turn of the plate makes of another one."""
         if self.clamps == 2:
             return tuple(name for name in DIRECTIONS if any(name in pair for pair in self.distinct_pairs))
         return tuple(
@@ -169,7 +172,7 @@ class Plate(Toolkit):
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """Three locators and a clamp, once for each direction; or two clamps, once for each pair of directions."""
+        """Three locators and a clamp for each direction, or two clamps for each pair of directions."""
         names = self.distinct_directions
         if self.clamps == 1:
             return tuple(
@@ -186,7 +189,7 @@ class Plate(Toolkit):
         return self.plate_and_clamps((0.0, 0.0))
 
     def plate_and_clamps(self, offset: tuple[float, float]) -> tuple[Carrier, ...]:
-        """The same with the first hole at a place in mm."""
+        """The plate with its first hole at a place in mm, and the clamp of each direction."""
         size = self.pitch, self.columns, self.rows, self.peg_radius, self.peg_radius
         plate = Carrier("plate", *size, offset, noun="plate", peg="locator", flat=self.flat)
         least, most = (-inf, None) if self.travel is None else (-self.travel[1], -self.travel[0])
@@ -207,7 +210,7 @@ class Plate(Toolkit):
 
     @property
     def law(self) -> str:
-        """That of one clamp, or of two."""
+        """The law of one clamp, or of two."""
         return "plate" if self.clamps == 1 else "two clamps"
 
     @property

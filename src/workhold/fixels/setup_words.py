@@ -19,8 +19,9 @@ __all__ = ["Datum", "PageWords", "SetupWords"]
 class SetupWords:
     """The words of a kind of toolkit.
 
-    Words in braces stand for what a fixture has: ``{holes}`` the holes of its pegs, ``{count}`` how many there are,
-    ``{peg}`` and ``{plate}`` what the pegs and the plate are called, ``{edge}`` how far row 1 is from the datum.
+    Words in braces stand for what a fixture has. ``{holes}`` are the holes of its pegs and ``{count}`` their
+    number. ``{peg}`` and ``{plate}`` are the nouns of the pegs and the plate. ``{edge}`` is the distance of
+    row 1 from the datum.
 
     Parameters
     ----------
@@ -70,7 +71,8 @@ class Datum:
     lines : the column and the row, or what stands for a row, of the zero point.
     rows_from : where rows are counted from, such as "below".
     substitute : what takes the place of the datum where all of a set-up is moved.
-    edge : distance in mm from what stands for a row to the centres of row 1; None where nothing does, or the plate slides.
+    edge : distance in mm from what stands for a row to the centres of row 1; None where nothing does, or the
+        plate slides.
     """
 
     name: str

@@ -18,15 +18,15 @@ __all__ = [
     "REQUIRED",
     "TOOLKIT_SECTION",
     "Choice",
+    "FieldTable",
     "Form",
-    "Label",
     "Lifted",
-    "Table",
+    "PageLabel",
     "ToolkitField",
 ]
 
-# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's distance
-# with or without half its width; names of holes; directions or pairs of them.
+# What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a
+# flat's distance with or without half its width; names of holes; directions or pairs of them.
 Form = Literal["count", "length", "pitch", "span", "flat", "holes", "directions"]
 # Sections of the command's help.
 TOOLKIT_SECTION, CLAMPS_SECTION = "The toolkit", "The clamps of a plate or fence"
@@ -43,7 +43,7 @@ class Choice:
 
 
 @frozen
-class Label:
+class PageLabel:
     """What the page shows of a field.
 
     Parameters
@@ -96,15 +96,17 @@ class ToolkitField:
     belongs_to : the part of a toolkit that it describes, which toolkits without this field have not.
     least : what a length must be: "above 0", "0" or "any".
     most : the largest count that a server takes; None for no limit of its own.
-    figure : what it is called among the figures of a toolkit; empty where these tell it in another way.
+    figure : what it is called among the figures of a toolkit; empty where it is shown in another way.
     unset : what stands there for a value of None; where it is empty, a default is no figure.
-    follows : the field whose value is the default of this one, with which it is no figure; of a pitch that in x.
+    follows : the field whose value is the default of this one, with which it is no figure; of a pitch that in
+        x.
     is_always_shown : whether it is a figure also where it has the value that it follows.
-    at_least, below : the field whose value is the least of this one, and the sentence for what is below, with "{value}"
-        and "{least}".
+    at_least, below : the field whose value is the least of this one, and the sentence for what is below, with
+        "{value}" and "{least}".
     allowed : the only counts that there are; empty where all are.
     lifted : how the limit that it sets is lifted, for which its default stands; None where it sets none.
-    carriers, carrier_noun : of holes the names of the carriers that have them, and what one of these is called.
+    carriers, carrier_noun : of holes the names of the carriers that have them, and what one of these is
+        called.
     section : of the command's help.
     word : its name as an option, where that is not the field's own.
     """
@@ -113,7 +115,7 @@ class ToolkitField:
     form: Form
     metavar: str
     help: str
-    labels: tuple[Label, ...]
+    labels: tuple[PageLabel, ...]
     default: Any = field(default=None, kw_only=True)
     entry: str = field(default="", kw_only=True)
     missing: str = field(default="", kw_only=True)
@@ -140,7 +142,7 @@ class ToolkitField:
 
     @property
     def words(self) -> str:
-        """Its name in sentences."""
+        """The name in sentences."""
         return self.name.replace("_", " ")
 
     @property
@@ -148,13 +150,13 @@ class ToolkitField:
         """Whether it must be given."""
         return self.default is REQUIRED
 
-    def shown(self, *labels: Label, **changes: Any) -> ToolkitField:
-        """Return the field of another kind of toolkit, with other labels on the page and further changes."""
+    def shown(self, *labels: PageLabel, **changes: Any) -> ToolkitField:
+        """Returns the field of another kind of toolkit, with other labels on the page and further changes."""
         return evolve(self, labels=labels, **changes)
 
 
 @frozen
-class Table:
+class FieldTable:
     """The fields of toolkits that share them all.
 
     Parameters

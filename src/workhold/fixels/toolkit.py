@@ -1,15 +1,18 @@
 """Toolkits: what holds the pegs, where they may stand, what moves, and when that clamps.
 
-A toolkit is data plus the freedom it has. Everything that seeks, proves, lists, draws and writes fixtures asks a toolkit
-for the data below and knows no vise; a further toolkit is a small module that fills them in, such as ``fixels.vise``.
+A toolkit is data plus the freedom it has. Whatever searches, proves, lists, draws and writes fixtures takes
+the data below from the toolkit and knows no vise. A further toolkit is a small module that fills the data in,
+such as ``fixels.vise``.
 
 Glossary
 --------
-carrier : what pegs stand on, a lattice of holes; it stands still or slides along a line. A vise's jaws are two carriers.
+carrier : what pegs stand on, a lattice of holes; it stands still or slides along a line. A vise's jaws are
+    two carriers.
 travel : how far a carrier has slid along its direction, in mm; of a vise the jaw separation.
-arrangement : how many pegs stand on each carrier. The paper's Type I is two and two, its Type II three and one.
-gap rule : the smallest distance along the direction of travel from a peg of the carrier that stands still to one of the
-    carrier that moves.
+arrangement : how many pegs stand on each carrier. The paper's Type I is two and two, its Type II three and
+    one.
+gap rule : the smallest distance along the direction of travel from a peg of the carrier that stands still to
+    one of the carrier that moves.
 """
 
 from __future__ import annotations
@@ -26,15 +29,13 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, Travel
 from workhold.fixels.contacts import CLAMP_TIP, Arrangement, ContactKind, Symmetry
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
-from workhold.fixels.table import Table, ToolkitField
+from workhold.fixels.table import FieldTable, ToolkitField
 from workhold.units import Unit
 
 __all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
 
 # The order in which a person would ask for limits to be lifted.
 LIFTED = ("bodies", "travel", "holes")
-# Contacts that fix the pose and the travel of what moves.
-MOST_OF_A_WAY = 4
 
 
 @frozen
@@ -45,7 +46,8 @@ class Wording:
     ----------
     two, four : the pegs of one carrier that no chord may part, and all pegs, such as "two pegs of one jaw".
     inside : where the part lies, such as "in this vise".
-    within : what a fixture must stand in, and with what asked of it, such as "the jaws as asked: with the rows given".
+    within : what a fixture must stand in, and with what asked of it, such as "the jaws as asked: with the
+        rows given".
     rules : what four pegs that touch must still do, such as "keeps the smallest gap, closes and clamps".
     backwards : when a set of four that closes without clamping would hold.
     holes : the rule about holes, such as "holes that the jaws do not have".
@@ -69,7 +71,7 @@ class Wording:
 
 @frozen
 class Change:
-    """A change of a toolkit that might help where it holds nothing: in words, and what its fields then are."""
+    """A change of a toolkit that might help where it holds nothing: in words, and its new fields."""
 
     words: str
     fields: Mapping[str, Any]
@@ -92,7 +94,7 @@ class Limit:
 
 
 class Toolkit:
-    """What every toolkit tells, a frozen attrs class; ``fixels.vise.Vise`` is one.
+    """The data that every toolkit has; a toolkit is a frozen attrs class, such as ``fixels.vise.Vise``.
 
     Attributes
     ----------
@@ -101,8 +103,8 @@ class Toolkit:
     noun : what it is called, such as "vise".
     locked : what it is with a screw that locks what moves, in words that "locked" follows.
     arrangements : what may stand on its carriers.
-    clamping : 1 when the moving carrier clamps as its travel gets less (a vise that closes), -1 when it clamps as its
-        travel gets more.
+    clamping : 1 when the moving carrier clamps as its travel gets less (a vise that closes), -1 when it
+        clamps as its travel gets more.
     symmetries : motions besides the identity that make two fixtures the same.
     carriers : those that stand still first; at most one moves while a pose is sought.
     gap : the gap rule in mm, or None when there is none.
@@ -118,7 +120,7 @@ class Toolkit:
         def __init__(self, *args: Any, **fields: Any) -> None: ...
 
     kind: ClassVar[str]
-    table: ClassVar[Table]
+    table: ClassVar[FieldTable]
     noun: ClassVar[str]
     locked: ClassVar[str]
     arrangements: ClassVar[tuple[Arrangement, ...]]
@@ -130,12 +132,12 @@ class Toolkit:
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
-        """Those that stand still first."""
+        """The carriers, those that stand still first."""
         raise NotImplementedError
 
     @property
     def ways(self) -> tuple[Toolkit, ...]:
-        """The same toolkit with one carrier that moves each time; their arrangements, one after the other, are its own."""
+        """The toolkit with one of its moving carriers each; their arrangements, in order, are its own."""
         return (self,)
 
     @property
@@ -171,31 +173,28 @@ class Toolkit:
 
     @property
     def closes_at_once(self) -> bool:
-        """Whether one movement closes it, so that the part's way can be followed; two clamps are tightened in turn."""
+        """Whether one movement closes it, so that closing can be simulated, unlike two clamps."""
         return self.travels == 1
 
     @property
     def ends_on_walls(self) -> tuple[slice, ...]:
-        """For each wall, which contacts of a fixture are the ends of the contact with it."""
+        """The contacts of a fixture that are the ends of the contact with a wall, for each wall."""
         standing = self.arrangements[0].carriers
         walls = [number for number, carrier in enumerate(self.carriers) if not carrier.contact.is_placed]
         return tuple(slice(standing.index(one), standing.index(one) + standing.count(one)) for one in walls)
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
-        """For each carrier the one whose place it takes after half a turn of everything, -1 where none does; None where
-        such a turn makes another toolkit of it."""
+        """The carrier whose place each carrier takes after half a turn of everything, -1 for none.
+
+        It is None where half a turn makes another toolkit.
+        """
         return next((one.carriers for one in self.symmetries if one.half_turns % 2), None)
 
     @property
     def has_flats(self) -> bool:
         """Whether some of its pegs have a flat."""
         return any(carrier.flat is not None for carrier in self.carriers)
-
-    @property
-    def needs_pairs(self) -> bool:
-        """Whether two of its ways are needed together: their contacts share what stands still, and close together."""
-        return len(self.arrangements[0].carriers) > MOST_OF_A_WAY
 
     @property
     def peg_count(self) -> int:
@@ -229,7 +228,7 @@ class Toolkit:
         return float(value[0] if isinstance(value, tuple) else value)
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Changes to try where it holds nothing, besides lifting its limits; lengths in their words are in a unit."""
+        """Changes to try where it holds nothing, besides lifting its limits; their words use ``unit``."""
         raise NotImplementedError
 
     @classmethod
@@ -346,8 +345,14 @@ class Toolkit:
         row: NDArray[Any],
         travelled: NDArray[np.float64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """x and y (N, K) in mm of the holes of N fixtures; column and row are (N, K), arrangement (N,), and travelled (N,),
-        or (N, M) of each of the last M pegs."""
+        """x and y (N, K) in mm of the holes of N fixtures.
+
+        Parameters
+        ----------
+        arrangement : (N,) indices.
+        column, row : (N, K) of the holes.
+        travelled : (N,) in mm, or (N, M) of each of the last M pegs.
+        """
         moved = (
             np.broadcast_to(travelled[:, None], column.shape)
             if travelled.ndim == 1

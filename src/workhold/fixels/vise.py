@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from attrs import evolve
 
-from workhold.fixels.carrier import Flat, Holes
+from workhold.fixels.carrier import Holes
 from workhold.fixels.fields import (
     BLOCKED,
     BODY_RADIUS,
@@ -21,8 +21,9 @@ from workhold.fixels.fields import (
     ROWS,
 )
 from workhold.fixels.making import made_from_table, settle
+from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
-from workhold.fixels.table import Table
+from workhold.fixels.table import FieldTable
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
 from workhold.units import Unit
 
@@ -47,7 +48,7 @@ SETUP = SetupWords(
 )
 
 
-FIELDS = Table(
+FIELDS = FieldTable(
     "vise",
     "A vise",
     (PITCH, COLUMNS, PEG_RADIUS, ROWS, ROW_OFFSET, MIN_GAP, MAX_OPENING, BODY_RADIUS, BLOCKED, FLAT),
@@ -64,15 +65,15 @@ class Vise(Toolkit):
     columns : columns of holes on each jaw.
     peg_radius : in mm; 0 is allowed.
     rows : rows of holes on each jaw, or None for as many as needed.
-    min_gap : smallest distance in x from the centre of a left peg to the centre of a right one, in mm; None means the
-        x pitch.
+    min_gap : smallest distance in x from the centre of a left peg to the centre of a right one, in mm; None
+        means the x pitch.
     max_opening : largest opening in mm, or None for no limit.
     row_offset : height in mm of the right jaw's row 0 above the left jaw's.
-    body_radius : radius in mm of the thickest part of a peg, its shoulder, which lies below the workpiece; None means the
-        peg radius. Bodies may neither overlap nor stand over a keep-out zone.
+    body_radius : radius in mm of the thickest part of a peg, its shoulder, which lies below the workpiece;
+        None means the peg radius. Bodies may neither overlap nor stand over a keep-out zone.
     blocked : holes and columns that no peg can stand in, or their names, such as "L-B3" and "R-A".
-    flat : of the pegs, which lies on straight faces: its distance from a peg's centre, and half its width, in mm; None for
-        round ones.
+    flat : of the pegs, which lies on straight faces: its distance from a peg's centre, and half its width, in
+        mm; None for round ones.
 
     Raises
     ------
@@ -87,7 +88,7 @@ class Vise(Toolkit):
     """
 
     kind: ClassVar[str] = "vise"
-    table: ClassVar[Table] = FIELDS
+    table: ClassVar[FieldTable] = FIELDS
     noun: ClassVar[str] = "vise"
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
@@ -139,7 +140,7 @@ class Vise(Toolkit):
 
     @property
     def law(self) -> str:
-        """That of two jaws."""
+        """The law of two jaws."""
         return "vise"
 
     @property

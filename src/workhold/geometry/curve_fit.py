@@ -75,7 +75,7 @@ def smooth_biarcs(pieces: Pieces, tolerance: float) -> Iterator[FittedRun]:
 
 
 def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -> tuple[FittedRun, float]:
-    """The biarc that reaches farthest from a place of a curve, to within a share of ``STEP``, and where it ends.
+    """The biarc that reaches farthest from a place of a curve, to a share of ``STEP``, and its end.
 
     ``step`` is the first length tried. What is smaller than the tolerance may be a line instead.
     """
@@ -99,7 +99,7 @@ def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -
 
 
 def small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedRun | None:
-    """The line in place of a stretch of a curve, such as a cusp, that is smaller than the tolerance; None for others."""
+    """The line for a stretch of a curve smaller than the tolerance, such as a cusp; None for others."""
     stretch = cut(pieces, first, last)
     places = (stretch[..., :2] / stretch[..., 2:]).reshape(-1, 2)
     size = float(np.hypot(*np.ptp(places, axis=0)))
@@ -110,8 +110,8 @@ def small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> F
 def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedRun | None:
     """The biarc in place of a stretch of a smooth curve; None where it departs by more than the tolerance.
 
-    Each arc is compared with the part of the curve between its ends. Both centres lie on the normal at the joint, so the
-    curve changes from one arc to the other where it crosses that.
+    Each arc is compared with the part of the curve between its ends. Both centres lie on the normal at the
+    joint, so the curve changes from one arc to the other where it crosses that.
     """
     start, end = point_at(pieces, first), point_at(pieces, last)
     begins, ends = direction_at(pieces, first, after=True), direction_at(pieces, last, after=False)
@@ -150,7 +150,7 @@ def turn(u: Point, v: Point) -> float:
 
 
 def joint_of(start: Point, end: Point, begins: Point, ends: Point) -> Point | None:
-    """Where the arcs of a biarc meet when both tangents up to their corners are equally long; None where there is none.
+    """The joint of a biarc with equally long tangents up to their corners; None where there is none.
 
     The length d solves |end - start - d (begins + ends)| = 2 d.
     """
@@ -171,7 +171,7 @@ def joint_of(start: Point, end: Point, begins: Point, ends: Point) -> Point | No
 
 
 def crossing(pieces: Pieces, first: float, last: float, joint: Point, across: Point) -> float | None:
-    """The parameter at which a stretch of a curve crosses the line through a point, square to a direction (Illinois)."""
+    """Parameter at which a curve crosses the line through a point, square to a direction (Illinois)."""
 
     def height(parameter: float) -> float:
         x, y = less(point_at(pieces, parameter), joint)
@@ -222,7 +222,7 @@ class FittedCurve:
 
 
 def fitted_curve(pieces: Pieces, tolerance: float) -> FittedCurve | None:
-    """Lines and arcs in place of a curve: as they are where it is a disguise, else biarcs within a tolerance in mm.
+    """Lines and arcs for a curve: its own where it is a disguise, else biarcs within a tolerance in mm.
 
     Returns
     -------
@@ -235,8 +235,7 @@ def fitted_curve(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     whole = whole_circle(pieces, DISGUISE)
     if whole is not None:
         return FittedCurve(whole.points, whole.bulges, whole.departure, True)
-    breaks = breaks_of(pieces)
-    runs = disguised(pieces, [0, *breaks, len(pieces)])
+    runs = disguised(pieces, [0, *breaks_of(pieces), len(pieces)])
     if all(run is not None for _, _, run in runs):
         return put_together([run for _, _, run in runs if run is not None], True)
     whole = whole_circle(pieces, tolerance)
@@ -258,7 +257,7 @@ def put_together(runs: list[FittedRun], is_disguise: bool) -> FittedCurve:
 
 
 def breaks_of(pieces: Pieces) -> list[int]:
-    """Numbers of the pieces that begin with another direction or curvature than the piece before ends with."""
+    """Numbers of the pieces that begin with another direction or curvature than the last ends with."""
     begin, end = end_curvatures(pieces)
     jump, most = np.abs(begin[1:] - end[:-1]), np.maximum(np.abs(begin[1:]), np.abs(end[:-1]))
     smooth = jump <= CURVATURE_JUMP * most
@@ -267,7 +266,7 @@ def breaks_of(pieces: Pieces) -> list[int]:
 
 
 def disguised(pieces: Pieces, places: list[int]) -> list[tuple[int, int, FittedRun | None]]:
-    """Longest rows of stretches between places that are one line or arc, as (first piece, last piece + 1, run).
+    """Longest rows of stretches that are one line or arc, as (first piece, last piece + 1, run).
 
     Stretches that are none come alone, with None.
     """
@@ -313,23 +312,16 @@ def one_segment(pieces: Pieces, tolerance: float) -> FittedRun | None:
     sweep = swept(pieces, (cx, cy))
     if not 1e-9 < abs(sweep) < 2 * pi - 1e-3:
         return None
-    arc = Arc(
-        (cx, cy),
-        radius,
-        atan2(start[1] - cy, start[0] - cx) + sweep / 2,
-        abs(sweep) / 2,
-        1.0 if sweep > 0 else -1.0,
-    )
+    mid_angle, sign = atan2(start[1] - cy, start[0] - cx) + sweep / 2, 1.0 if sweep > 0 else -1.0
+    arc = Arc((cx, cy), radius, mid_angle, abs(sweep) / 2, sign)
     away = departure(pieces, arc, max(tolerance, as_arcs_are_written(pieces, arc)))
-    if not isfinite(away):
-        return None
-    return FittedRun(*halves((start, end), sweep, (cx, cy)), away)
+    return FittedRun(*halves((start, end), sweep, (cx, cy)), away) if isfinite(away) else None
 
 
 def halves(
     ends: tuple[Point, Point], sweep: float, center: Point
 ) -> tuple[tuple[Point, ...], tuple[float, ...]]:
-    """Points and bulges of an arc, in two halves where it is nearly a circle: one bulge would fix its centre badly."""
+    """Points and bulges of an arc, halved where it is nearly a circle: one bulge fixes its centre badly."""
     if abs(sweep) < 1.9 * pi:
         return ends, (tan(sweep / 4),)
     (x, y), (cx, cy) = ends[0], center
@@ -363,9 +355,9 @@ def whole_circle(pieces: Pieces, tolerance: float) -> FittedRun | None:
 def as_arcs_are_written(pieces: Pieces, arc: Arc) -> float:
     """How far cubics may be from an arc when they are how programs write it, in mm; 0 where they are not.
 
-    The cubic whose handles are 4/3 tan(sweep / 4) radii long is off by 2.73e-4 radii for a quarter turn, and by the sixth
-    power of the sweep for less (M. Goldapp, "Approximation of circular arcs by cubic polynomials", Computer Aided Geometric
-    Design 8 (1991) 227-238).
+    The cubic whose handles are 4/3 tan(sweep / 4) radii long is off by 2.73e-4 radii for a quarter turn, and
+    by the sixth power of the sweep for less (M. Goldapp, "Approximation of circular arcs by cubic
+    polynomials", Computer Aided Geometric Design 8 (1991) 227-238).
     """
     if pieces.shape[1] != 4 or float(np.ptp(pieces[..., 2])) > 0.0:
         return 0.0
@@ -380,8 +372,8 @@ def as_arcs_are_written(pieces: Pieces, arc: Arc) -> float:
 def circle_near(pieces: Pieces) -> tuple[Point, float] | None:
     """Centre and radius of the circle of least squares through points of a curve; None for a line.
 
-    They are the ends of cubics, where those that stand for arcs meet them, with one or two their middles too; and
-    quarters of other pieces.
+    They are the ends of cubics, where those that stand for arcs meet them, with one or two their middles too;
+    and quarters of other pieces.
     """
     each = 4 if pieces.shape[1] != 4 else 1 if len(pieces) > 2 else 2
     return circle_of_points(points_along(pieces, each))

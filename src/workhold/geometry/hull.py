@@ -30,8 +30,8 @@ __all__ = ["HullEdge", "HullEnd", "convex_hull", "hull_edges"]
 def convex_hull(points: Iterable[Point]) -> list[Point]:
     """Corners of the convex hull, counter-clockwise from the leftmost; points on its sides are left out.
 
-    Reference: A. M. Andrew, *Another efficient algorithm for convex hulls in two dimensions*, Information Processing
-    Letters 9 (1979).
+    Reference: A. M. Andrew, *Another efficient algorithm for convex hulls in two dimensions*, Information
+    Processing Letters 9 (1979).
 
     Examples
     --------
@@ -71,7 +71,8 @@ class HullEnd:
     Parameters
     ----------
     point : in mm.
-    faces : indices of the faces that meet there: one that lies along the edge or is an arc, or the two of a corner.
+    faces : indices of the faces that meet there: one that lies along the edge or is an arc, or the two of a
+        corner.
     center, radius : of the arc in mm; the point itself and 0 where there is none.
     along : whether the face lies along the edge.
     """
@@ -153,9 +154,10 @@ class HullPieces:
 
 
 def tangents(pieces: HullPieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
-    """Common tangents of all pairs with both pieces on their left: indices (M,) at start and end, outward normals (M, 2).
+    """Common tangents of pairs with both pieces on their left: indices (M,) of both, normals (M, 2).
 
-    With D from one centre to the other and n the outward normal, n . D is the difference of the radii, and D runs forward.
+    With D from one centre to the other and n the outward normal, n . D is the difference of the radii, and D
+    runs forward.
     """
     count = len(pieces.radius)
     for first in range(0, count, BLOCK):
@@ -244,9 +246,10 @@ def is_part(edge: HullEdge, other: HullEdge) -> bool:
 
 
 def with_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
-    """A hull edge of which an end at a corner belongs to the face that lies along the edge there, if one does."""
+    """A hull edge whose end at a corner belongs to the face that lies along the edge, if one does."""
     ends = []
-    # Outline and edge run the same way: at its start the face after the corner may lie along it, at its end the one before.
+    # Outline and edge run the same way: at its start the face after the corner may lie along it, at its end
+    # the one before.
     for end, index in ((edge.start, -1), (edge.end, 0)):
         face = segments[end.faces[index]]
         lies = isinstance(face, Line) and all(

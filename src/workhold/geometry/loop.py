@@ -101,13 +101,14 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
 
     Returns
     -------
-    (N, 3) array, read-only; an arc that is nowhere farther than ``READING``, or a millionth of it, from its chord is a line.
+    (N, 3) array, read-only; an arc that is nowhere farther than ``READING``, or a millionth of it, from its
+    chord is a line.
 
     Raises
     ------
     InputError
-        For a wrong shape, NaN, infinite and far too large numbers, zero-length segments, or too few segments to enclose
-        anything.
+        For a wrong shape, NaN, infinite and far too large numbers, zero-length segments, or too few segments
+        to enclose anything.
     """
     try:
         array = np.array(vertices, dtype=np.float64)
@@ -126,22 +127,23 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
         )
     if len(array) < 2 or (len(array) == 2 and not array[:, 2].any()):
         raise InputError(
-            f"{loop} has too few segments to enclose an area: it needs three lines, or two segments with an arc."
+            f"{loop} has too few segments to enclose an area: it needs three lines, or two segments with an "
+            "arc."
         )
     far = np.flatnonzero((np.abs(array[:, :2]) > MOST_LENGTH).any(axis=1))
     if far.size:
         k = int(far[0])
         raise InputError(
-            f"{place(k)} has a coordinate beyond {MOST_LENGTH:g} mm, at ({array[k, 0]:g}, {array[k, 1]:g}): check the "
-            "numbers and the unit, and draw the part near the origin."
+            f"{place(k)} has a coordinate beyond {MOST_LENGTH:g} mm, at ({array[k, 0]:g}, {array[k, 1]:g}): "
+            "check the numbers and the unit, and draw the part near the origin."
         )
     steps = np.hypot(*(np.roll(array[:, :2], -1, axis=0) - array[:, :2]).T)
     short = np.flatnonzero(steps < SHORTEST)
     if short.size:
         k = int(short[0])
         raise InputError(
-            f"{place(k)} has zero length at ({array[k, 0]:.6g}, {array[k, 1]:.6g}): remove the doubled vertex "
-            "(a full circle is drawn as two halves)."
+            f"{place(k)} has zero length at ({array[k, 0]:.6g}, {array[k, 1]:.6g}): remove the doubled "
+            "vertex (a full circle is drawn as two halves)."
         )
     refuse_out_of_reach(array, steps, place)
     array[~is_curved(array[:, 2], steps), 2] = 0.0
@@ -150,13 +152,13 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
 
 
 def is_curved(bulge: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which arcs (N,) with chords (N,) are no lines: the middle of an arc is bulge * chord / 2 from its chord."""
+    """Which arcs (N,) with chords (N,) are no lines: their middles are bulge * chord / 2 off the chords."""
     size = np.abs(bulge)
     return (size * steps / 2.0 >= READING) & (size >= STRAIGHT)
 
 
 def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
-    """Refuses arcs of (N, 3) vertices with chords (N,) that reach too far, or whose radius is too large to reckon with.
+    """Refuses arcs of (N, 3) vertices, with chords (N,), that reach too far or have too large a radius.
 
     Raises
     ------
@@ -169,8 +171,8 @@ def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], 
     for k in np.flatnonzero(radius > np.where(bulge > 1.0, MOST_LENGTH, MOST_RADIUS))[:1]:
         most = MOST_LENGTH if bulge[k] > 1.0 else MOST_RADIUS
         raise InputError(
-            f"{place(int(k))} is an arc of radius {radius[k]:.3g} mm (bulge {array[k, 2]:g}), beyond {most:g} mm: check "
-            "the bulge, or draw a line."
+            f"{place(int(k))} is an arc of radius {radius[k]:.3g} mm (bulge {array[k, 2]:g}), beyond "
+            f"{most:g} mm: check the bulge, or draw a line."
         )
 
 
@@ -184,7 +186,7 @@ def loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:
 
 
 def signed_area(segments: Sequence[Segment]) -> float:
-    """Area in mm² enclosed by a loop, positive when it runs counter-clockwise (shoelace plus circular segments)."""
+    """Area in mm² of a loop, positive counter-clockwise (shoelace formula plus circular segments)."""
     area = 0.0
     for segment in segments:
         (x0, y0), (x1, y1) = segment.start, segment.end
@@ -195,7 +197,7 @@ def signed_area(segments: Sequence[Segment]) -> float:
 
 
 def circular_segment(sweep: float) -> float:
-    """sweep - sin(sweep) without cancellation for small sweeps (Taylor series below 0.1 rad, exact to rounding)."""
+    """sweep - sin(sweep) without cancellation (Taylor series below 0.1 rad, exact to rounding)."""
     if sweep > 0.1:
         return sweep - sin(sweep)
     square = sweep * sweep
@@ -260,8 +262,8 @@ def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
         for x, y in common_points(segments[i], segments[j], TOUCHING):
             if all(hypot(x - px, y - py) > backward_error for px, py in joints):
                 raise InputError(
-                    f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may meet itself only "
-                    "where one segment ends and the next begins."
+                    f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may meet "
+                    "itself only where one segment ends and the next begins."
                 )
 
 
@@ -276,7 +278,8 @@ def refuse_meeting_loops(a: LoopShape, b: LoopShape, place_a: Place, place_b: Pl
     for i, j in near_pairs(a.boxes, b.boxes):
         for x, y in common_points(a.segments[i], b.segments[j], TOUCHING):
             raise InputError(
-                f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay apart from each other."
+                f"{place_a(i)} and {place_b(j)} cross or touch at ({x:.6g}, {y:.6g}): loops must stay apart "
+                "from each other."
             )
 
 
@@ -298,7 +301,8 @@ def same_carrier(a: Segment, b: Segment) -> bool:
     return False
 
 
-# A whole circle has no joint, yet its parameter must start somewhere: at a direction no drawing is likely to use.
+# A whole circle has no joint, yet its parameter must start somewhere: at a direction no drawing is likely to
+# use.
 SEAM_ANGLE = 2.2360679775 + pi
 
 

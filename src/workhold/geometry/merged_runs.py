@@ -67,7 +67,7 @@ def is_one_already(arcs: Sequence[Arc]) -> bool:
 
 
 def follows(one: Segment, other: Segment) -> bool:
-    """Whether two neighbours may be of one circle: arcs that turn the same way and are nearly tangent where they meet.
+    """Whether neighbours may be of one circle: arcs of one turning sense, nearly tangent where they meet.
 
     An arc within e of a circle is turned against it by no more than some 4 e / chord.
     """
@@ -81,7 +81,7 @@ def follows(one: Segment, other: Segment) -> bool:
 
 
 def chains(segments: Sequence[Segment]) -> list[list[int]]:
-    """Numbers of the segments of each chain of two arcs and more; those beyond the last vertex are counted on."""
+    """Segments' numbers of each chain of two or more arcs; past the last vertex they are counted on."""
     count = len(segments)
     starts = [k for k in range(count) if not follows(segments[k - 1], segments[k])]
     ends = [*starts[1:], starts[0] + count] if starts else [count]
@@ -92,10 +92,11 @@ def chains(segments: Sequence[Segment]) -> list[list[int]]:
 
 
 def circle_of(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] | None:
-    """Centre and radius of a circle that arcs lie on to within ``READING``, through both ends unless they are the ``whole``.
+    """Centre and radius of a circle within ``READING`` of arcs, through both ends unless they are ``whole``.
 
-    The circle of least squares through ends and middles (I. Kasa, "A circle fitting procedure and its error analysis", IEEE
-    Transactions on Instrumentation and Measurement 25 (1976) 8-14), whose centre is moved onto the axis of both ends.
+    The circle of least squares through ends and middles (I. Kasa, "A circle fitting procedure and its error
+    analysis", IEEE Transactions on Instrumentation and Measurement 25 (1976) 8-14), whose centre is moved
+    onto the axis of both ends.
     """
     if len(arcs) < 2 or (whole and abs(sum(arc.half_sweep for arc in arcs) - pi) > 1e-3):
         return None
@@ -131,7 +132,7 @@ def is_near(arc: Arc, center: Point, radius: float) -> bool:
 
 
 def write_chain(out: Array, chain: Sequence[int], circle: tuple[Point, float], count: int) -> None:
-    """Puts the inner vertices of a chain on its circle, and writes the bulges of the arcs between its vertices."""
+    """Puts the inner vertices of a chain on its circle, and writes the bulges of its arcs."""
     (cx, cy), radius = circle
     places = [k % count for k in chain] + [(chain[-1] + 1) % count]
     angles = [atan2(out[k, 1] - cy, out[k, 0] - cx) for k in places]
@@ -169,7 +170,7 @@ class MergedLoop:
 
 @frozen
 class Piece:
-    """A segment from a point, with the number of the first one that it stands for, and how far it is from these."""
+    """A segment from a point, with the number of the first that it stands for, and its distance from them."""
 
     start: Point
     bulge: float
@@ -213,15 +214,16 @@ def merged_chords(vertices: Array, fit: float | None = None, kept: Sequence[bool
 
 
 def all_merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
-    """A row of pieces with its runs taken together, those first whose vertices lie on them to the digits of a file."""
+    """A row of pieces with its runs merged, first those with vertices on them to a file's digits."""
     for near in (min(DRAWN_ON, tolerance), tolerance):
         pieces = runs_merged(pieces, near, tolerance, LEAST_CHORDS)
     return runs_merged(pieces, DISGUISE, DISGUISE, 2)
 
 
 def from_a_corner(pieces: list[Piece]) -> list[Piece]:
-    """The pieces of a loop, begun at a corner, or else where the longest begins, so that no run goes across."""
-    turns, lengths = np.abs(turns_of(pieces)), steps_of(pieces)
+    """The pieces of a loop, begun at a corner, or else where the longest begins."""
+    turns, points = np.abs(turns_of(pieces)), points_of(pieces)
+    lengths = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
     sharpest = int(np.argmax(turns))
     first = sharpest if turns[sharpest] > CORNER_OF_CHORDS else int(np.argmax(lengths))
     return pieces[first:] + pieces[:first]
@@ -230,12 +232,6 @@ def from_a_corner(pieces: list[Piece]) -> list[Piece]:
 def points_of(pieces: Sequence[Piece]) -> Array:
     """(N, 2) starts."""
     return np.array([piece.start for piece in pieces])
-
-
-def steps_of(pieces: Sequence[Piece]) -> Array:
-    """(N,) lengths of the chords of a loop."""
-    points = points_of(pieces)
-    return np.asarray(np.hypot(*(np.roll(points, -1, axis=0) - points).T))
 
 
 def turns_of(pieces: Sequence[Piece]) -> Array:
@@ -248,7 +244,7 @@ def turns_of(pieces: Sequence[Piece]) -> Array:
 
 
 def whole_circle(pieces: list[Piece], tolerance: float) -> list[Piece] | None:
-    """The two halves of the circle that a loop of chords or arcs is to within a tolerance; None where it is none."""
+    """The two halves of the circle that a loop is to within a tolerance; None where it is none."""
     count = len(pieces)
     if not worth(pieces, 2 * LEAST_CHORDS) or any(piece.kept for piece in pieces):
         return None
@@ -273,7 +269,7 @@ def whole_circle(pieces: list[Piece], tolerance: float) -> list[Piece] | None:
 
 
 def worth(pieces: Sequence[Piece], least: int) -> bool:
-    """Whether so few pieces can be a run: two arcs can, and two lines, but few lines and an arc only by chance."""
+    """Whether so few pieces can be a run: two arcs or two lines can, few lines and an arc only by chance."""
     arcs = sum(piece.bulge != 0.0 for piece in pieces)
     return len(pieces) >= (2 if arcs == len(pieces) else least)
 
@@ -356,7 +352,7 @@ def with_middles(pieces: Sequence[Piece], points: Array) -> Array:
 
 
 def arc_near(pieces: Sequence[Piece], points: Array, line: Line) -> Arc | None:
-    """The arc of least squares through both ends of a run, see :func:`workhold.geometry.curve_fit.circle_of_points`."""
+    """Arc of least squares through both ends of a run; see ``curve_fit.circle_of_points``."""
     circle = circle_of_points(with_middles(pieces, points))
     if circle is None:
         return None
@@ -374,7 +370,7 @@ def arc_near(pieces: Sequence[Piece], points: Array, line: Line) -> Arc | None:
 
 
 def off(pieces: Sequence[Piece], points: Array, segment: Segment, near: float, tolerance: float) -> float:
-    """How far a run is from a line or an arc, in mm; infinity where that is too far, or it does not run forward."""
+    """Distance in mm of a run from a line or arc; infinity where it is too far or runs backward."""
     if isinstance(segment, Arc):
         cx, cy = segment.center
         x, y = points[:, 0] - cx, points[:, 1] - cy
@@ -390,7 +386,8 @@ def off(pieces: Sequence[Piece], points: Array, segment: Segment, near: float, t
     if all(piece.bulge == 0.0 for piece in pieces):
         if isinstance(segment, Line):
             return float(away.max())
-        # The foot of the centre on a chord is the nearest point; about a circle it lies between the ends, or is no nearer.
+        # The foot of the centre on a chord is the nearest point; about a circle it lies between the ends, or
+        # is no nearer.
         step = np.diff(points, axis=0)
         size = np.hypot(*step.T)
         share = np.clip(-(x[:-1] * step[:, 0] + y[:-1] * step[:, 1]) / size**2, 0.0, 1.0)

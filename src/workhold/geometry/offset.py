@@ -1,8 +1,9 @@
 """Trimmed offset of an outline: the straight and circular pieces of the boundary of (part + disc).
 
-No general arrangement is needed. Every raw offset piece is cut where it meets another raw offset piece or a circle of the
-offset radius around a joint. A cut piece belongs to the boundary exactly when its middle is no nearer than the radius to
-the outline, because nearness can only change at such a cut. Quadratic in the number of segments, exact up to rounding.
+No general arrangement is needed. Every raw offset piece is cut where it meets another raw offset piece or a
+circle of the offset radius around a joint. A cut piece belongs to the boundary exactly when its middle is no
+nearer than the radius to the outline, because nearness can only change at such a cut. Quadratic in the number
+of segments, exact up to rounding.
 
 Glossary
 --------
@@ -65,13 +66,14 @@ def cut_points(
 def trimmed_offsets(
     segments: Sequence[Segment], radius: float, flat: float | None = None
 ) -> list[tuple[int, Segment]]:
-    """The boundary pieces of (part + disc of ``radius`` mm) that face the segments, without the rolled corners.
+    """Boundary pieces of (part + disc of ``radius`` mm) that face the segments, without rolled corners.
 
     Parameters
     ----------
     segments : the whole outline with its holes, material on the left.
     radius : in mm, zero or more.
-    flat : lines are moved outward by this in mm instead, ``radius`` or less: where the disc keeps clear of all but the line.
+    flat : lines are moved outward by this in mm instead, ``radius`` or less: where the disc keeps clear of
+        all but the line.
 
     Returns
     -------
@@ -87,7 +89,8 @@ def trimmed_offsets(
     def is_clear(beside: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
         return np.asarray(outline_distances(points, beside) >= radius - CLEARANCE)
 
-    # Beside a flat the disc reaches over the line, and behind an acute corner into what lies on the other side of the part.
+    # Beside a flat the disc reaches over the line, and behind an acute corner into what lies on the other
+    # side of the part.
     behind = [None if flat is None else raw_offset(segment, -radius) for segment in segments]
     for index, segment in enumerate(segments):
         piece, beside, sides = raw[index], rows, [raw]
@@ -106,9 +109,10 @@ def trimmed_offsets(
 
 
 def clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[Segment]:
-    """The parts of a segment whose points are at least ``radius`` mm from a zone, a closed loop with its inside on the left.
+    """Parts of a segment at least ``radius`` mm from a zone, a closed loop with its inside on the left.
 
-    They end where the distance is the radius: on the zone's offset or on a joint circle, like the pieces of an outline.
+    They end where the distance is the radius: on the zone's offset or on a joint circle, like the pieces of
+    an outline.
     """
     rows = segment_rows(zone)
     others = [raw for segment in zone if (raw := raw_offset(segment, radius)) is not None]
@@ -124,7 +128,7 @@ def clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[
 def kept_parts(
     piece: Segment, points: Sequence[Point], is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 ) -> list[Segment]:
-    """The parts of a raw piece, cut at some points, that stay clear; ``is_clear`` answers for (M, 2) points."""
+    """Parts of a raw piece, cut at some points, that stay clear; ``is_clear`` takes (M, 2) points."""
     half = piece.half_extent
     inner = sorted(p for p in (piece.parameter(point) for point in points) if -half < p < half)
     cuts = [-half, *inner, half]
@@ -145,7 +149,7 @@ def kept_parts(
 
 
 def boxes_apart(boxes: NDArray[np.float64], box: tuple[float, float, float, float]) -> NDArray[np.float64]:
-    """Largest of the gaps in x and y between (N, 4) bounding boxes and one, shape (N,), negative where they overlap."""
+    """Larger gap in x and y, (N,), between bounding boxes (N, 4) and one; negative where they overlap."""
     x0, y0, x1, y1 = box
     gaps = np.stack([boxes[:, 0] - x1, x0 - boxes[:, 2], boxes[:, 1] - y1, y0 - boxes[:, 3]])
     return np.asarray(gaps.max(axis=0))

@@ -113,10 +113,10 @@ def polynomial_pieces(points: ArrayLike) -> Pieces:
 
 
 def ellipse_pieces(center: Point, major: Point, minor: Point, start: float, sweep: float) -> Pieces:
-    """The pieces of center + major cos t + minor sin t for t from ``start`` over a signed ``sweep`` in radians, exactly.
+    """Exact pieces of center + major cos t + minor sin t from ``start`` over a signed ``sweep`` in radians.
 
-    Each covers an equal part of at most a quarter turn; its middle weight is the cosine of half of that (Piegl and Tiller,
-    The NURBS Book, 1997, section 7.3).
+    Each covers an equal part of at most a quarter turn; its middle weight is the cosine of half of that
+    (Piegl and Tiller, The NURBS Book, 1997, section 7.3).
     """
     count = max(1, ceil(abs(sweep) / (pi / 2) - 1e-9))
     step = sweep / count
@@ -154,7 +154,7 @@ def arc_pieces(start: Point, end: Point, bulge: float) -> Pieces:
 
 
 def raised(pieces: Pieces, degree: int) -> Pieces:
-    """Pieces of a higher degree that are the same curves (Farin, Curves and Surfaces for CAGD, section 6.1)."""
+    """Same curves as pieces of a higher degree (Farin, Curves and Surfaces for CAGD, section 6.1)."""
     while pieces.shape[1] <= degree:
         n = pieces.shape[1]
         share = (np.arange(n + 1) / n)[:, None]
@@ -230,7 +230,8 @@ def point_at(pieces: Pieces, parameter: float) -> Point:
 def direction_at(pieces: Pieces, parameter: float, after: bool) -> Point:
     """Unit tangent of a curve at a parameter, seen from the stretch after it or before it.
 
-    Where the derivative vanishes, as at a control point given twice, it is the direction to the next one that differs.
+    Where the derivative vanishes, as at a control point given twice, it is the direction to the next one that
+    differs.
     """
     number = min(int(parameter), len(pieces) - 1)
     if parameter == number and not after and number > 0:
@@ -297,7 +298,8 @@ Array = NDArray[np.float64]
 MOST_HALVINGS = 7
 # A bound this near to a distance that is reached is good enough.
 NEAR_ENOUGH = 1.03
-# A share of the coefficients: a derivative that is nowhere below minus this vanishes or rises, but for rounding.
+# A share of the coefficients: a derivative that is nowhere below minus this vanishes or rises, but for
+# rounding.
 ROUNDING = 1e-11
 
 

@@ -1,4 +1,4 @@
-"""Line and arc segments of a generalized polygon, with material on their left; where they meet, and rectangles.
+"""Line and arc segments of a generalized polygon, with material on their left, and where they meet.
 
 Glossary
 --------
@@ -198,15 +198,17 @@ Segment = Line | Arc
 
 
 def to_middle(radius: float, mid_angle: float) -> tuple[Fraction, Fraction]:
-    """The way in mm from an arc's centre to its middle: the direction's double numbers, brought to length 1 but for what is
-    of the fourth order in their roundings."""
+    """The vector in mm from an arc's centre to its middle, as fractions.
+
+    The rounded direction is brought to length 1, up to the fourth order in its roundings.
+    """
     x, y = Fraction(cos(mid_angle)), Fraction(sin(mid_angle))
     scale = Fraction(radius) * (3 - x * x - y * y) / 2
     return scale * x, scale * y
 
 
 def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
-    """Builds the segment from ``start`` to ``end`` with a DXF bulge (tan of a quarter of the sweep, 0 for a line).
+    """Builds the segment from ``start`` to ``end`` with a DXF bulge, tan(sweep / 4), 0 for a line.
 
     The points differ; a bulge that is nearly 0 is a line. Formula: chord c, sweep 4 atan(bulge), radius
     c / (2 sin(sweep / 2)) (AutoCAD DXF reference, LWPOLYLINE group 42).
@@ -218,7 +220,7 @@ def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
     dx, dy = end[0] - start[0], end[1] - start[1]
     chord = hypot(dx, dy)
     radius = chord / (2 * sin(half_sweep))
-    # The middle of the arc lies bulge * chord / 2 to the right of the chord; the centre one radius to its left.
+    # The arc's middle is bulge * chord / 2 to the right of the chord, its centre a radius left of that.
     nx, ny = dy / chord, -dx / chord
     to_center = sign * radius * cos(half_sweep)
     center = ((start[0] + end[0]) / 2 - nx * to_center, (start[1] + end[1]) / 2 - ny * to_center)
@@ -234,12 +236,7 @@ def segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
 
 
 def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
-    """Describe segments to the kernels.
-
-    Returns
-    -------
-    (N, 10) array, read-only, its columns as in ``kernels.base.feature``
-    """
+    """Rows (N, 10) of segments for the kernels, read-only, columns as in ``kernels.base.feature``."""
     rows = np.array([segment.row() for segment in segments], dtype=np.float64).reshape(-1, SEGMENT_LENGTH)
     rows.setflags(write=False)
     return rows
@@ -257,7 +254,7 @@ def line_line(a: Line, b: Line) -> list[Point]:
 
 
 def line_circle(line: Line, center: Point, radius: float, tolerance: float = 1e-9) -> list[Point]:
-    """Common points of a carrying line and a circle; a near touch within the tolerance (mm) gives its one point."""
+    """Common points of a line and a circle; a touch within the tolerance in mm gives one point."""
     (px, py), (tx, ty) = line.middle, line.tangent
     dx, dy = center[0] - px, center[1] - py
     along = dx * tx + dy * ty
@@ -272,7 +269,7 @@ def line_circle(line: Line, center: Point, radius: float, tolerance: float = 1e-
 def circle_circle(
     center_a: Point, radius_a: float, center_b: Point, radius_b: float, tolerance: float = 1e-9
 ) -> list[Point]:
-    """Common points of two circles; a near touch within the tolerance (mm) gives its one point, equal circles none."""
+    """Common points of two circles; a touch within the tolerance in mm gives one, equal circles none."""
     dx, dy = center_b[0] - center_a[0], center_b[1] - center_a[1]
     distance = hypot(dx, dy)
     if distance <= tolerance:
@@ -343,11 +340,9 @@ def bounding_box(segment: Segment) -> tuple[float, float, float, float]:
     xs, ys = [segment.start[0], segment.end[0]], [segment.start[1], segment.end[1]]
     if isinstance(segment, Arc):
         for dx, dy in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
-            extreme = (segment.center[0] + segment.radius * dx, segment.center[1] + segment.radius * dy)
-            toward = cos(segment.mid_angle) * dx + sin(segment.mid_angle) * dy
-            if toward >= cos(segment.half_sweep):
-                xs.append(extreme[0])
-                ys.append(extreme[1])
+            if cos(segment.mid_angle) * dx + sin(segment.mid_angle) * dy >= cos(segment.half_sweep):
+                xs.append(segment.center[0] + segment.radius * dx)
+                ys.append(segment.center[1] + segment.radius * dy)
     return min(xs), min(ys), max(xs), max(ys)
 
 

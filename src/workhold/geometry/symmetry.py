@@ -31,7 +31,7 @@ __all__ = [
 
 
 def rotated(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
-    """Vectors turned counter-clockwise by an angle in radians; numbers or arrays of them, of shapes that go together.
+    """Vectors turned counter-clockwise by angles in radians; numbers or arrays of matching shapes.
 
     >>> [round(float(v), 12) for v in rotated(3.0, 1.0, np.pi / 2)]
     [-1.0, 3.0]
@@ -61,7 +61,7 @@ class Rotation:
 
 
 def centroid_of_joints(segments: Sequence[Segment]) -> Point:
-    """Mean of the segments' middles, each with its length's weight: a point every rotation onto itself keeps."""
+    """Mean of the segments' middles, weighted by length: every rotation onto itself keeps this point."""
     total = sum(s.length for s in segments)
     middles = [middle_of(s) for s in segments]
     x = sum(s.length * m[0] for s, m in zip(segments, middles, strict=True)) / total
@@ -80,8 +80,8 @@ class CenteredOutline:
 
     Parameters
     ----------
-    points : (N, 4, 2) anchor, start, end and centre. The anchor is the middle, or the centre of a whole circle, of which
-        all four are the centre. The centre of a line is its middle.
+    points : (N, 4, 2) anchor, start, end and centre. The anchor is the middle, or the centre of a whole
+        circle, of which all four are the centre. The centre of a line is its middle.
     kinds : (N, 2) signed radius (0 for a line), and 1 for a whole circle.
     """
 
@@ -115,7 +115,7 @@ class CenteredOutline:
         return int(off_center[0]) if len(off_center) else None
 
     def angles(self, other: CenteredOutline) -> Array:
-        """Angles (M,) in [0, 2 pi) that may carry the anchor of the first segment to anchors of another outline."""
+        """Angles (M,) in [0, 2 pi) that may carry the first segment's anchor to anchors of another."""
         assert self.first is not None
         x, y = other.points[np.hypot(*other.points[:, 0].T) > SAME_AFTER_TURN, 0].T
         return np.asarray((np.arctan2(y, x) - np.arctan2(*self.points[self.first, 0, ::-1])) % tau)
@@ -129,11 +129,12 @@ class CenteredOutline:
         return None if (found < 0).any() else found
 
     def images(self, other: CenteredOutline, angle: float, chosen: slice) -> NDArray[np.int64]:
-        """The segment of another outline that a rotation carries each of some to, -1 for those without an image."""
+        """Segments of another outline that a rotation carries each of some to; -1 without an image."""
         points, kinds = self.points[chosen], self.kinds[chosen]
         turned = np.stack(rotated(points[..., 0], points[..., 1], angle), axis=-1)
         level, order = other.levels
-        # The anchor of an image is at most so far off, and so is its level, the direction being no longer than 1.
+        # The anchor of an image is at most so far off, and so is its level, the direction being no longer
+        # than 1.
         first, end = (
             np.searchsorted(level, turned[:, 0] @ ALONG + hair)
             for hair in (-SAME_AFTER_TURN, SAME_AFTER_TURN)
@@ -152,7 +153,8 @@ class CenteredOutline:
 def rotations_onto_itself(segments: Sequence[Segment]) -> list[Rotation]:
     """All rotations that carry an outline, given by its faces, onto itself; the identity comes first.
 
-    An outline of concentric circles alone turns onto itself at every angle; only the identity is returned for it.
+    An outline of concentric circles alone turns onto itself at every angle; only the identity is returned for
+    it.
     """
     outline = CenteredOutline.of(segments)
     rotations = [Rotation(0.0, np.arange(len(segments), dtype=np.int64))]
@@ -170,9 +172,10 @@ def rotations_onto_itself(segments: Sequence[Segment]) -> list[Rotation]:
 
 
 def symmetries(segments: Sequence[Segment]) -> list[NDArray[np.int64]]:
-    """Indices (N,) of the segments that each is carried to by every rotation and mirror image of an outline onto itself.
+    """Indices (N,) of segments' images under every rotation and mirror image of an outline onto itself.
 
-    The identity comes first. Of concentric circles alone, which every motion about their centre carries, it is the only one.
+    The identity comes first. Of concentric circles alone, which every motion about their centre carries, it
+    is the only one.
     """
     images = [rotation.image for rotation in rotations_onto_itself(segments)]
     outline = CenteredOutline.of(segments)
@@ -187,7 +190,7 @@ def is_own_mirror_image(segments: Sequence[Segment]) -> bool:
 
 
 def mirrored_onto(outline: CenteredOutline, segments: Sequence[Segment]) -> NDArray[np.int64] | None:
-    """The segment of an outline that a mirror image carries each to, or None where none carries it onto itself."""
+    """Indices of segments' mirror images in an outline; None where no mirror image maps it onto itself."""
     mirrored = CenteredOutline.of([mirror_image(segment) for segment in segments])
     found = (mirrored.image(outline, angle) for angle in mirrored.angles(outline).tolist())
     return next((image for image in found if image is not None), None)

@@ -1,8 +1,9 @@
-"""Every kernel that Python calls, called once with arrays of nothing: which compiles it for the types it is called with.
+"""Every kernel that Python calls, called once with arrays of nothing: which compiles it for the types it is
+called with.
 
-Numba compiles one kernel at a time in a process, so there are parts for several processes: kernels that call the same ones
-are in one, since each process compiles those anew. On a first run two processes share the work through the cache folder;
-when a wheel is built, the code of all parts goes into one library.
+Numba compiles one kernel at a time in a process, so there are parts for several processes. Kernels that call
+the same ones are in one part, since each process compiles those anew. On a first run two processes share the
+work through the cache folder; when a wheel is built, the code of all parts goes into one library.
 """
 
 from __future__ import annotations
@@ -310,8 +311,8 @@ PARTS: dict[str, Callable[[], Calls]] = {
     "curves": partial(half_of_seating, True),
     "seats": partial(half_of_seating, False),
 }
-# The parts that all searches need, and those of seating, in two shares of about the same length, for two processes. What a
-# search for two clamps needs besides is compiled when it is called, in a second.
+# The parts that all searches need, and those of seating, in two shares of about the same length, for two
+# processes. What a search for two clamps needs besides is compiled when it is called, in a second.
 SEARCH = ("distances", "others"), ("crossings", "matrices")
 SEATING = ("seats",), ("curves",)
 
@@ -323,7 +324,8 @@ def kernel_count(parts: Sequence[str]) -> int:
 
 @contextmanager
 def without_collector() -> Iterator[None]:
-    """Compile without the garbage collector, which would look through all that is compiled again and again."""
+    """Compiles without the garbage collector, which would look through all that is compiled again and
+    again."""
     enabled = gc.isenabled()
     gc.disable()
     try:

@@ -24,6 +24,7 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import SAME_IMAGE, SAME_POSE
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Arrangement, Toolkit
 from workhold.geometry.symmetry import (
     Rotation,
@@ -135,7 +136,7 @@ class Identity:
         # Whole numbers of pegs: of those in holes of their own, of clamps, and of what moves.
         places = np.arange(len(pegs))[::sign]
         clamps = places[[peg.on is not None for peg in pegs]]
-        own = places[[peg.on is None and not peg.is_wall for peg in pegs]]
+        own = places[[peg.has_lattice for peg in pegs]]
         movers = clamps if len(clamps) else own[-1:]
         column, row = sign * table.column.astype(np.int64), sign * table.row.astype(np.int64)
         each = [
@@ -167,7 +168,7 @@ class Identity:
 
 def half_turns(toolkit: Toolkit) -> bool:
     """Whether half a turn of everything leaves a plate as it is, which a wall does not allow."""
-    return toolkit.wall is None
+    return WALL_END not in toolkit.contacts
 
 
 def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:

@@ -264,7 +264,8 @@ def best_figures(records: Array, problem: Problem, query: Query) -> Array:
         out,
         np.empty((10, 3)),
     )
-    figures(*four, inverses, alone, *rest)
+    points, normals, to_ends, to_edges = four
+    figures(points, normals, to_ends, to_edges, inverses, alone, *rest)
     ends, edges = found.ends, found.edges
     norm = np.abs(inverses[:, :LOCATORS, :LOCATORS]).sum(axis=2).max(axis=1, initial=0.0)
     # How far places may be off, and what that does to the inverse, to first order and generously.

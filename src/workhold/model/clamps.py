@@ -1,8 +1,9 @@
 """Clamps that are bolted to a plate: what shows of them, and the ratio and order of the forces of two.
 
-Let the locators carry b1 f1 + b2 f2 where the clamps push with f1 and f2. All three are pressed exactly for an open interval
-of f2 / f1. How far apart its ends are as angles is the clamp freedom: by how much the two forces may differ. Where the
-interval begins at zero the first clamp alone lifts the part off no locator; where it has no upper end, the second does not.
+Let the locators carry b1 f1 + b2 f2 where the clamps push with f1 and f2. All three are pressed exactly for
+an open interval of f2 / f1. How far apart its ends are as angles is the clamp freedom: by how much the two
+forces may differ. Where the interval begins at zero the first clamp alone lifts the part off no locator;
+where it has no upper end, the second does not.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ LOCATORS = 3
 
 
 def ratios(reactions: Array) -> tuple[Array, Array]:
-    """The ends (N,) of the open interval of f2 / f1 in which all locators are pressed, infinite where there is none above.
+    """The ends (N,) of the open interval of f2 / f1 in which all locators are pressed; the upper may be
+    infinite.
 
     Parameters
     ----------
@@ -65,7 +67,7 @@ def ratios(reactions: Array) -> tuple[Array, Array]:
 
 
 def working_forces(reactions: Array) -> Array:
-    """Forces (N, P) of all pegs per unit of f1 + f2 at the working ratio, the middle of the interval as an angle.
+    """Forces (N, P) of all pegs per unit of f1 + f2 at the working ratio, the interval's middle angle.
 
     Parameters
     ----------
@@ -87,7 +89,8 @@ class ShownClamp:
     ----------
     carrier : the whole of it.
     tip : the peg that touches the part.
-    hole : centre of the hole that it is bolted in; None where only the line is known that its tip moves along.
+    hole : centre of the hole that it is bolted in; None where only the line is known that its tip moves
+        along.
     clamping : unit vector along which it pushes.
     pitch : distance along that line between holes.
     """
@@ -109,7 +112,7 @@ class ShownClamp:
         return self.hole or (self.tip.x, self.tip.y)
 
     def outline(self, more: float = 0.0) -> tuple[Segment, ...]:
-        """The outline of its body, counter-clockwise: a capsule from the hole to the tip, or the circle of the tip alone.
+        """The outline of the body, counter-clockwise: a capsule from hole to tip, or the tip's circle alone.
 
         Parameters
         ----------
@@ -129,7 +132,7 @@ class ShownClamp:
 
     @property
     def extent(self) -> Box:
-        """That of its body."""
+        """The box of the body."""
         one, other = (
             Box(x, y, x, y).grown(self.carrier.peg_radius) for x, y in (self.back, (self.tip.x, self.tip.y))
         )
@@ -137,7 +140,9 @@ class ShownClamp:
 
     @property
     def room(self) -> Box:
-        """Its body, and one pitch behind it for the hand that sets it and the arrow that tells its direction."""
+        """The box of the body and one pitch behind it, for the hand that sets it and the arrow of its
+        direction.
+        """
         behind = self.behind(self.pitch)
         return self.extent.union(Box(*behind, *behind))
 
@@ -165,12 +170,12 @@ def clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:
     return (0.0 - toolkit.clamping * x, 0.0 - toolkit.clamping * y)
 
 
-# Digits of a ratio that is told, rounded so that it lies inside the interval.
+# Digits of a ratio on paper, rounded so that it lies inside the interval.
 DIGITS = 2
 
 
 def clamp_names(fixture: Fixture) -> tuple[str, ...]:
-    """What the clamps of a fixture are called: by holes or lines, and where both are on one line by directions too."""
+    """Names of a fixture's clamps: their holes or lines, with directions where both are on one line."""
     tips = fixture.pegs[-2:]
     holes = [tip.hole for tip in tips]
     if len(set(holes)) == len(holes):
@@ -182,7 +187,7 @@ def clamp_names(fixture: Fixture) -> tuple[str, ...]:
 
 
 def first_clamps(fixture: Fixture) -> tuple[str, ...]:
-    """What those of two clamps are called that may be tightened first, as they lift the part off no locator."""
+    """Names of those of two clamps that may be tightened first, as they lift the part off no locator."""
     if fixture.pair is None:
         return ()
     low, high = fixture.pair.ratio
@@ -192,16 +197,14 @@ def first_clamps(fixture: Fixture) -> tuple[str, ...]:
 
 
 def second_over_first(fixture: Fixture) -> float:
-    """The second clamp's force over the first's at the working ratio; 0 where one clamp or jaw holds the part."""
+    """The second clamp's force over the first's at the working ratio; 0 where one thing clamps."""
     return 0.0 if fixture.pair is None else fixture.pair.working_ratio
 
 
 def clamp_shares(fixture: Fixture) -> tuple[float, ...]:
     """The part of the clamp force, of two the sum of both, that each clamp has at the working ratio."""
-    if fixture.pair is None:
-        return (1.0,)
-    ratio = fixture.pair.working_ratio
-    return 1.0 / (1.0 + ratio), ratio / (1.0 + ratio)
+    ratio = second_over_first(fixture)
+    return (1.0 / (1.0 + ratio), ratio / (1.0 + ratio))[: len(fixture.travels)]
 
 
 def order_words(fixture: Fixture) -> str:
@@ -210,14 +213,16 @@ def order_words(fixture: Fixture) -> str:
     Examples
     --------
     >>> from workhold.model.fixture import Pair, Peg, Pose
-    >>> tips = [Peg(f"clamp {d}", 4, 1, 66.0, 20.0, 2, 0.5, f"clamp {hole}") for d, hole in (("-x", "E2"), ("-y", "C5"))]
+    >>> where = ("-x", "E2"), ("-y", "C5")
+    >>> tips = [Peg(f"clamp {d}", 4, 1, 66.0, 20.0, 2, 0.5, f"clamp {hole}") for d, hole in where]
     >>> def words(low, high):
     ...     pair = Pair((0, 0), (low, high), (), 1)
     ...     return order_words(Fixture("clamp2", tuple(tips), Pose(0, 0, 0), 0, {}, "-x -y", pair))
     >>> words(0.0, float("inf"))
     'Tighten either clamp first, each as hard as it needs: neither lifts the part off a locator.'
-    >>> words(0.0, 2.468)
-    'Tighten clamp E2 first. Then tighten clamp C5 with less than 2.4 times its force: more lifts the part off a locator.'
+    >>> words(0.0, 2.468).split(": ")  # doctest: +NORMALIZE_WHITESPACE
+    ['Tighten clamp E2 first. Then tighten clamp C5 with less than 2.4 times its force',
+     'more lifts the part off a locator.']
     """
     if fixture.pair is None:
         return ""
@@ -227,12 +232,12 @@ def order_words(fixture: Fixture) -> str:
     if low == 0.0 or high == inf:
         one, other, most = (first, second, high) if low == 0.0 else (second, first, 1.0 / low)
         return (
-            f"Tighten {one} first. Then tighten {other} with less than {inside(most, floor)} times its force: more lifts "
-            "the part off a locator."
+            f"Tighten {one} first. Then tighten {other} with less than {inside(most, floor)} times its "
+            "force: more lifts the part off a locator."
         )
     return (
-        f"Bring both up together, in small turns: {second} with {inside(low, ceil)} to {inside(high, floor)} times the "
-        f"force of {first}. Neither may be tightened alone: it lifts the part off a locator."
+        f"Bring both up together, in small turns: {second} with {inside(low, ceil)} to {inside(high, floor)} "
+        f"times the force of {first}. Neither may be tightened alone: it lifts the part off a locator."
     )
 
 
@@ -251,7 +256,8 @@ def freedom_words(degrees: float) -> str:
     )
 
 
-# Degrees of clamp freedom from which a hand tightens well enough: forces may be off by a factor of two to either side.
+# Degrees of clamp freedom from which a hand tightens well enough: forces may be off by a factor of two to
+# either side.
 EASY = 45.0
 
 

@@ -22,7 +22,7 @@ COLUMNS = {
     "force": Column("<f8", (4,)),
     "quality": Column("<f8", (len(FIGURES),)),
 }
-# The same of fixtures with two clamps.
+# What each column holds of fixtures with two clamps.
 PAIR_COLUMNS = COLUMNS | {
     "column": Column("<i4", (5,)),
     "row": Column("<i4", (5,)),

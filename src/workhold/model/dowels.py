@@ -1,4 +1,5 @@
-"""Dowel pins and the plates drilled for them: limits of pins and holes, and the places of dowel and bolt holes.
+"""Dowel pins and the plates drilled for them: limits of pins and holes, and the places of dowel and bolt
+holes.
 
 Of a plate, places are in mm in a frame of its own, whose origin is its hole A1; x and y run as in the vise.
 
@@ -8,15 +9,15 @@ limits : smallest and largest diameter that a maker may deliver, in mm.
 position : how far the centre of a hole may be from its place on the lattice, in mm, in any direction.
 clearance : how much wider a hole is than the pin in it; a pin wider than its hole is pressed in and has none.
 
-A design takes every peg to be a circle of the peg radius ρ about its place on the lattice. Let the pin have diameter d
-in a hole of diameter D whose centre is off by p. The pin can be anywhere in its hole, so its centre is off by at most
-p + max(0, D - d)/2, and its surface, along any direction, by at most
+A design takes every peg to be a circle of the peg radius ρ about its place on the lattice. Let the pin have
+diameter d in a hole of diameter D whose centre is off by p. The pin can be anywhere in its hole, so its
+centre is off by at most p + max(0, D - d)/2, and its surface, along any direction, by at most
 
     p + max(0, D - d)/2 + |d - 2ρ|/2 .
 
 That grows with D and is convex in d, hence largest at the largest hole and at one of the pin's two limits:
-:func:`peg_error`. It is the sum of the worst cases, as drawings add them up (ISO 286-1:2010 defines limits and
-clearance).
+:func:`peg_error`. It is the sum of the worst cases, as drawings add them up (ISO 286-1:2010 defines limits
+and clearance).
 """
 
 from __future__ import annotations
@@ -40,7 +41,6 @@ __all__ = [
     "JawPlate",
     "Limits",
     "fit_words",
-    "hole_class",
     "jaw_plates",
     "plate_places",
     "peg_error",
@@ -50,7 +50,8 @@ __all__ = [
 Limits = tuple[float, float]
 # ISO 286-2:2010, class H7: up to this nominal diameter in mm a hole may be so many mm wider and no narrower.
 H7 = ((3.0, 0.010), (6.0, 0.012), (10.0, 0.015), (18.0, 0.018), (30.0, 0.021), (50.0, 0.025))
-# A pin whose diameter is this far from that of the peg, in proportion, is not the peg: a radius was given for a diameter.
+# A pin whose diameter is this far from that of the peg, in proportion, is not the peg: a radius was given for
+# a diameter.
 FAR = 0.1
 
 
@@ -145,8 +146,8 @@ def peg_error(peg_radius: float, pin: Limits, hole: Limits, position: float) -> 
 
     Examples
     --------
-    A 6 mm pin of 5.982 to 6.000 mm (h8) in a hole of 6.000 to 6.012 mm (H7), placed to 0.010 mm: the smallest pin in the
-    widest hole is 0.015 mm off its hole's centre and its surface 0.009 mm nearer to it.
+    A 6 mm pin of 5.982 to 6.000 mm (h8) in a hole of 6.000 to 6.012 mm (H7), placed to 0.010 mm. The
+    smallest pin in the widest hole is 0.015 mm off its hole's centre and its surface 0.009 mm nearer to it.
 
     >>> round(peg_error(3.0, (5.982, 6.0), (6.0, 6.012), 0.010), 6)
     0.034
@@ -157,7 +158,7 @@ def peg_error(peg_radius: float, pin: Limits, hole: Limits, position: float) -> 
 
 
 def refuse_limits(name: str, limits: Limits, peg_radius: float) -> None:
-    """Refuse limits that are not those of a pin or hole for the peg.
+    """Refuses limits that are not those of a pin or hole for the peg.
 
     Parameters
     ----------
@@ -179,14 +180,16 @@ def refuse_limits(name: str, limits: Limits, peg_radius: float) -> None:
         )
     if max(abs(low - 2 * peg_radius), abs(high - 2 * peg_radius)) > FAR * 2 * peg_radius:
         raise InputError(
-            f"{name} {low:g} to {high:g} mm is not that of a peg of radius {peg_radius:g} mm: correct one of them, "
-            "and mind that the one is a diameter, the other a radius."
+            f"{name} {low:g} to {high:g} mm is not that of a peg of radius {peg_radius:g} mm: correct one of "
+            "them, and mind that the one is a diameter, the other a radius."
         )
 
 
 @frozen
 class Bolts:
-    """The bolts that hold a plate: the diameter of their holes and where these are, from hole A1 of the plate, in mm."""
+    """The bolts that hold a plate: the diameter of their holes and where these are, from hole A1 of the
+    plate, in mm.
+    """
 
     diameter: float
     places: tuple[Point, ...]
@@ -248,15 +251,16 @@ def jaw_plates(
         diameter = 2 * carrier.peg_radius if hole_diameter is None else hole_diameter
         if not 0 < diameter < min(carrier.pitch):
             raise InputError(
-                f"dowel holes of {unit.figure(diameter)} {unit.abbreviation} do not fit a lattice whose holes are "
-                f"{unit.figure(min(carrier.pitch))} {unit.abbreviation} apart: give a diameter between 0 and that."
+                f"dowel holes of {unit.figure(diameter)} {unit.abbreviation} do not fit a lattice whose "
+                f"holes are {unit.figure(min(carrier.pitch))} {unit.abbreviation} apart: give a diameter "
+                "between 0 and that."
             )
-        beyond = [pitch / 2 if edge is None else edge for pitch in carrier.pitch]
-        if not all(isfinite(length) and length > diameter / 2 for length in beyond):
+        margins = [pitch / 2 if edge is None else edge for pitch in carrier.pitch]
+        if not all(isfinite(length) and length > diameter / 2 for length in margins):
             raise InputError(
                 "the plate's edge would cut its outermost dowel holes: give a larger distance to the edge."
             )
-        (pitch_x, pitch_y), (out_x, out_y) = carrier.pitch, beyond
+        (pitch_x, pitch_y), (out_x, out_y) = carrier.pitch, margins
         outline = Box(
             -out_x, -out_y, (carrier.columns - 1) * pitch_x + out_x, (carrier.rows - 1) * pitch_y + out_y
         )
@@ -278,7 +282,7 @@ def jaw_plates(
 
 
 def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
-    """Refuse bolts that leave a plate or run into a hole.
+    """Refuses bolts that leave a plate or run into a hole.
 
     Raises
     ------
@@ -290,7 +294,8 @@ def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
         return
     if not (isfinite(bolts.diameter) and bolts.diameter > 0):
         raise InputError(
-            f"bolt holes of {unit.figure(bolts.diameter)} {unit.abbreviation} cannot be drilled: give more than 0."
+            f"bolt holes of {unit.figure(bolts.diameter)} {unit.abbreviation} cannot be drilled: give more "
+            "than 0."
         )
     radius, apart = bolts.diameter / 2, (bolts.diameter + plate.hole_diameter) / 2
     for number, (x, y) in enumerate(bolts.places, 1):

@@ -28,10 +28,12 @@ class Peg:
     column, row : the hole, counted from 0.
     x, y : the peg's centre in the vise frame, in mm.
     face : number of the face it touches.
-    force : contact force per unit of clamping force; of two clamps per unit of the sum of theirs, at the working ratio.
+    force : contact force per unit of clamping force; of two clamps per unit of the sum of theirs, at the
+        working ratio.
     place : what its place is called where that is no hole of its carrier: of a clamp its hole or its line.
     beside : number of a second face that it touches: of a corner that lies on a wall; None of all others.
-    flat_deg : which way its flat looks, in degrees from the x axis; None of a peg that touches with its round side.
+    flat_deg : which way its flat looks, in degrees from the x axis; None of a peg that touches with its round
+        side.
     """
 
     carrier: str
@@ -76,7 +78,8 @@ class Peg:
 
 @frozen
 class Pose:
-    """The map of a workpiece point q to R(theta) q + (x, y) in the vise frame; theta in degrees, x and y in mm.
+    """The map of a workpiece point q to R(theta) q + (x, y) in the vise frame; theta in degrees, x and y in
+    mm.
 
     Points and directions are given by their coordinates, numbers or arrays of them.
 
@@ -121,8 +124,8 @@ class Pair:
     Parameters
     ----------
     travels : how far each clamp has travelled from its hole, in mm.
-    ratio : the open interval of the second clamp's force over the first's in which all locators are pressed; the upper end
-        may be infinite.
+    ratio : the open interval of the second clamp's force over the first's in which all locators are pressed;
+        the upper end may be infinite.
     reactions : of each peg its force per unit of the force of the first clamp, and of the second.
     count : how many pairs of clamps there are at this seat, of which this one is listed.
     """
@@ -174,17 +177,20 @@ class Fixture:
 
     Parameters
     ----------
-    type : name of its arrangement: of a vise "I" for two pegs on each jaw, "II" for three on the left and one on the right.
+    type : name of its arrangement: of a vise "I" for two pegs on each jaw, "II" for three on the left and one
+        on the right.
     pegs : in the order of the arrangement, those of a vise's left jaw first.
     pose : where the workpiece lies.
-    jaw_separation : x distance in mm from the left jaw's last column to the right jaw's first; of another toolkit the travel
-        of what moves.
+    jaw_separation : x distance in mm from the left jaw's last column to the right jaw's first; of another
+        toolkit the travel of what moves.
     quality : figures of merit by name.
-    direction : in which the clamp moves when it clamps, such as "-x", or two clamps do, "-x -y"; None of a vise.
+    direction : in which the clamp moves when it clamps, such as "-x", or two clamps do, "-x -y"; None of a
+        vise.
     pair : what is particular to two clamps; None of other fixtures.
-    listed : where it is listed, so that it can be drawn; None of one that was put together otherwise. It makes no difference
-        between fixtures.
-    seating : what else its pegs can do with the part, a ``model.seating.Seating``; None where that was not asked.
+    listed : where it is listed, so that it can be drawn; None of one that was put together otherwise. It
+        makes no difference between fixtures.
+    seating : what else its pegs can do with the part, a ``model.seating.Seating``; None where that was not
+        asked.
     """
 
     type: str
@@ -204,7 +210,10 @@ class Fixture:
         if self.seating is not None:
             opening = self.seating.capture_opening
             caught = ", never lost" if opening is None else f", caught below {opening:.3f} mm"
-        return f"<{which}, {kind}: {' '.join(peg.hole for peg in self.pegs)} at {self.pose.theta_deg:.3f} degrees{caught}>"
+        return (
+            f"<{which}, {kind}: {' '.join(peg.hole for peg in self.pegs)} at {self.pose.theta_deg:.3f} "
+            f"degrees{caught}>"
+        )
 
     def _repr_svg_(self) -> str | None:
         return None if self.listed is None else str(self.draw())
@@ -221,7 +230,7 @@ class Fixture:
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures of quality and, where it is told, of seating, whose warnings count as well."""
+        """The figures of quality and, where it is known, of seating, whose warnings count as well."""
         if self.seating is None:
             return dict(self.quality)
         figures = {**self.quality, **self.seating.figures}
@@ -276,21 +285,23 @@ class Fixture:
         result_file: str | Path | None = None,
         **asked: Any,
     ) -> None:
-        """Write its setup sheet (.pdf, .svg, .png), the set-up for CAM (.dxf, .step) or the list of its pins (.csv).
+        """Writes the setup sheet (.pdf, .svg, .png), the set-up for CAM (.dxf, .step) or the pins (.csv).
 
         Parameters
         ----------
         unit : of the lengths on paper, "mm" or "inch".
         clearance : how far the cutter is to keep off the pegs of a .dxf, in mm; 1 if None.
         result_file : the file that the result was saved in; its hash then stands on the sheet.
-        asked : what else stands on the sheet: ``paper`` ("a4" or "letter"), ``day``, ``part_name``, ``jaw_force`` in N,
-            ``jaw`` ("screw", "constant" or a stiffness), ``friction``, ``loads`` instead of the result's, ``zero``
-            ("corner", "centre", "hole 2" or x and y of the drawing), ``machine_position`` (x, y) of hole A1, and the
-            lengths in mm ``thickness``, ``peg_length`` and ``peg_height``, and ``dowel`` in words.
+        asked : what else stands on the sheet. Words are ``paper`` ("a4" or "letter"), ``day``, ``part_name``
+            and ``dowel``. Forces are ``jaw_force`` in N, ``jaw`` ("screw", "constant" or a stiffness),
+            ``friction``, and ``loads`` instead of the result's. Places are ``zero`` ("corner", "centre",
+            "hole 2" or x and y of the drawing) and ``machine_position`` (x, y) of hole A1. Lengths in mm are
+            ``thickness``, ``peg_length`` and ``peg_height``.
 
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, values that cannot be, and when the file cannot be written.
+            For a fixture that is not one of a result, values that cannot be, and when the file cannot be
+            written.
         """
         delegate("save_sheet")(self, path, unit=unit, clearance=clearance, result_file=result_file, **asked)

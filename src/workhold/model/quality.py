@@ -39,7 +39,7 @@ class Figure:
     key : its name in files.
     unit : "" (a plain number), "mm", "N" or "deg".
     more_is_better : which way is better.
-    meaning : what it tells, in one sentence.
+    meaning : what it means, in one sentence.
     decimals : with which it is shown; lengths have those of their unit.
     """
 
@@ -51,24 +51,24 @@ class Figure:
 
     @property
     def words(self) -> str:
-        """Its name for people.
+        """The name in sentences: the key with spaces.
 
         >>> FIGURES[0].words
         'closure margin'
         """
         return self.key.replace("_", " ")
 
-    def told(self, mover: str) -> tuple[str, str]:
-        """Its name and meaning where what moves is called something else than a jaw.
+    def named_for(self, mover: str) -> tuple[str, str]:
+        """The name and the meaning, with what moves called ``mover`` instead of a jaw.
 
-        >>> FIGURES[1].told("clamp")
+        >>> FIGURES[1].named_for("clamp")
         ('clamp amplification', 'The largest peg force per unit of clamp force.')
         """
         return self.words.replace("jaw", mover), self.meaning.replace("jaw", mover)
 
     @property
     def option(self) -> str:
-        """Its name on the command line.
+        """The name on the command line.
 
         >>> FIGURES[0].option
         'closure-margin'
@@ -144,7 +144,9 @@ RANKED = FIGURES + SEATING_FIGURES
 
 
 def figure_number(name: str) -> int | None:
-    """The place in :data:`FIGURES` of a figure named with hyphens, underscores or spaces; None when there is none.
+    """The place in :data:`FIGURES` of a figure's name; None where it has none.
+
+    Hyphens, underscores and spaces in the name mean the same.
 
     >>> figure_number("location-error")
     3
@@ -154,7 +156,7 @@ def figure_number(name: str) -> int | None:
 
 
 def ranked_number(name: str) -> int | None:
-    """The same in :data:`RANKED`.
+    """The place in :data:`RANKED` of a figure's name, see :func:`figure_number`; None where it has none.
 
     >>> RANKED[ranked_number("capture opening")].option
     'capture-opening'

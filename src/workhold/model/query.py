@@ -1,4 +1,6 @@
-"""A query: everything that is asked of a design, one type from the command line, Python and the page to the result."""
+"""A query: everything that is asked of a design, one type from the command line, Python and the page to the
+result.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ __all__ = ["DEFAULT_RANKING", "PREFERENCES", "Query", "asked_ranking"]
 
 T = TypeVar("T")
 
-# docs/quality.md, "Which comes first", says why. With loads, the load reaction stands for the clamp amplification.
+# docs/quality.md, "Which comes first", says why. With loads, the load reaction stands for the clamp
+# amplification.
 DEFAULT_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
 # Of two clamps the one whose forces may differ most: it is set up without a torque wrench.
 PAIR_RANKING = (
@@ -94,7 +97,7 @@ KINDS: dict[str, tuple[type, str]] = {
 
 
 def refuse_other_kinds(query: Query) -> None:
-    """Refuse parts of a query that are of another kind.
+    """Refuses parts of a query whose type is wrong.
 
     Raises
     ------
@@ -121,27 +124,32 @@ class Query:
     workpiece, toolkit : what to hold and what to hold it in.
     arrangements : names of the toolkit's arrangements to seek, such as "I" or ("I", "II"); None is all.
     contact_margin : smallest distance in mm between a contact and the end of its feature.
-    restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no restriction.
-    ranking : figures of quality, the first counting most, named as in ``model.quality``; None is what a machinist would look
-        at: warnings, penalty, load reaction or, without loads, clamp amplification, closure margin, edge distance.
-    tolerance : how far pegs and faces may be off, for the location error; None is the usual one. The workpiece's departure
-        is added to that of the faces.
+    restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no
+        restriction.
+    ranking : figures of quality, the first counting most, named as in ``model.quality``. None stands for
+        warnings, penalty, load reaction or, without loads, clamp amplification, closure margin and edge
+        distance.
+    tolerance : how far pegs and faces may be off, for the location error; None is the usual one. The
+        workpiece's departure is added to that of the faces.
     loads : what the fixture must resist, for the load reaction.
     best : seek and list only this many, the best ones; None lists all.
-    jaw_force : in N, with which the vise will be closed, to warn of pegs that let go under a load; None where it is open.
-    listing : of a toolkit with two clamps "best", one fixture for each seat and pair of directions with the number of pairs
-        of clamps there, or "all" of them; None is "best", and of other toolkits nothing.
-    seating : of so many of the first fixtures tell what else their pegs can do with the part, and order them anew (see
-        ``workhold.seating``); None of none.
-    opening : with seating, list only fixtures that catch the part with the jaws open, or the clamp drawn back, by so much
-        in mm more than where they hold it; wrong seats beyond it do not count.
-    foolproof : with seating, list only fixtures without a wrong seat that a caliper could take for the right one.
+    jaw_force : in N, with which the vise will be closed, to warn of pegs that let go under a load; None where
+        it is open.
+    listing : with two clamps, "best" lists one fixture for each seat and pair of directions with the number
+        of pairs of clamps there, "all" lists every one. None stands for "best"; other toolkits take only
+        None.
+    seating : for how many of the first fixtures to find out where else their pegs can hold the part, and
+        order them anew (see ``workhold.seating``); None for none.
+    opening : with seating, list only fixtures that catch the part with the jaws open, or the clamp drawn
+        back, by this length in mm from where they hold it. Wrong seats farther open do not count.
+    foolproof : with seating, list only fixtures without a wrong seat that a caliper could take for the right
+        one.
 
     Raises
     ------
     InputError
-        For an unknown arrangement or figure, one named twice, numbers out of range, a figure of loads without loads, and
-        what needs seating without it.
+        For an unknown arrangement or figure, one named twice, and numbers out of range; for a figure of loads
+        without loads, and what needs seating without it.
     """
 
     workpiece: Workpiece
@@ -164,7 +172,7 @@ class Query:
         object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))
         known = self.toolkit.types
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))
-        pairs = self.toolkit.needs_pairs
+        pairs = self.toolkit.travels > 1
         object.__setattr__(self, "seating", counting_number("seating", self.seating))
         object.__setattr__(
             self, "ranking", chosen_ranking(self.ranking, self.loads, pairs, self.seating is not None)
@@ -194,8 +202,8 @@ class Query:
             object.__setattr__(self, "opening", opening)
         if self.has_seating_rules and self.seating is None:
             raise InputError(
-                "which fixtures catch the part at an opening, or are foolproof, their seating tells, and that is worked out "
-                "for the first ones only: give of how many, such as seating 100."
+                "which fixtures catch the part at an opening, or are foolproof, their seating tells, and "
+                "that is worked out for the first ones only: give of how many, such as seating 100."
             )
 
     @property
@@ -205,10 +213,13 @@ class Query:
 
     @property
     def without_seating(self) -> Query:
-        """What is to be found before any seating is worked out: as many as that needs, in an order that does without."""
+        """The query to answer before any seating is worked out.
+
+        It asks for as many fixtures as the seating needs, in an order that does without seating.
+        """
         if self.seating is None:
             return self
-        if self.toolkit.needs_pairs:
+        if not self.toolkit.closes_at_once:
             return evolve(self, seating=None)
         known = [key for key in self.ranking if key not in SEATING_KEYS]
         needed = len(known) < len(self.ranking)
@@ -251,8 +262,8 @@ def chosen_ranking(
     Raises
     ------
     InputError
-        For a name that is no figure, one given twice, none at all, a figure of loads without loads, one of two clamps where
-        there is one, and one of seating where that is not asked for.
+        For a name that is no figure, one given twice, and none at all. Also for a figure of loads without
+        loads, of two clamps where there is one, and of seating where that is not asked for.
     """
     if names is None:
         return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loads)
@@ -266,8 +277,8 @@ def chosen_ranking(
             )
         if number >= len(FIGURES) and not seated:
             raise InputError(
-                f"the {RANKED[number].words} is known of fixtures whose seating is worked out: give of how many, such as "
-                "seating 100."
+                f"the {RANKED[number].words} is known of fixtures whose seating is worked out: give of how "
+                "many, such as seating 100."
             )
         if number in (LOAD_REACTION, JAW_FORCE_NEEDED) and not loads:
             raise InputError(
@@ -286,8 +297,7 @@ def chosen_ranking(
 def asked_ranking(
     names: str | Sequence[str] | None, preference: str | None, loads: Sequence[Load]
 ) -> tuple[str, ...] | None:
-    """The names of figures, or the keys of those that stand for what is preferred; None, the default ranking, where both are
-    None.
+    """The names of figures given, or the keys for a preference; None, the default, where both are None.
 
     Raises
     ------

@@ -1,7 +1,8 @@
 """What is required of a fixture besides holding the part: loads, what a user rules out, and tolerances.
 
-A load is what a cutter, a drill or a hand does to the workpiece while it is held. Ruled out are faces not to touch, places
-where no peg may stand, and angles the part may not lie at. A tolerance says how far pegs and faces may be off.
+A load is what a cutter, a drill or a hand does to the workpiece while it is held. Ruled out are faces not to
+touch, places where no peg may stand, and angles the part may not lie at. A tolerance says how far pegs and
+faces may be off.
 """
 
 from __future__ import annotations
@@ -46,7 +47,8 @@ def direction_range(directions: Iterable[float]) -> tuple[float, float]:
         return ANY_DIRECTION if high - low == 360.0 else (low, high)
     if not (isfinite(low) and isfinite(high) and abs(high - low) <= 360.0):
         raise InputError(
-            f"direction {low:g}..{high:g} is not a range of at most 360 degrees: give two angles, or any for all of them."
+            f"direction {low:g}..{high:g} is not a range of at most 360 degrees: give two angles, or any for "
+            "all of them."
         )
     if abs(high - low) == 360.0:
         return ANY_DIRECTION
@@ -59,24 +61,25 @@ def direction_range(directions: Iterable[float]) -> tuple[float, float]:
 class Load:
     """A force and a moment that act ON the workpiece; pegs must push back.
 
-    The force acts at one of the points, whichever is worst, in one of the directions, whichever is worst; the moment acts
-    together with it. A cutter that runs along a polyline is a load with several points: between two of them nothing is
-    worse than at the worse of the two.
+    The force acts at one of the points, whichever is worst, in one of the directions, whichever is worst; the
+    moment acts together with it. A cutter that runs along a polyline is a load with several points: between
+    two of them nothing is worse than at the worse of the two.
 
     Parameters
     ----------
-    points : where the force may act, (x, y) in mm in the part's coordinates; may be empty when there is no force.
+    points : where the force may act, (x, y) in mm in the part's coordinates; may be empty when there is no
+        force.
     force : its size in N, 0 or more.
-    directions : (low, high) in degrees in the part's frame, counter-clockwise from the part's x axis and from low to
-        high; (0, 360) is any direction.
+    directions : (low, high) in degrees in the part's frame, counter-clockwise from the part's x axis and from
+        low to high; (0, 360) is any direction.
     moment : in N mm, positive counter-clockwise.
     name : what the user calls it.
 
     Raises
     ------
     InputError
-        For numbers that are not finite or beyond the limits, a negative force, a force without a point, and a load that
-        does nothing.
+        For numbers that are not finite or too large, a negative force, a force without a point, and a
+        load that does nothing.
 
     Examples
     --------
@@ -94,7 +97,8 @@ class Load:
     def __attrs_post_init__(self) -> None:
         if not isfinite(self.force) or self.force < 0:
             raise InputError(
-                f"force {self.force:g} is not a size in N: give 0 or more, and where it points as a direction."
+                f"force {self.force:g} is not a size in N: give 0 or more, and where it points as a "
+                "direction."
             )
         if not isfinite(self.moment):
             raise InputError(
@@ -141,7 +145,7 @@ class Zone:
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """Its boundary, the zone on the left."""
+        """The boundary, with the zone on its left."""
         return tuple(loop_segments(self.loop))
 
 
@@ -217,7 +221,8 @@ class Restrictions:
     ----------
     avoid : numbers of faces that no peg may touch.
     zones : places in the part's frame where no peg may stand.
-    angles : ranges (from, to) of the part's angle in the vise, in degrees, ends included; empty for any angle.
+    angles : ranges (from, to) of the part's angle in the vise, in degrees, ends included; empty for any
+        angle.
 
     Raises
     ------
@@ -233,7 +238,8 @@ class Restrictions:
         for low, high in ((real(low), real(high)) for low, high in self.angles):
             if not (isfinite(low) and isfinite(high) and low <= high):
                 raise InputError(
-                    f"angles {low:g} to {high:g} are not a range in degrees: give the smaller first, such as -10..10."
+                    f"angles {low:g} to {high:g} are not a range in degrees: give the smaller first, such as "
+                    "-10..10."
                 )
 
     def __bool__(self) -> bool:
@@ -250,12 +256,13 @@ class Tolerance:
     peg : how far the surface of a peg may be from where it should be, in mm.
     face : how far a face of the part may be from where it should be, in mm; the departure is a part of it.
     fit : of the dowels that are the pegs, which the first follows from; None where it is not known.
-    departure : how far the outline as read may be from the drawn one, in mm; a query sets it to its workpiece's.
+    departure : how far the outline as read may be from the drawn one, in mm; a query sets it to its
+        workpiece's.
 
     Raises
     ------
     InputError
-        For lengths that are negative, not finite or beyond the limits.
+        For lengths that are negative, not finite or too large.
     """
 
     peg: float = field(default=0.01, converter=real)
@@ -292,7 +299,7 @@ class Tolerance:
         return tolerance
 
     def with_departure(self, departure: float) -> Tolerance:
-        """The same tolerance for an outline that departs by so much, in mm, from the drawn one.
+        """The tolerance for an outline that departs by up to ``departure`` mm from the drawn one.
 
         Examples
         --------

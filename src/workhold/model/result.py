@@ -33,8 +33,8 @@ BLOCK = 4096
 class FixtureTable:
     """N fixtures as arrays; pegs stand in every row in the order of their arrangement.
 
-    Of a large result file the arrays are parts, read only where they are looked at: go through them by ``take``. Tables of
-    the same fixtures in the same order are equal.
+    Of a large result file the arrays are parts, read only where they are looked at: go through them by
+    ``take``. Tables of the same fixtures in the same order are equal.
 
     Parameters
     ----------
@@ -44,9 +44,11 @@ class FixtureTable:
     theta : (N,) orientation of the workpiece in radians, in [0, 2 pi).
     position : (N, 2) translation of the pose in mm.
     jaw_separation : (N,) in mm; of two clamps (N, 2), the travel of each.
-    force : (N, P) contact force per unit of clamping force; of two clamps (N, P, 2), per unit of the force of each.
+    force : (N, P) contact force per unit of clamping force; of two clamps (N, P, 2), per unit of the force of
+        each.
     quality : (N, Q) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known.
-    pairs : (N,) int32, how many pairs of clamps there are at the seat that a fixture stands for; 1 where each is listed.
+    pairs : (N,) int32, how many pairs of clamps there are at the seat that a fixture stands for; 1 where each
+        is listed.
     """
 
     arrangement: NDArray[np.int8]
@@ -100,8 +102,9 @@ class FixtureTable:
 
     @property
     def null_vector(self) -> NDArray[np.float64]:
-        """The positive null vectors (N, P) of the wrenches, scaled to sum 1; forces are proportional to them, those of two
-        clamps at their working ratio."""
+        """The positive null vectors (N, P) of the wrenches, scaled to sum 1; forces are proportional to them,
+        those of two clamps at their working ratio.
+        """
         forces = self.working_force
         return np.asarray(forces / forces.sum(axis=1, keepdims=True))
 
@@ -151,25 +154,28 @@ def unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
 class Result:
     """All fixtures that a query asks for, best first, or the best of them.
 
-    A result is a sequence: ``len(result)``, ``result[0]``, ``for fixture in result``. ``Fixture`` objects are made when
-    asked for; the arrays behind them are in ``table``. Results that say the same are equal.
+    A result is a sequence: ``len(result)``, ``result[0]``, ``for fixture in result``. ``Fixture`` objects are
+    made when asked for; the arrays behind them are in ``table``. Results that say the same are equal.
 
     Parameters
     ----------
     query : what was asked.
     table : the fixtures listed, ranked.
-    found : how many fixtures of each arrangement were found, by its name; more than are listed when an engine found all
-        and only the best were kept, or the search was stopped while they were put in order or written.
-    distinct : how many sets they form when fixtures that a rotation of the part onto itself carries into each other
-        count once.
+    found : how many fixtures of each arrangement were found, by its name. Fewer are listed when only the best
+        were kept, or when the search was stopped while they were sorted or written.
+    distinct : how many there are when fixtures that a symmetry of the part carries into each other count
+        once.
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
-    notes : remarks a user should read, one sentence each; of an outline that departs from the drawn one there is one more.
-    statistics : how much work the search was: numbers of contact features, chord curves, sliding pairs, pairs of curves
-        compared, pairs whose crossings were sought, and simultaneous contacts examined (all four inside their features).
-    proof : the account of the search, see :class:`workhold.model.search_report.Proof`; None for a result that came without.
-    pairs, seats : of a toolkit with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
-        directions; None where only the best were sought and others left out uncounted, and of other toolkits.
-    seating : of the first fixtures, as many as there are of these, what else their pegs can do with the part.
+    notes : remarks a user should read, one sentence each; of an outline that departs from the drawn one there
+        is one more.
+    statistics : how much work the search was. It counts contact features, chord curves, sliding pairs, pairs
+        of curves compared and those whose crossings were sought. It also counts simultaneous contacts
+        examined (all four inside their features).
+    proof : the account of the search, see :class:`workhold.model.search_report.Proof`; None for a result that
+        came without.
+    pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
+        directions; None for other toolkits, and where only the best were sought.
+    seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
     """
 
     query: Query
@@ -238,12 +244,14 @@ class Result:
         return evolve(made, seating=self.seating[index]) if index < len(self.seating) else made
 
     def part(self, rows: slice) -> Result:
-        """The same with fewer fixtures, those of a slice."""
+        """The result with the fixtures of a slice only."""
         return evolve(self, table=self.table.take(rows), seating=self.seating[rows])
 
     def cut_short(self, listed: int) -> Result:
-        """The same of a search that was stopped while its fixtures were put in order or written, so that only so many, the
-        best, are listed; incomplete for that."""
+        """The result of a search that was stopped while its fixtures were sorted or written.
+
+        Only the best ``listed`` are in it, so it is incomplete.
+        """
         return evolve(self, complete=False, notes=(cut_note(sum(self.found.values()), listed), *self.reasons))
 
     def listed(self, index: int) -> Listed:
@@ -263,7 +271,7 @@ class Result:
         return str(self.draw()) if len(self) else None
 
     def draw(self, path: str | Path | None = None, *, unit: str = "mm") -> str:
-        """The best twelve at a glance: SVG text, which a notebook shows as a picture. Fixtures alike are drawn once.
+        """The best twelve at a glance, near duplicates once: SVG text, which a notebook shows as a picture.
 
         Parameters
         ----------
@@ -279,7 +287,7 @@ class Result:
         return picture
 
     def to_pandas(self) -> Any:
-        """All fixtures as a DataFrame, best first, with the columns of the CSV form: lengths in mm, angles in degrees.
+        """All fixtures as a DataFrame, best first, with the columns of the CSV form, in mm and degrees.
 
         Raises
         ------
@@ -317,7 +325,9 @@ def peg_places(
 
 
 def flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> list[list[float | None]]:
-    """Which way the flats of all pegs of a table look, in degrees; None of pegs that touch with their round side."""
+    """The way the flats of all pegs of a table look, in degrees; None for pegs that touch with their round
+    side.
+    """
     straight = {
         face.number: np.degrees(np.arctan2(*face.segment.normal()[::-1])) + 180.0
         for face in workpiece.faces
@@ -338,7 +348,7 @@ def flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> 
 def fixture_at(
     table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece, listed: Listed | None = None
 ) -> Fixture:
-    """Make the :class:`Fixture` of one row of a table, which holds a workpiece, and is listed somewhere or not."""
+    """Makes the :class:`Fixture` of one row of a table; ``listed`` is where it is listed, if it is."""
     one = table.take(slice(index, index + 1))
     arrangement, carriers = toolkit.arrangements[one.arrangement[0]], toolkit.carriers
     across, along = peg_places(one, toolkit, workpiece)

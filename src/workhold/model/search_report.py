@@ -1,8 +1,8 @@
-"""What a search tells besides its fixtures: its proof, why there is no fixture, and remarks for the user.
+"""What a search reports besides its fixtures: its proof, why there is no fixture, and remarks for the user.
 
-A proof shows what was examined, and what could not be decided. An explanation tells what each rule took away, the nearest
-miss, and what would help. Remarks are one sentence each; they follow from the numbers of a result, so that whoever has the
-numbers can tell which remarks there must be.
+A proof shows what was examined, and what could not be decided. An explanation says what each rule took away,
+the nearest miss, and what would help. Remarks are one sentence each. They follow from the numbers of a
+result, so a verification can derive which remarks there must be.
 """
 
 from __future__ import annotations
@@ -48,18 +48,18 @@ AT_AN_EDGE = "a rule is met exactly at its edge"
 
 @frozen
 class Undecided:
-    """Four contacts, or a pair of chords, of which it is not decided whether they make a fixture; or five, with two clamps.
+    """A candidate that is left undecided: four contacts, five with two clamps, or a pair of chords.
 
     Parameters
     ----------
     type : of the arrangement, with the direction in which a clamp moves, such as "II" or "clamp -x".
     faces : the four faces (a pair of chords names the tail and the head of each).
-    columns, rows : the four pegs on their jaws' lattices, counted from each jaw's first peg and from the first left peg; of
-        a clamp the number of its line from the first locator's, and 0.
+    columns, rows : the four pegs on their jaws' lattices; columns are counted from each jaw's first peg, rows
+        from the first left peg. A clamp has the number of its line from the first locator's, and 0.
     theta_deg : orientation of the workpiece in degrees, about which it would be.
     reason : why it is not decided, in one sentence without a full stop.
-    reach_deg : how far in degrees the orientation may be from there; None where that is not bounded, and of a pair of
-        chords, which exist there.
+    reach_deg : how far in degrees the orientation may be from there; None where that is not bounded, and of a
+        pair of chords, which exist there.
     """
 
     type: str
@@ -73,16 +73,17 @@ class Undecided:
 
 @frozen
 class Proof:
-    """The account of a proven search; ``candidates`` is the sum of what was discarded, verified and left undecided.
+    """The account of a proven search; ``candidates`` are those discarded, verified and left undecided.
 
     Parameters
     ----------
     cells : ranges of orientation examined, for each type apart.
     candidates : sets of four contacts that the bounds of the chord curves allow.
     discarded_by_bound : candidates that break a rule everywhere within their error.
-    verified : candidates proven to be fixtures, before rows and the largest opening are asked; one found from two sides, as
-        at a joint, counts twice.
-    escalated : candidates that their certificates left open: they went on to interval arithmetic, or were given up.
+    verified : candidates proven to be fixtures, before rows and the largest opening are asked; one found from
+        two sides, as at a joint, counts twice.
+    escalated : candidates that their certificates left open: they went on to interval arithmetic, or were
+        given up.
     undecided : what that could not decide either.
     """
 
@@ -165,16 +166,19 @@ class Explanation:
 
     @property
     def last_rule(self) -> str | None:
-        """The rule that took the last candidates away; None when four pegs cannot touch the part to begin with."""
+        """The rule that took the last candidates away; None when four pegs cannot touch the part at all."""
         return self.removals[-1].rule if self.removals else None
 
 
 def no_fixture_notes(wording: Wording) -> tuple[str, ...]:
-    """Why a search finds no fixture: all normals meet, no pegs of one carrier touch, no four touch, no four hold; or what
-    the toolkit has to say instead."""
+    """Why a search finds no fixture, in the order of what is asked; a toolkit may have reasons of its own.
+
+    All normals meet in a point, no two pegs of one carrier touch, no four pegs touch, or no four hold the
+    part.
+    """
     return wording.reasons or (
-        "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing keeps the part "
-        "from turning.",
+        "Every face is an arc about one centre, so the forces of all pegs meet in that point and nothing "
+        "keeps the part from turning.",
         f"No {wording.two} can touch the part together: the pitch is too large for it.",
         f"No {wording.four} can touch the part at the same time inside their faces.",
         f"Four pegs can touch the part at the same time, but no such set {wording.rules}.",
@@ -182,65 +186,75 @@ def no_fixture_notes(wording: Wording) -> tuple[str, ...]:
 
 
 def no_place_note(verified: int, wording: Wording) -> str:
-    """Why a search finds no fixture though so many candidates are proven to hold the part."""
+    """Why a search finds no fixture though ``verified`` candidates are proven to hold the part."""
     return f"{verified} {wording.sets} would hold the part, but none of them can stand in {wording.within}."
 
 
 def no_pair_note(seats: int, contacts: int) -> str:
-    """Why no two clamps hold the part, at so many seats with so many clamps."""
+    """Why no two clamps hold the part, from the numbers of seats and of clamps that touch it there."""
     if contacts == 0:
         return "No three locators and a clamp can touch the part at the same time inside their faces."
     if seats == 0:
-        return "Three locators and a clamp can touch the part, but there is no place for the second clamp that is needed."
+        return (
+            "Three locators and a clamp can touch the part, but there is no place for the second clamp that "
+            "is needed."
+        )
     return f"No two clamps press the part against all three locators at any of the {seats} seats found."
 
 
 def best_note(best: int) -> str:
-    """Of a search for so many, the best, that left others out."""
+    """The remark on a search for the best fixtures only."""
     return f"Only the best {best} were sought, so how many fixtures there are in all was not counted."
 
 
 def cut_note(found: int, listed: int) -> str:
-    """Of a search that was stopped while its fixtures were put in order or written."""
-    return f"Stopped with {found:,} fixtures found: the best {listed:,} of them are listed; more would have taken long."
+    """The remark on a search that was stopped while its fixtures were sorted or written."""
+    return (
+        f"Stopped with {found:,} fixtures found: the best {listed:,} of them are listed; more would have "
+        "taken long."
+    )
 
 
 def undecided_note(count: int) -> str:
-    """Of a search that left so many candidates undecided."""
+    """The remark on candidates left undecided."""
     some = "1 candidate is undecided" if count == 1 else f"{count} candidates are undecided"
-    return f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the reason."
+    return (
+        f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the "
+        "reason."
+    )
 
 
 def fitted_note(departure: float) -> str:
-    """Of a part whose outline as read is so far, in mm, from the drawn one at most."""
+    """The remark on an outline that departs from the drawn one by up to ``departure`` mm."""
     return (
-        f"All that is claimed, completeness too, holds for the outline of lines and arcs, which is up to {departure:.2g} mm "
-        "off the drawn one."
+        "All that is claimed, completeness too, holds for the outline of lines and arcs, which is up to "
+        f"{departure:.2g} mm off the drawn one."
     )
 
 
 def kept_note(found: int, kept: int) -> str:
-    """Of a server that keeps only some of the fixtures found, the best."""
+    """The remark on a server that keeps only the best of the fixtures found."""
     return f"{found:,} fixtures were found; this server keeps the best {kept:,} of them."
 
 
 def seated_note(looked_at: int, kept: int) -> str:
-    """Of a search that lists only fixtures whose seating is as asked: of so many looked at so many are."""
+    """The remark on a search that lists only fixtures seated as asked: ``kept`` of ``looked_at``."""
     return (
-        f"The seating of the first {looked_at:,} fixtures was worked out: {kept:,} of them are as asked, and no other is "
-        "listed. Of fixtures beyond these nothing is known, and some may be as asked: look at more of them to see."
+        f"The seating of the first {looked_at:,} fixtures was worked out: {kept:,} of them are as asked, and "
+        "no other is listed. Of fixtures beyond these nothing is known, and some may be as asked: look at "
+        "more of them to see."
     )
 
 
 def by_hand_note() -> str:
-    """Of a search that asks for seating with two clamps, of which there is none to order fixtures by."""
+    """The remark on seating asked for with two clamps, which is no figure to order fixtures by."""
     return (
-        "With two clamps the part is pushed against its locators by hand, so fixtures are in the same order as without "
-        "seating. How to put the part in is told of each fixture."
+        "With two clamps the part is pushed against its locators by hand, so fixtures are in the same order "
+        "as without seating. How to put the part in is told of each fixture."
     )
 
 
 def stopped_note(seconds: float) -> str:
-    """Of a server that ended a search after so many seconds."""
+    """The remark on a search that a server ended after its time limit."""
     end = f"The search was stopped after {seconds:g} s, the longest this server allows"
     return f"{end}: this is a part of the fixtures only."

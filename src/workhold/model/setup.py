@@ -1,11 +1,13 @@
 """What a machinist sets and programs from: part zero, X0 Y0, and the setting of each thing that moves.
 
-Where nothing is asked for, part zero is the origin of the drawing if that lies on the part's outside dimensions or within
-them, because the CAM system took the same drawing; else it is the lower left corner of the part as drawn. A drawing far from
-its origin, such as a part cut out of a large assembly, so never gives a zero beside the machine.
+Where nothing is asked for, part zero is the origin of the drawing, because the CAM system took the same
+drawing. If the origin lies outside the part's outside dimensions, part zero is the lower left corner of the
+part as drawn. So a part cut out of a large assembly, far from its origin, does not get a zero beside the
+machine.
 
-The setting of a vise is its opening. Of a clamp that is bolted in a hole it is the stroke, from the hole to the tip; of one
-of which only the line is known, how far its tip is from the first column or row. Every picture, sheet and table tells of it.
+The setting of a vise is its opening. That of a clamp bolted in a hole is the stroke, from the
+hole to the tip. Where only the clamp's line is known, it is the distance of the tip from the first column or
+row. Every picture, sheet and table shows it.
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["Mounting", "PartZero", "Setting", "contact_names", "hole_centers", "part_zero", "settings_of"]
+__all__ = ["LengthSetting", "PartZero", "contact_names", "hole_centers", "part_zero", "settings_of"]
 
 WAYS = "give corner, centre, hole and its number, or a point of the drawing as X,Y"
 
@@ -48,12 +50,13 @@ class PartZero:
 def part_zero(
     workpiece: Workpiece, asked: str | Sequence[float] | None = None, unit: Unit = MILLIMETRE
 ) -> PartZero:
-    """The zero of a part.
+    """Part zero, as asked for or by default.
 
     Parameters
     ----------
-    asked : "corner" (the lower left one of the outside dimensions), "centre" (of the same), "hole N" (its centre; holes are
-        counted from 1 as in the inset of the setup sheet), "X,Y" or two numbers, or None for what the module's head says.
+    asked : "corner" (the lower left one of the outside dimensions), "centre" (of the same), "hole N" (its
+        centre), "X,Y" or two numbers. None is the default at the head of this module. Holes are counted from
+        1 as in the inset of the setup sheet.
     unit : of the numbers.
 
     Raises
@@ -88,12 +91,12 @@ def part_zero(
 
 
 def given_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
-    """The point in mm that two numbers tell.
+    """The point in mm that two numbers give.
 
     Raises
     ------
     InputError
-        When they are not two finite numbers, or are beyond all lengths.
+        When they are not two finite numbers, or are too large for lengths.
     """
     try:
         x, y = (unit.length(float(number)) for number in numbers)
@@ -107,8 +110,9 @@ def given_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
 
 
 def hole_centers(workpiece: Workpiece) -> list[Point]:
-    """The centre of each hole, in the order of the part's loops: of a round one that of its circle, else the middle of its
-    outside dimensions.
+    """The centre of each hole, in the order of the part's loops.
+
+    A round hole has the centre of its circle, any other the middle of its outside dimensions.
     """
     outer = len(workpiece.loops[0])
     round_ones = {
@@ -128,7 +132,7 @@ def hole_centers(workpiece: Workpiece) -> list[Point]:
 
 @frozen
 class Mounting:
-    """How a clamp is put on its plate, in words that take its name for ``{clamp}`` and its hole or line for ``{place}``.
+    """Words for how a clamp is put on its plate; ``{clamp}`` is its name, ``{place}`` its hole or line.
 
     Parameters
     ----------
@@ -164,13 +168,13 @@ MOUNTINGS: Mapping[Measure, Mounting] = {"stroke": BOLTED, "tip": ALONG}
 
 
 @frozen
-class Setting:
+class LengthSetting:
     """A length to set.
 
     Parameters
     ----------
     name : what it is called, such as "opening S".
-    title : the same above the length itself.
+    title : what it is called above the length itself.
     sign : what stands before it on a drawing, such as "S".
     length : in mm.
     start, end : the points that it is measured between along the travel, in mm.
@@ -211,12 +215,12 @@ class Setting:
 
     @property
     def caption(self) -> str:
-        """Its title as a sentence begins."""
+        """The title with a capital letter, as a sentence begins."""
         return f"{self.title[0].upper()}{self.title[1:]}"
 
 
-def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[Setting, ...]:
-    """What there is to set: of a vise one length, of clamps one each in their order, and nothing where nothing moves.
+def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSetting, ...]:
+    """The lengths to set: one of a vise, one of each clamp in their order, none where nothing moves.
 
     Examples
     --------
@@ -236,7 +240,7 @@ def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[Setting, ...]:
         )
     travelled, name = fixture.jaw_separation, "opening S"
     return tuple(
-        Setting(
+        LengthSetting(
             name=name,
             title=f"{name} of the {carrier.noun}s",
             sign="S",
@@ -250,13 +254,13 @@ def settings_of(fixture: Fixture, toolkit: Toolkit) -> tuple[Setting, ...]:
     )
 
 
-def clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> Setting:
-    """What there is to set on one of some clamps."""
+def clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> LengthSetting:
+    """The length to set on one clamp of ``clamps`` that hold the part."""
     carrier, end = toolkit.carrier(tip.carrier), (tip.x, tip.y)
     named = f"the {carrier.noun}" if clamps == 1 else carrier.place_name(tip.column, tip.row)
     if carrier.measure == "stroke":
         start, stroke = carrier.place(tip.column, tip.row), 0.0 - toolkit.clamping * travelled
-        return Setting(
+        return LengthSetting(
             "stroke", f"stroke of {named}, from hole to tip", "stroke", stroke, start, end, carrier, tip
         )
     column, row = toolkit.datum.lines
@@ -264,12 +268,12 @@ def clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> 
         sign, first, length, start = "x", column, tip.x, (0.0, tip.y)
     else:
         sign, first, length, start = "y", row, tip.y, (tip.x, 0.0)
-    return Setting(
+    return LengthSetting(
         f"tip {sign}", f"tip of {named}, {sign} from {first}", sign, length, start, end, carrier, tip
     )
 
 
 def contact_names(fixture: Fixture, toolkit: Toolkit) -> list[str]:
-    """What the contacts of a fixture are called in a table: by their holes or lines, the only clamp by its name."""
+    """Names of the contacts of a fixture in a table: their holes or lines; the only clamp has its noun."""
     clamps = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).contact is CLAMP_TIP]
     return [toolkit.carrier(peg.carrier).noun if [peg] == clamps else peg.hole for peg in fixture.pegs]

@@ -1,70 +1,54 @@
-"""What shows of a toolkit that holds a part: of every carrier its plate, its holes, its pegs, and where it slides.
-
+"""What shows of a toolkit that holds a part: plates, holes, pegs, clamps and walls, and what slides.
 Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this one description.
 
 Glossary
 --------
-reach : the extent of part and pegs, one pitch or a fourteenth of the extent more, and as far along the travel as carriers
-    slide; the holes within it show. Columns and rows of which no number is given go on before column A and row 1 as far as
-    the part lies, so that the plate is under the whole of it; those holes have no names, and their numbers are negative.
-plate : the rectangle around the holes that show, half a pitch beyond them.
-broken side : a side of a plate where the carrier goes on beyond what shows.
+reach : the extent of part and pegs, widened by one pitch or a fourteenth of the extent, and as far along the
+    travel as carriers slide. The holes within it show. A lattice without a number of columns or rows goes on
+    before column A and row 1, so that the plate is under the whole part. Those holes have no names, and their
+    numbers are negative.
+plate : the rectangle around the holes that show, half a pitch wider.
+broken side : a side of a plate where the carrier goes on past what shows.
 facing side : a side towards another carrier; there a plate takes less than half of the gap between the holes.
-clamp : a carrier that is bolted to a plate and has no plate of its own: its body reaches from its hole to its tip.
+clamp : a carrier that is bolted to a plate and has no plate of its own: its body reaches from its hole to its
+    tip.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import reduce
-from itertools import combinations
-from math import ceil, floor, inf
-from typing import Literal
+from math import inf
 
 import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Box, Point
 from workhold.geometry.symmetry import rotated
-from workhold.limits import MOST_STEPS
 from workhold.model.clamps import ShownClamp, clamping_direction, shown_clamps
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.setup import Setting, settings_of
+from workhold.model.reach import Side, cells_in_reach, facing_gaps, held_box, reach_of, span
+from workhold.model.setup import LengthSetting, settings_of
 from workhold.model.workpiece import Workpiece
 
-__all__ = [
-    "MOST_HOLES",
-    "Axis",
-    "Hole",
-    "Measured",
-    "Shown",
-    "ShownCarrier",
-    "ShownWall",
-    "Side",
-    "placed_boxes",
-    "shown",
-    "shown_beside",
-]
+__all__ = ["MOST_HOLES", "Axis", "Hole", "Shown", "ShownCarrier", "placed_boxes", "shown", "shown_beside"]
 
-Side = Literal["left", "right", "bottom", "top"]
 Axis = tuple[Point, Point]
 
 # With more holes than this, what cannot leave out holes by their size shows only those near the pegs.
 MOST_HOLES = 2_000
 
-# Of the gap between the holes of two carriers, how much a plate may cover from either side: the two do not touch.
+# Of the gap between the holes of two carriers, how much a plate may cover from either side: the two do not
+# touch.
 SHARE_OF_GAP = 0.48
 # Holes so many columns and rows from a peg are near it.
 NEAR = 3
 # Of the pitch: how thick a wall is drawn, whose own thickness nobody knows.
 BAR = 0.4
-# Relative to the pitch: a hole this little beyond reach is in it.
-ROUNDING = 1e-6
 
 
 @frozen
@@ -139,13 +123,15 @@ class ShownCarrier:
 
     @property
     def names_at(self) -> Side:
-        """The side at which its rows are named: the left one, unless another carrier stands there or it slides rightward."""
+        """The side at which the rows are named: the left one, unless a carrier stands there or this slides
+        right.
+        """
         slides_right = self.carrier.travel is not None and self.carrier.travel.unit[0] > 0
         return "right" if "left" in self.facing or slides_right else "left"
 
     @property
     def hole_radius(self) -> float:
-        """Radius of its holes in a picture: that of the pegs, or a seventh of the pitch for pegs (almost) without a size."""
+        """Radius in mm of the holes in a picture: that of the pegs, or a seventh of the pitch."""
         pitch, radius = min(self.carrier.pitch), self.carrier.peg_radius
         return min(radius, 0.42 * pitch) if radius > 0.05 * pitch else pitch / 7
 
@@ -168,18 +154,18 @@ class ShownCarrier:
 
 
 @frozen
-class Measured:
+class Dimension:
     """A length to set, and the axes square to it that it is measured between.
 
     Parameters
     ----------
     setting : the length.
-    axes : each from left to right or upward. Those of a plate that slides lie across the plates that stand still and across
-        its own; those of a clamp lead from it to the plate's upper or right side.
+    axes : each from left to right or upward. For a plate that slides, one lies across the plates that stand
+        still, the other across its own. For a clamp they lead from it to the plate's upper or right side.
     is_upright : whether it is measured along y.
     """
 
-    setting: Setting
+    setting: LengthSetting
     axes: tuple[Axis, Axis]
     is_upright: bool
 
@@ -215,7 +201,7 @@ class Shown:
 
     carriers: tuple[ShownCarrier, ...]
     clamps: tuple[ShownClamp, ...]
-    measured: tuple[Measured, ...]
+    measured: tuple[Dimension, ...]
     part: Box
     walls: tuple[ShownWall, ...] = ()
 
@@ -245,7 +231,7 @@ def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
 def placed_boxes(
     workpiece: Workpiece, theta: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Extents (N, 4) of a workpiece in N poses: smallest x and y, largest x and y in mm; theta (N,) in radians.
+    """Extents (N, 4) of a workpiece in N poses, as x0, y0, x1, y1 in mm; theta (N,) in radians.
 
     The farthest point in a direction is the end of a segment or the point of an arc that faces that way.
     """
@@ -314,18 +300,22 @@ def shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
 
 
 def with_wall(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
-    """What shows, with a wall: a bar below the part as long as the plate, which goes on below it where it stands still."""
+    """What shows, with a wall below the part: a bar as long as the plate.
+
+    A plate that stands still goes on below the bar.
+    """
     (plate,), thick = seen.carriers, BAR * min(carrier.pitch)
     around = plate.plate.union(seen.part)
     bar = Box(around.x0, -thick, around.x1, 0.0)
     left, right = (peg.x for peg in fixture.pegs if peg.carrier == carrier.name)
-    # What stands still goes on below the bar; rows are counted from the wall, so what slides ends before the first.
+    # What stands still goes on below the bar; rows are counted from the wall, so what slides ends before the
+    # first.
     low = -thick if plate.clamping is None else plate.plate.y0
     plate = evolve(plate, plate=evolve(plate.plate, y0=low), broken=plate.broken - {"bottom"})
     return evolve(seen, carriers=(plate,), walls=(ShownWall(carrier, bar, (left, right)),))
 
 
-def measured_between(seen: Sequence[ShownCarrier], setting: Setting) -> Measured:
+def measured_between(seen: Sequence[ShownCarrier], setting: LengthSetting) -> Dimension:
     """A length to set and the axes it is measured between."""
     mover = setting.carrier
     assert mover.travel is not None
@@ -341,81 +331,4 @@ def measured_between(seen: Sequence[ShownCarrier], setting: Setting) -> Measured
             first, low = at
         return ((first, at[1]), (last, at[1])) if upright else ((at[0], low), (at[0], high))
 
-    return Measured(setting, (axis(setting.start, still or own), axis(setting.end, own or still)), upright)
-
-
-def held_box(part: Box, fixture: Fixture, clamps: Sequence[ShownClamp]) -> Box:
-    """The extent of part, pegs and clamps, in mm."""
-    places = [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps)]
-    return reduce(Box.union, (Box(x, y, x, y) for x, y in places), part)
-
-
-def reach_of(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
-    """The reach about the extent of part, pegs and clamps, in mm; see the glossary."""
-    reach = held
-    more = max(reach.width, reach.height) / 14
-    more_x, more_y = (max(more, *(carrier.pitch[axis] for carrier in carriers)) for axis in (0, 1))
-    reach = Box(reach.x0 - more_x, reach.y0 - more_y, reach.x1 + more_x, reach.y1 + more_y)
-    for carrier in carriers:
-        if carrier.travel is not None:
-            along_x, along_y = carrier.travel.unit
-            for x, y in (carrier.place(0, 0), carrier.place(0, 0, fixture.jaw_separation)):
-                x, y = x if along_x else reach.x0, y if along_y else reach.y0
-                reach = reach.union(Box(x, y, x, y))
-    return reach
-
-
-def cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) -> tuple[range, range]:
-    """Columns and rows of a carrier in reach, at least one of each; before the first ones, where there are some, as many as
-    lie under what is held, from a corner ``held`` in mm on. Rows that are counted from a wall begin there.
-
-    Raises
-    ------
-    InputError
-        For so many holes that no fixture of a search has them in reach.
-    """
-    x, y = carrier.place(0, 0, travelled)
-    columns = in_reach(reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns, held[0] - x)
-    rows = in_reach(reach.y0 - y, reach.y1 - y, carrier.pitch[1], carrier.rows, held[1] - y)
-    if (columns.stop - columns.start) * (rows.stop - rows.start) > MOST_STEPS:
-        raise InputError(
-            f"part and pegs reach over more than {MOST_STEPS:,} holes of the {carrier.title}, too many to show: check "
-            "the fixture's pose, its pegs and the pitch."
-        )
-    return columns, rows
-
-
-def in_reach(low: float, high: float, pitch: float, count: int | None, held: float) -> range:
-    """Columns or rows between two distances in mm from the first one; at least one. Where there is no number of them, they
-    begin half a pitch or less beside what is ``held`` from a distance on, if that is before the first one."""
-    last, first = max(floor(high / pitch + ROUNDING), 0), max(ceil(low / pitch - ROUNDING), 0)
-    if count is not None:
-        last, first = min(last, count - 1), min(first, count - 1)
-    elif held < 0:
-        first = min(first, floor(held / pitch + 0.5 + ROUNDING))
-    return range(first, max(last, first) + 1)
-
-
-def span(carrier: Carrier, travelled: float, columns: range, rows: range) -> Box:
-    """The box of the centres of the holes in some columns and rows."""
-    first, last = (carrier.place(columns[end], rows[end], travelled) for end in (0, -1))
-    return Box(*first, *last)
-
-
-def facing_gaps(spans: list[Box]) -> list[dict[Side, float]]:
-    """For each of some boxes its sides that face another one, with the smallest gap there in mm."""
-    gaps: list[dict[Side, float]] = [{} for _ in spans]
-
-    def face(one: int, side: Side, gap: float) -> None:
-        gaps[one][side] = min(gap, gaps[one].get(side, inf))
-
-    for i, k in combinations(range(len(spans)), 2):
-        for low, high in ((i, k), (k, i)):
-            across, upward = spans[high].x0 - spans[low].x1, spans[high].y0 - spans[low].y1
-            if across > 0:
-                face(low, "right", across)
-                face(high, "left", across)
-            elif upward > 0 and spans[low].x0 <= spans[high].x1 and spans[high].x0 <= spans[low].x1:
-                face(low, "top", upward)
-                face(high, "bottom", upward)
-    return gaps
+    return Dimension(setting, (axis(setting.start, still or own), axis(setting.end, own or still)), upright)

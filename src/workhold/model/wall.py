@@ -1,6 +1,6 @@
 """Where a part that lies flush against a wall touches it: at the ends of the hull edge that lies on the wall.
 
-The wall runs along x at y = 0, the part lies above it, so the orientation tells the hull edge.
+The wall runs along x at y = 0 and the part lies above it, so the orientation determines the hull edge.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from workhold.geometry.hull import HullEdge
 from workhold.geometry.symmetry import rotated
 
-__all__ = ["ENDS", "ON_WALL", "Flush", "WallEnd"]
+__all__ = ["ENDS", "ON_WALL", "Flush"]
 
 Array = NDArray[np.float64]
 
@@ -63,10 +63,10 @@ class Flush:
     ----------
     theta : (E,) orientation of the workpiece in radians, in [0, 2 pi), in which each lies on the wall.
     ends : (E, 2, 2) their starts and ends in the workpiece's coordinates, in mm.
-    face : (E, 2) numbers of the faces told for them.
+    face : (E, 2) numbers of the faces named for them.
     touching : what touches the wall at both ends of each.
-    shared : (E, 2) numbers that are the same where an error of a face moves several contacts alike: the face's number, and
-        one below zero of its own for a corner.
+    shared : (E, 2) numbers that are equal where one face's error moves several contacts alike: the face's
+        number; for a corner a number below zero of its own.
     """
 
     theta: Array
@@ -77,7 +77,7 @@ class Flush:
 
     @classmethod
     def of(cls, edges: Sequence[HullEdge], numbers: Sequence[int]) -> Flush:
-        """Of hull edges, with the numbers of the faces that they name by index."""
+        """Makes it of hull edges and the numbers of the faces that they name by index."""
         tangent = np.array([edge.tangent for edge in edges]).reshape(-1, 2)
         touching = []
         for edge in edges:
@@ -103,7 +103,7 @@ class Flush:
         return np.asarray(np.hypot(*(self.ends[:, 1] - self.ends[:, 0]).T))
 
     def number(self, theta: Array) -> NDArray[np.int64]:
-        """Which hull edge (N,) lies nearest to the wall in orientations (N,); -1 where the workpiece has none."""
+        """The hull edge (N,) nearest to the wall in each orientation (N,); -1 where there is none."""
         if len(self.theta) == 0:
             return np.full(len(theta), -1, np.int64)
         order = np.argsort(self.theta)

@@ -53,10 +53,11 @@ class Workpiece:
     Parameters
     ----------
     name : what the user calls it.
-    loops : (N, 3) read-only arrays of x, y (mm) and bulge; the outer loop first and counter-clockwise, then the holes,
-        clockwise.
+    loops : (N, 3) read-only arrays of x, y (mm) and bulge; the outer loop first and counter-clockwise, then
+        the holes, clockwise.
     remarks : what was changed of the loops given, one sentence each.
-    departure : how far the outline may be from the one that was drawn, in mm, where curves were read as lines and arcs.
+    departure : how far the outline may be from the one that was drawn, in mm, where curves were read as lines
+        and arcs.
 
     Examples
     --------
@@ -87,7 +88,8 @@ class Workpiece:
         labels: Sequence[Sequence[str]] | None = None,
         departure: float = 0.0,
     ) -> Workpiece:
-        """Check loops of (x, y, bulge) vertices in mm and turn them so that material lies on the left.
+        """Makes a part of loops of (x, y, bulge) vertices in mm, checked and turned so that material is on
+        the left.
 
         Parameters
         ----------
@@ -99,8 +101,8 @@ class Workpiece:
         Raises
         ------
         InputError
-            For open or degenerate loops, numbers that are not finite, segments of zero length, loops that cross or
-            touch, holes outside the outer loop or inside one another.
+            For open or degenerate loops, numbers that are not finite, segments of zero length, loops that
+            cross or touch, holes outside the outer loop or inside one another.
         """
         try:
             loops = list(loops)
@@ -138,8 +140,7 @@ class Workpiece:
             if a < b:
                 refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
         refuse_misplaced_holes(name, drawn)
-        remarks = (*straightened_remark(straightened), *rounded_remark(rounded))
-        return cls(name, tuple(used), remarks, departure_of(departure))
+        return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure))
 
     @classmethod
     def from_points(
@@ -152,8 +153,8 @@ class Workpiece:
         name : what the user calls the part.
         outline : (N, 2) corners in mm, run in either direction; the first may stand at the end again.
         holes : the same for each hole.
-        fit : how far chords may be from an arc that stands for them, in mm, where 0.001 mm is too fine; the part's
-            ``departure`` tells how far they are.
+        fit : how far chords may be from an arc that stands for them, in mm, where 0.001 mm is too fine; the
+            part's ``departure`` is how far they are.
 
         Raises
         ------
@@ -162,8 +163,8 @@ class Workpiece:
 
         Examples
         --------
-        Of a polygon of shapely, the corners are those of its rings:
-        ``Workpiece.from_points("part", polygon.exterior.coords, [ring.coords for ring in polygon.interiors])``.
+        Of a polygon of shapely, the corners are those of its rings: ``Workpiece.from_points("part",
+        polygon.exterior.coords, [ring.coords for ring in polygon.interiors])``.
 
         >>> from math import cos, pi, sin
         >>> from workhold import Workpiece
@@ -231,7 +232,9 @@ class Workpiece:
 
     @cached_property
     def hull_edges(self) -> tuple[HullEdge, ...]:
-        """The straight pieces of the boundary of its convex hull, on which it can lie flush; their faces are indices."""
+        """The straight pieces of the convex hull's boundary, on which the part can lie flush, by index of
+        face.
+        """
         return hull_edges([face.segment for face in self.faces if face.number < len(self.loops[0])])
 
     @cached_property
@@ -265,7 +268,7 @@ class Workpiece:
 
 
 def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
-    """(N, 3) vertices of a loop of corners without bulges, checked; one that repeats the first at the end is left out.
+    """(N, 3) vertices of a loop of corners without bulges, checked; a repeated first corner is left out.
 
     Raises
     ------
@@ -287,7 +290,7 @@ def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
 
 
 def departure_of(value: float) -> float:
-    """How far an outline may be from the drawn one, in mm; nothing where that is less than a drawing can mean.
+    """The departure of an outline in mm, checked; 0 where it is less than a drawing can mean.
 
     Raises
     ------
@@ -299,24 +302,23 @@ def departure_of(value: float) -> float:
     return 0.0 if value < READING else float(value)
 
 
-def straightened_remark(count: int) -> tuple[str, ...]:
-    """What to say of arcs that were taken for lines."""
-    arcs = "1 arc that is nowhere" if count == 1 else f"{count} arcs that are nowhere"
-    taken = "one" if count == 1 else "lines"
-    return (
-        f"{arcs} farther than {READING:g} mm, or a millionth of its length, from a line taken for {taken}.",
-    )[:count]
-
-
-def rounded_remark(count: int) -> tuple[str, ...]:
-    """What to say of arcs that were moved onto one circle with their neighbours."""
-    return (
-        f"{count} arcs that are nowhere farther than {READING:g} mm from one circle with their neighbours put on it.",
-    )[:count]
+def remarks_on(straightened: int, rounded: int) -> tuple[str, ...]:
+    """Remarks on arcs that were taken for lines, and on arcs moved onto one circle with their neighbours."""
+    remarks = []
+    if straightened:
+        arcs, taken = (
+            ("1 arc that is", "one") if straightened == 1 else (f"{straightened} arcs that are", "lines")
+        )
+        line = f"{READING:g} mm, or a millionth of its length, from a line"
+        remarks.append(f"{arcs} nowhere farther than {line} taken for {taken}.")
+    if rounded:
+        circle = f"{READING:g} mm from one circle with their neighbours"
+        remarks.append(f"{rounded} arcs that are nowhere farther than {circle} put on it.")
+    return tuple(remarks)
 
 
 def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
-    """Refuse holes outside the outer loop and holes inside one another (loops are known not to meet).
+    """Refuses holes outside the outer loop and holes inside one another (loops are known not to meet).
 
     Raises
     ------
@@ -328,14 +330,14 @@ def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
         x, y = hole.segments[0].start
         if not encloses(shapes[0], hole):
             raise InputError(
-                f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies outside the outer loop: the first loop must be the "
-                "outline that encloses all the others."
+                f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies outside the outer loop: the first loop "
+                "must be the outline that encloses all the others."
             )
         for _, other in near_pairs(boxes[index : index + 1], boxes):
             if other not in (0, index) and encloses(shapes[other], hole):
                 raise InputError(
-                    f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: holes may not "
-                    "overlap; load the inner piece as a part of its own."
+                    f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: "
+                    "holes may not overlap; load the inner piece as a part of its own."
                 )
 
 
@@ -346,8 +348,8 @@ ROUNDED = 1e-9
 def outline_diameter(workpiece: Workpiece) -> float:
     """Largest distance in mm between two points of the silhouette.
 
-    It is reached between two joints, between a joint and the far side of an arc, or between the far sides of two arcs;
-    far sides lie on the line through the arcs' centres.
+    Its ends are two joints, a joint and the far side of an arc, or the far sides of two arcs. Far sides lie
+    on the line through the arcs' centres.
     """
     outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
     middle = np.array([segment.at(0.0) for segment in outer])
@@ -375,7 +377,8 @@ def segments_diameter(a: Segment, b: Segment) -> float:
     for arc, other in ((a, b), (b, a)):
         if isinstance(arc, Arc):
             for q in (other.start, other.end):
-                best = max(best, far_side(arc, q))
+                if (far := far_point(arc, q)) is not None:
+                    best = max(best, hypot(far[0] - q[0], far[1] - q[1]))
     if isinstance(a, Arc) and isinstance(b, Arc):
         far_a, far_b = far_point(a, b.center), far_point(b, a.center)
         if far_a is not None and far_b is not None:
@@ -394,9 +397,3 @@ def far_point(arc: Arc, point: tuple[float, float]) -> tuple[float, float] | Non
         return None
     far = (arc.center[0] + arc.radius * dx / distance, arc.center[1] + arc.radius * dy / distance)
     return far if abs(arc.parameter(far)) <= arc.half_sweep else None
-
-
-def far_side(arc: Arc, point: tuple[float, float]) -> float:
-    """Distance in mm from a point to the far side of an arc, 0 if that is not on the arc."""
-    far = far_point(arc, point)
-    return 0.0 if far is None else hypot(far[0] - point[0], far[1] - point[1])

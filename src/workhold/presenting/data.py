@@ -1,7 +1,7 @@
 """Fixtures and results as plain data for JSON, and all fixtures of a result as a table of pandas or Arrow.
 
 Lengths are in mm, angles in degrees, forces in N. A number that JSON does not have, such as an infinite
-force, is None. The page has answers of its own (``web.answers``), which also tell where everything is
+force, is None. The page has answers of its own (``web.answers``), which also say where everything is
 drawn. A table has the columns of the CSV form and a row for each fixture; pandas and Arrow are needed for
 nothing else, and are imported only there.
 """
@@ -26,7 +26,6 @@ from workhold.geometry.segment import Arc
 from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
 from workhold.model.quality import SEATING_FIGURES
-from workhold.model.result import Result
 from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import settings_of
 from workhold.model.workpiece import Workpiece
@@ -56,12 +55,12 @@ __all__ = [
 
 
 def finite(value: float) -> float | None:
-    """A number, or None for one that JSON does not have."""
+    """Returns a number, or None for one that JSON does not have."""
     return float(value) if isfinite(value) else None
 
 
 def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    """A part and its faces; the remarks are about how it was read."""
+    """Describes a part and its faces; the remarks are about how it was read."""
     first, loop_of = 0, {}
     for index, loop in enumerate(workpiece.loops):
         loop_of.update(dict.fromkeys(range(first, first + len(loop)), index))
@@ -80,7 +79,7 @@ def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, An
 
 
 def face_data(face: Face) -> dict[str, Any]:
-    """A face: a line or an arc, whose sweep is in degrees; loop 0 is the outer one."""
+    """Describes a face: a line or an arc, whose sweep is in degrees; loop 0 is the outer one."""
     segment = face.segment
     ends = {"from": list(segment.start), "to": list(segment.end)}
     if not isinstance(segment, Arc):
@@ -91,8 +90,7 @@ def face_data(face: Face) -> dict[str, Any]:
 
 
 def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) -> dict[str, Any]:
-    """How to set up a fixture."""
-    pair = fixture.pair
+    """Describes how to set up a fixture."""
     return {
         **({} if rank is None else {"rank": rank}),
         "type": fixture.type,
@@ -116,28 +114,28 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
             {"name": one.name, "sign": one.sign, "length": one.length}
             for one in settings_of(fixture, toolkit)
         ],
-        **(
-            {}
-            if pair is None
-            else {
-                "pairs": pair.count,
-                "ratio": [finite(one) for one in pair.ratio],
-                "order": order_words(fixture),
-            }
-        ),
+        **pair_data(fixture),
         "quality": {key: finite(value) for key, value in fixture.quality.items()},
         **({} if fixture.seating is None else {"seating": fixture.seating.as_fields()}),
         **by_hand_data(fixture, rank),
     }
 
 
+def pair_data(fixture: Fixture) -> dict[str, Any]:
+    """Describes the pair of clamps of a fixture and how to tighten them; empty for other fixtures."""
+    if pair := fixture.pair:
+        ratio = [finite(one) for one in pair.ratio]
+        return {"pairs": pair.count, "ratio": ratio, "order": order_words(fixture)}
+    return {}
+
+
 def stands_on(carrier: Carrier) -> str:
-    """What a contact stands on: a jaw or a plate by its name, a wall whatever it is called."""
+    """Names what a contact stands on: a jaw or a plate by its own name, a wall always ``wall``."""
     return carrier.noun if carrier.contact.is_placed else carrier.contact.name
 
 
 def by_hand_data(fixture: Fixture, rank: int | None) -> dict[str, Any]:
-    """How the part is put into two clamps, where its result was asked for the seating of so many fixtures."""
+    """Describes how the part is put into two clamps, if the result was asked for the seating of this rank."""
     result = None if fixture.listed is None else fixture.listed.result
     if result is None or result.toolkit.closes_at_once or rank is None or rank > (result.query.seating or 0):
         return {}
@@ -145,7 +143,7 @@ def by_hand_data(fixture: Fixture, rank: int | None) -> dict[str, Any]:
 
 
 def load_case_data(case: LoadCase) -> dict[str, Any]:
-    """What a load does to a fixture."""
+    """Describes what a load does to a fixture."""
     return {
         "load": load_entry(case.load),
         "jaw_force": finite(case.jaw_force),
@@ -161,13 +159,13 @@ def load_case_data(case: LoadCase) -> dict[str, Any]:
 
 
 def worst_data(worst: Worst) -> dict[str, Any]:
-    """Where and in which direction a load is worst; the peg is counted from 0."""
+    """Describes where and in which direction a load is worst; the peg is counted from 0."""
     x, y = worst.point
     return {"value": finite(worst.value), "peg": worst.peg, "point": [x, y], "direction": worst.direction}
 
 
 def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
-    """What a search found, with the first of its entries."""
+    """Describes what a search found, with the first of its entries."""
     indices, like = (numbers[:count].tolist() for numbers in (shown.index, shown.like))
     return {
         "workpiece": result.workpiece.name,
@@ -176,7 +174,7 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
         "distinct": {kind: int(number) for kind, number in result.distinct.items()},
         "listed": len(result),
         "unfit": shown.unfit,
-        **({} if result.query.listing is None else {"pairs": result.pairs, "seats": result.seats}),
+        **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.travels > 1 else {}),
         "complete": bool(result.complete),
         "notes": list(result.notes),
         "proof": None if result.proof is None else proof_data(result.proof),
@@ -189,7 +187,7 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
 
 
 def proof_data(proof: Proof) -> dict[str, Any]:
-    """The account of a search as a result file has it, but that faces are called so."""
+    """Describes the proof of a search as a result file does, but with ``faces`` in place of ``segments``."""
     entry = proof_entry(proof)
     lost = [
         {("faces" if key == "segments" else key): value for key, value in one.items()}
@@ -199,7 +197,7 @@ def proof_data(proof: Proof) -> dict[str, Any]:
 
 
 def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, Any]:
-    """Why there is no fixture, and what would help."""
+    """Describes why there is no fixture, and what would help."""
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
@@ -226,7 +224,7 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
 
 
 def toolkit_data(loaded: LoadedToolkit) -> dict[str, Any]:
-    """A toolkit by name or of a file."""
+    """Describes a toolkit that was found by name or read from a file."""
     return {
         "name": loaded.name,
         "kind": loaded.kind,
@@ -239,7 +237,7 @@ def toolkit_data(loaded: LoadedToolkit) -> dict[str, Any]:
 
 
 def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
-    """What each toolkit can do for a part."""
+    """Describes how well each toolkit holds a part."""
     return [
         {
             "name": item.name,
@@ -254,7 +252,7 @@ def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
 
 
 def verification_data(outcome: Verification) -> dict[str, Any]:
-    """What was proven of a result; fixtures are told by their rank."""
+    """Describes what was proven of a result; fixtures are named by their rank."""
     return {
         "holds": outcome.holds,
         "fixtures": outcome.fixtures,
@@ -275,17 +273,17 @@ REQUIREMENTS = {"pandas": "pandas>=2.2", "pyarrow": "pyarrow>=17"}
 
 
 def to_pandas(result: Result) -> Any:
-    """A DataFrame, see :meth:`workhold.Result.to_pandas`."""
+    """Makes a DataFrame, see :meth:`workhold.Result.to_pandas`."""
     return library("pandas").DataFrame(columns_of(result))
 
 
 def to_arrow(result: Result) -> Any:
-    """A table of Arrow, see :meth:`workhold.Result.to_arrow`."""
+    """Makes a table of Arrow, see :meth:`workhold.Result.to_arrow`."""
     return library("pyarrow").table(columns_of(result))
 
 
 def library(name: str) -> Any:
-    """A library of an extra.
+    """Imports a library of an extra.
 
     Raises
     ------
@@ -301,7 +299,7 @@ def library(name: str) -> Any:
 
 
 def columns_of(result: Result) -> dict[str, Any]:
-    """The columns by name: numbers as arrays (N,), words as lists; lengths in mm, angles in degrees."""
+    """Returns columns by name: numbers as arrays (N,), words as lists; lengths in mm, angles in degrees."""
     toolkit = result.toolkit
     names, count = column_names(result), 6 * toolkit.peg_count
     titles = np.array([one.title for one in toolkit.arrangements])
@@ -323,9 +321,9 @@ def columns_of(result: Result) -> dict[str, Any]:
             block += [np.array(holes), np.array([jaw.name for jaw in jaws]), column, row, *others]
         block += looks
         blocks.append(block)
-    told = len(SEATING_FIGURES) if result.seating else 0
+    seating_count = len(SEATING_FIGURES) if result.seating else 0
     joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)] or [np.zeros(0)] * (
-        len(names) - 1 - told
+        len(names) - 1 - seating_count
     )
     columns = [np.arange(1, len(result) + 1), *joined]
     if result.seating:

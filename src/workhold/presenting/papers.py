@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import date
 from hashlib import file_digest
 from pathlib import Path
@@ -27,6 +28,8 @@ __all__ = [
     "PAPER_ENDINGS",
     "Picture",
     "fixture_picture",
+    "model_bytes",
+    "pages_bytes",
     "result_picture",
     "save_sheet",
     "workpiece_picture",
@@ -36,7 +39,7 @@ __all__ = [
 
 
 class Picture(str):
-    """SVG text. A notebook shows it as the picture it is."""
+    """SVG text, which a notebook shows as a picture."""
 
     __slots__ = ()
 
@@ -44,7 +47,7 @@ class Picture(str):
         return str(self)
 
     def save(self, path: str | Path) -> Picture:
-        """Write the picture; itself again.
+        """Writes the picture and returns it.
 
         Parameters
         ----------
@@ -60,7 +63,7 @@ class Picture(str):
 
 
 def saved(svg: str, path: str | Path | None) -> Picture:
-    """A picture, written where a path is given."""
+    """Makes a picture of SVG text, and writes it where a path is given."""
     picture = Picture(svg)
     return picture if path is None else picture.save(path)
 
@@ -68,14 +71,14 @@ def saved(svg: str, path: str | Path | None) -> Picture:
 def workpiece_picture(
     workpiece: Workpiece, path: str | Path | None = None, *, peg_radius: float | None = None, unit: str = "mm"
 ) -> Picture:
-    """The workpiece with its faces numbered, see :meth:`workhold.Workpiece.draw`."""
+    """Draws the workpiece with its faces numbered, see :meth:`workhold.Workpiece.draw`."""
     return saved(draw_features(workpiece, peg_radius=peg_radius, unit=unit_named(unit)), path)
 
 
 def fixture_picture(
     fixture: Fixture, path: str | Path | None = None, *, title: str | None = None, unit: str = "mm"
 ) -> Picture:
-    """The fixture to set up from, see :meth:`workhold.Fixture.draw`."""
+    """Draws the fixture to set up from, see :meth:`workhold.Fixture.draw`."""
     listed = fixture.listing
     words = f"Fixture {listed.rank} of {listed.count}" if title is None else title
     toolkit = listed.result.toolkit
@@ -85,7 +88,7 @@ def fixture_picture(
 
 
 def result_picture(result: Result, path: str | Path | None = None, *, unit: str = "mm") -> Picture:
-    """The best fixtures at a glance, see :meth:`workhold.Result.draw`."""
+    """Draws thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
     if not len(result):
         why = f" {result.reasons[0]}" if result.reasons else ""
         raise InputError(f"there is no fixture to draw.{why}")
@@ -109,7 +112,7 @@ def save_sheet(
     result_file: str | Path | None = None,
     **asked: Any,
 ) -> None:
-    """Write the papers of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
+    """Writes the setup sheet or the set-up of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
     from workhold.statics.loads import jaw_stiffness
 
     listed, ending = fixture.listing, Path(path).suffix.lower()
@@ -133,12 +136,13 @@ def save_sheet(
 def write_paper(
     path: str | Path, result: Result, rank: int, result_file: str | Path | None, settings: dict[str, Any]
 ) -> None:
-    """Write a setup sheet.
+    """Writes a setup sheet.
 
     Parameters
     ----------
     path : of a file whose name ends in .pdf, .svg or .png.
-    result_file : the file that the result is in, whose hash stands on the sheet; None for a result of no file.
+    result_file : the file that the result is in, whose hash stands on the sheet; None for a result of no
+        file.
     settings : as of :func:`workhold.drawing.result_sheet.result_details`.
 
     Raises
@@ -146,9 +150,7 @@ def write_paper(
     InputError
         For another ending, values that cannot be, and when the file cannot be read or written.
     """
-    from workhold.drawing.render import svg_to_png
     from workhold.drawing.result_sheet import result_sheet
-    from workhold.drawing.scene import stacked
 
     ending = Path(path).suffix.lower()
     if ending not in PAPER_ENDINGS:
@@ -157,18 +159,26 @@ def write_paper(
             f"{path} names no kind of setup sheet: let the name end in {endings} or {MODEL_ENDINGS[-1]}."
         )
     pages = result_sheet(result, rank, result_hash=hash_of(result_file), **settings)
-    if ending == ".pdf":
-        from workhold.drawing.pdf import svg_to_pdf
+    write_bytes(path, pages_bytes(pages, ending, settings["day"]))
 
-        write_bytes(path, svg_to_pdf(pages, settings["day"]))
-    elif ending == ".svg":
-        write_bytes(path, stacked(pages).encode("utf-8"))
-    else:
-        write_bytes(path, svg_to_png(stacked(pages), PNG_WIDTH))
+
+def pages_bytes(pages: Sequence[str], ending: str, day: date) -> bytes:
+    """Makes a file of pages in SVG: a PDF of a day, or one SVG or PNG with the pages below each other.
+
+    Parameters
+    ----------
+    ending : one of :data:`PAPER_ENDINGS`.
+    """
+    from workhold.drawing.pdf import svg_to_pdf
+    from workhold.drawing.render import stacked, svg_to_png
+
+    if ending == ".pdf":
+        return svg_to_pdf(pages, day)
+    return stacked(pages).encode("utf-8") if ending == ".svg" else svg_to_png(stacked(pages), PNG_WIDTH)
 
 
 def hash_of(result_file: str | Path | None) -> str:
-    """SHA-256 of a file in hexadecimal; empty where there is none.
+    """Returns the SHA-256 of a file in hexadecimal; empty where there is none.
 
     Raises
     ------
@@ -187,7 +197,7 @@ def hash_of(result_file: str | Path | None) -> str:
 def write_model(
     path: str | Path, result: Result, rank: int, settings: dict[str, Any], clearance: float | None
 ) -> None:
-    """Write the set-up for a CAM system, or the list of its pins.
+    """Writes the set-up for a CAM system, or the list of its pins.
 
     Parameters
     ----------
@@ -200,23 +210,29 @@ def write_model(
     InputError
         For a part zero that cannot be, and when the file cannot be written.
     """
-    fixture, toolkit, unit = result[rank - 1], result.toolkit, settings["unit"]
-    zero, ending = part_zero(result.workpiece, settings["zero"], unit), Path(path).suffix.lower()
+    ending = Path(path).suffix.lower()
+    write_bytes(path, model_bytes(result[rank - 1], result, ending, settings, clearance))
+
+
+def model_bytes(
+    fixture: Fixture, result: Result, ending: str, settings: dict[str, Any], clearance: float | None
+) -> bytes:
+    """Makes the file of a set-up for a CAM system, or of the list of its pins; see :func:`write_model`."""
+    toolkit, unit = result.toolkit, settings["unit"]
+    zero = part_zero(result.workpiece, settings["zero"], unit)
     if ending == ".csv":
         from workhold.files.result.fixture_text import pin_list
         from workhold.model.dowels import fit_words
 
         fit, diameter = result.query.tolerance.fit, 2 * toolkit.plates[0].peg_radius
         dowel = settings["dowel"] or (None if fit is None else fit_words(fit, diameter))
-        text = pin_list(fixture, toolkit, unit, dowel, settings["peg_length"])
-        write_bytes(path, text.encode("utf-8"))
-    elif ending == ".dxf":
-        from workhold.files.dxf.writer import CLEARANCE, write_setup_dxf
+        return pin_list(fixture, toolkit, unit, dowel, settings["peg_length"]).encode("utf-8")
+    if ending == ".dxf":
+        from workhold.files.dxf.writer import CLEARANCE, setup_dxf
 
         keep_off = CLEARANCE if clearance is None else clearance
-        write_setup_dxf(fixture, result.workpiece, toolkit, path, zero=zero, clearance=keep_off)
-    else:
-        from workhold.files.step.writer import write_setup_step
+        return setup_dxf(fixture, result.workpiece, toolkit, zero, keep_off)
+    from workhold.files.step.writer import setup_step
 
-        sizes = {name: settings[name] for name in SIZES}
-        write_setup_step(fixture, result.workpiece, toolkit, path, zero=zero, **sizes)
+    sizes = {name: settings[name] for name in SIZES}
+    return setup_step(fixture, result.workpiece, toolkit, zero=zero, **sizes)

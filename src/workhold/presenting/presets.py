@@ -1,4 +1,4 @@
-"""Toolkits that people own, by name, for their classes (``files.toolkit_file`` has them)."""
+"""Presets of toolkits, by name, for the classes of toolkits (``files.toolkit_file`` has them)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["preset_fields", "preset_names_of", "preset_tolerance"]
 
 
 def preset_names_of(kind: type[Toolkit]) -> tuple[str, ...]:
-    """The names of the presets that are toolkits of a class."""
+    """Lists the presets that are toolkits of a class."""
     return tuple(name for name in preset_names() if KINDS[preset(name).kind] is kind)
 
 

@@ -1,12 +1,12 @@
 """Deciding which records are fixtures: in double precision where that is enough, else in ball arithmetic.
 
-A record holds where four contacts are and how far the exact ones may be from there. It goes through up to four stages, and
-leaves with the first that decides it:
+A record holds where four contacts are and how far the exact ones may be from there. It goes through up to
+four stages, and leaves with the first that decides it:
 
 1. a certificate of its solution (``kernels.proof.newton_kantorovich``), with all rules decided by enclosures;
 2. the same for the features' rows as they are, without what rounding may have done to the drawing before;
-3. the interval Newton method in double precision (``kernels.proof.interval_newton``): boxes in which no fixture can be
-   are dropped, and those with exactly one solution go through stage 2;
+3. the interval Newton method in double precision (``kernels.proof.interval_newton``): boxes in which no
+   fixture can be are dropped, and those with exactly one solution go through stage 2;
 4. the same method in ball arithmetic (``interval_newton``).
 """
 
@@ -101,8 +101,8 @@ class Course:
 class Account:
     """What became of records: how many there were, and how many are proven fixtures.
 
-    Escalated are records that the first certificate left open, and left are those not decided when the work was stopped.
-    Given up are pairs of chords that the engine did not follow to their crossings.
+    Escalated are records that the first certificate left open, and left are those not decided when the work
+    was stopped. Given up are pairs of chords that the engine did not follow to their crossings.
     """
 
     records: int
@@ -143,7 +143,7 @@ def peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]]:
 
 
 def box_reach(records: Array, length: float) -> Array:
-    """How far the exact unknowns (L psi, tail x, tail y, separation) may be from those of records, (N, 4) in mm."""
+    """Distances (N, 4) in mm of the exact (L psi, tail x, tail y, separation) from those of records."""
     turn, radius = (
         length * records[:, record.REACH] + LEAST_REACH,
         records[:, record.LARGEST_RADIUS] + LEAST_REACH,
@@ -194,8 +194,10 @@ def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, A
 
 
 def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
-    """Decides open records by the later stages: the fixtures among them, what stays undecided, and how many were left when
-    the work was stopped."""
+    """Decides open records by the later stages: fixtures, undecided ones, and how many were left.
+
+    Records are left when the work is stopped.
+    """
     if len(records) == 0:
         return records, [], 0
     setting = problem.setting._replace(backward_error=0.0)
@@ -264,8 +266,10 @@ def around(row: Array, low: Array, high: Array, length: float) -> Array:
 
 
 def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
-    """Records decided one by one in ball arithmetic: the fixtures among them, what stays undecided, and how many were
-    left when the work was stopped."""
+    """Decides records one by one in ball arithmetic: fixtures, undecided ones, and how many were left.
+
+    Records are left when the work is stopped.
+    """
     found: list[Array] = []
     reasons: list[Undecided] = []
     left = 0

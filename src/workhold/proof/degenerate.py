@@ -1,30 +1,33 @@
-r"""Contacts that hold nothing wherever they are, recognized by what they touch and by the holes that their pegs stand in.
+r"""Contacts that hold nothing wherever they are, recognized by what they touch and by their pegs' holes.
 
-Four wrenches close only if every three of them are independent (``kernels.contact.rules``). With two clamps the wrenches
-of the three standing pegs must be independent. Where lengths of a part and of a lattice agree exactly, some three are
-dependent in the only place where they can touch. Such a place is a double root of the contact equations or one of a
-continuum of solutions. What the rounding of a drawing makes of it takes long to decide, and means nothing. Each family is a
-theorem:
+Four wrenches close only if every three of them are independent (``kernels.contact.rules``). With two clamps
+the wrenches of the three standing pegs must be independent. Where lengths of a part and of a lattice agree
+exactly, some three are dependent in the only place where they can touch. Such a place is a double root of the
+contact equations or one of a continuum of solutions. What the rounding of a drawing makes of it takes long to
+decide, and means nothing. Each family is a theorem:
 
 parallels : on three parallel lines all normals are parallel.
 centre : on three arcs about one centre all normals pass through it.
-antipodal : two pegs of one carrier as far apart, or as near, as two features allow touch them on a common normal, so that
-    both wrenches lie on one line. For arcs of radii r and s whose centres are D apart the most is D + r + s. The least is
-    2 max(D, r, s) - (D + r + s); for a line h from an arc's centre it is h - r, for parallel lines their distance.
-turning : two of three pegs of one carrier, on arcs about one centre, fix where it is on the carrier; a turn about it is
-    left. The third peg goes around it at a distance D. It meets a line h from the centre where D cos phi = h. It meets an
-    arc of radius r about a point e from the centre where it is r from that, which is between \|D - e\| and D + e. With
-    D = h, or r at an end of its range, it is there at phi = 0 alone. Its normal then passes through the centre as well.
-sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is left. The
-    third peg's way may be just the radius from an arc's centre. Then it touches that arc where its normal is square to the
-    way, as the other two normals are.
+antipodal : two pegs of one carrier as far apart, or as near, as two features allow touch them on a common
+    normal, so that both wrenches lie on one line. For arcs of radii r and s whose centres are D apart the
+    most is D + r + s. The least is 2 max(D, r, s) - (D + r + s); for a line h from an arc's centre it is h -
+    r, for parallel lines their distance.
+turning : two of three pegs of one carrier, on arcs about one centre, fix where it is on the carrier; a turn
+    about it is left. The third peg goes around it at a distance D. It meets a line h from the centre where D
+    cos phi = h. It meets an arc of radius r about a point e from the centre where it is r from that, which is
+    between \|D - e\| and D + e. With D = h, or r at an end of its range, it is there at phi = 0 alone. Its
+    normal then passes through the centre as well.
+sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is
+    left. The third peg's way may be just the radius from an arc's centre. Then it touches that arc where its
+    normal is square to the way, as the other two normals are.
 
-Antipodal contacts are those of I.-M. Chen and J. W. Burdick, "Finding antipodal point grasps on irregularly shaped objects",
-IEEE Transactions on Robotics and Automation 9 (1993) 507-512.
+Antipodal contacts are those of I.-M. Chen and J. W. Burdick, "Finding antipodal point grasps on irregularly
+shaped objects", IEEE Transactions on Robotics and Automation 9 (1993) 507-512.
 
-Centres are one and directions parallel as ``SAME_CENTER`` and ``PARALLEL`` say. Where a length misses the exact one by m,
-normals are off by sqrt(2 m / r), with r the smallest length that bends. In ``turning`` the third passes the centre at
-sqrt(2 m D e / r), on a line at sqrt(2 m D). Lengths agree where that is at most ``DEPENDENT``, or this part of L.
+Centres are one and directions parallel as ``SAME_CENTER`` and ``PARALLEL`` say. Where a length misses the
+exact one by m, normals are off by sqrt(2 m / r), with r the smallest length that bends. In ``turning`` the
+third passes the centre at sqrt(2 m D e / r), on a line at sqrt(2 m D). Lengths agree where that is at most
+``DEPENDENT``, or this part of L.
 """
 
 from __future__ import annotations
@@ -155,7 +158,7 @@ def both(known: Array) -> Iterator[Array]:
 def turning(
     records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float
 ) -> Bools:
-    """Where the pegs of a and b turn about one centre, and that of c reaches what it touches at one place of its way."""
+    """Where the pegs of a and b turn about one centre, and that of c reaches its feature at one place."""
     chord = b.place - a.place
     apart = np.where(chord == 0.0, 1.0, np.abs(chord))
     along = (apart + (a.radius - b.radius) * (a.radius + b.radius) / apart) / 2.0

@@ -40,7 +40,7 @@ SAME_ROW = 1e-9
 
 
 def exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
-    """Rows (P, 12) of contact features of pegs of some radii in mm, with balls in them, at the precision in force."""
+    """Rows (P, 12) of features for pegs of some radii in mm, as balls at the precision in force."""
     sides: list[tuple[Vertex, Vertex]] = []
     for loop in problem.workpiece.loops:
         vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
@@ -56,7 +56,7 @@ def exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem
 def exact_row(
     row: list[Any], run: Sequence[tuple[Vertex, Vertex]], radius: float, center: tuple[float, float]
 ) -> list[Any]:
-    """The row of a face that is a run of sides: a line from the first start to the last end, or the first arc's circle."""
+    """The row of a face of several sides: a line from first start to last end, or the first arc's circle."""
     (start, following), end = run[0], run[-1][1]
     bulge, is_arc = start[2], row[IS_ARC] != 0.0
     if is_arc != (abs(bulge) >= STRAIGHT):
@@ -92,7 +92,7 @@ ROUNDING = 2.3e-16
 
 @frozen
 class SharpReactions:
-    """Forces of three locators per unit of a clamp's force on its face, how far each may be off, and the clamp's push.
+    """Forces of three locators per unit of a clamp's, how far they may be off, and the clamp's push.
 
     The push is the share of the clamp's own force that such a unit is.
     """
@@ -103,7 +103,7 @@ class SharpReactions:
 
 
 def sharp_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
-    """The reactions at the one solution of a box of three locators and a clamp; None where it cannot be made out."""
+    """Reactions at the one solution of a box of three locators and a clamp; None where it is not proven."""
     with ctx.workprec(PRECISIONS[-1]):
         frame = SingularFrame.of(box, limits)
         place: list[arb] | None = frame.start()
@@ -120,7 +120,7 @@ def sharp_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
 
 
 def reactions(here: BoxContacts) -> list[arb]:
-    """Solution a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w by Cramer's rule, w the clamp's wrench about the first peg."""
+    """Solution a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w (Cramer's rule), w the clamp's wrench about peg 1."""
     wrenches = [(n[0], n[1], q[0] * n[1] - q[1] * n[0]) for q, n in zip(here.arms, here.normals, strict=True)]
     whole = determinant(wrenches[:LOCATORS])
     out = []

@@ -1,7 +1,7 @@
 """Whether a locator and a clamp press a part that lies flush on a wall against both, in balls.
 
-Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the lattice. Their
-doubles are taken as exact numbers, and balls have as many digits as it takes.
+Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the
+lattice. Their doubles are taken as exact numbers, and balls have as many digits as it takes.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class SharpContacts:
 def pressing(
     candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
 ) -> bool | None:
-    """Whether a candidate presses the part, its contacts inside their features; None where that is not decided.
+    """Whether a candidate presses the part with contacts inside their features; None where undecided.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def sharp_contacts(candidate: Candidate, problem: Problem, plate: Carrier) -> Sh
 
 @frozen
 class SharpPlace:
-    """A contact of a peg in a row: its centre in mm along the hull edge from its start and above it, and the outward normal.
+    """A contact of a peg in a row: its centre in mm along and above the hull edge, and its outward normal.
 
     The slack is its distance in mm to the nearer end of its feature.
     """
@@ -156,7 +156,7 @@ def sharp_place(
 
 
 def null_of(contacts: tuple[arb, Contact, Contact], length: arb) -> list[arb]:
-    """The forces of the wall's two ends, locator and clamp, not scaled; see ``search.wall_contacts.closure``."""
+    """Forces of the wall's two ends, locator and clamp, not scaled; see ``search.wall_contacts.closure``."""
     wall, ((u, v), a, _), ((p, q), b, _) = contacts
     across, ahead = abs(a[0]), abs(b[0])
     last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
@@ -170,8 +170,7 @@ Contact = tuple[Point, Point, list[arb]]
 def contacts_of(
     candidate: Candidate, problem: Problem, plate: Carrier, as_drawn: bool = False
 ) -> tuple[arb, Contact, Contact] | None:
-    """The length of the hull edge, and the contacts of locator and clamp as of :func:`touched`; None where one touches
-    nothing."""
+    """The hull edge's length, and locator's and clamp's contacts (:func:`touched`); None where one misses."""
     edge = problem.workpiece.hull_edges[candidate.edge]
     start, tangent, wall = line_of(edge, problem.workpiece.center)
     level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
@@ -193,7 +192,7 @@ def contacts_of(
 def reactions_on_fence(
     candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float], as_drawn: bool
 ) -> SharpReactions | None:
-    """Forces of the wall's two ends and the locator per unit of the force on the clamp's face, and the clamp's push.
+    """Forces of the wall's two ends and the locator per unit of the clamp's, and the clamp's push.
 
     They are right to the last digit; None where they cannot be made out.
 
@@ -232,8 +231,10 @@ def line_of(edge: HullEdge, center: tuple[float, float]) -> tuple[Point, Point, 
 def touched(
     row: list[float], start: Point, tangent: Point, level: arb, upright: bool, branch: float
 ) -> tuple[Point, Point, list[arb]] | None:
-    """Centre of a peg on a line that touches a feature, the outward normal there and the distances to the rule of ends; None
-    where they do not meet."""
+    """Centre of a peg on a line that touches a feature, the normal there and distances to the ends' rule.
+
+    None where they do not meet.
+    """
     feature = in_wall_frame(row, start, tangent)
     (middle, axis), (half, sign, high, low) = (feature.middle, feature.axis), feature.ends
     across = 0 if upright else 1
@@ -255,7 +256,7 @@ def touched(
 
 
 def half_chord(square: arb) -> arb | None:
-    """Return the root of a square that may be zero; None where it is surely negative."""
+    """Returns the root of a square that may be zero; None where it is surely negative."""
     if square < 0:
         return None
     return square.sqrt() if square > 0 else arb(0, abs(square).abs_upper().sqrt().upper())
@@ -263,7 +264,7 @@ def half_chord(square: arb) -> arb | None:
 
 @frozen
 class BallFeature:
-    """A contact feature in the wall's frame, in balls: middle, unit vector, radius (None of a line), and its row."""
+    """A feature in the wall's frame, in balls: middle, unit vector, radius (None of a line), and row."""
 
     middle: Point
     axis: Point
@@ -277,7 +278,7 @@ class BallFeature:
         return half, sign, high, low
 
     def contact(self, point: Point) -> Contact:
-        """Return a peg's centre on it, the outward normal there, and the distances to its ends."""
+        """Returns a peg's centre on it, the outward normal there, and the distances to its ends."""
         half, sign, high, low = self.ends
         (ax, ay), ray = self.axis, (point[0] - self.middle[0], point[1] - self.middle[1])
         along = ax * ray[0] + ay * ray[1]
@@ -291,7 +292,7 @@ class BallFeature:
 
 
 def in_wall_frame(row: list[float], start: Point, tangent: Point) -> BallFeature:
-    """Return a feature as it lies on a hull edge from a start along a tangent."""
+    """Returns a feature as it lies on a hull edge from a start along a tangent."""
     is_arc, x, y, ax, ay, _, radius, _, rest_x, rest_y, _, _ = row
     tx, ty = tangent
     dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]

@@ -1,14 +1,15 @@
 """What double precision leaves open, decided in ball arithmetic (python-flint).
 
-A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if there is one. At
-a nearly double solution three directions of the box are well determined and one is not, so the box is turned into the
-directions of the Jacobian's singular vectors. There, boxes in which some contact equation has no zero, or in which some rule
-is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the others smaller, and shows that
-there is none or exactly one solution, which then is judged at rising precision. What remains is halved. What is left after
-``MOST_BOXES`` boxes stays undecided.
+A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
+there is one. At a nearly double solution three directions of the box are well determined and one is not, so
+the box is turned into the directions of the Jacobian's singular vectors. There, boxes in which some contact
+equation has no zero, or in which some rule is broken everywhere, are dropped. The interval Newton method
+(Hansen and Sengupta) makes the others smaller, and shows that there is none or exactly one solution, which
+then is judged at rising precision. What remains is halved. What is left after ``MOST_BOXES`` boxes stays
+undecided.
 
-References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT 21 (1981)
-203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
+References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT
+21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ class CandidateBox:
 
     Parameters
     ----------
-    features : four feature rows of ten numbers (``geometry.segment.segment_rows`` and the slack of both ends).
+    features : four rows of ``geometry.segment.segment_rows``, each with the slack of both ends.
     offsets : four pegs' places in mm from the first peg, without the separation.
     standing : how many of the pegs, the first ones, are on the carrier that stands still.
     middle : psi in radians, tail x, tail y and separation in mm.
@@ -71,7 +72,7 @@ class CandidateBox:
 
 @frozen
 class BoxOutcome:
-    """What became of a box: the middles of the solutions proven to be fixtures, and why it is undecided, if it is."""
+    """What became of a box: the middles of solutions proven to be fixtures, and why it is undecided."""
 
     fixtures: tuple[tuple[float, float, float, float], ...]
     reason: str
@@ -79,8 +80,10 @@ class BoxOutcome:
 
 @frozen(eq=False)
 class BoxContacts:
-    """Contacts on a box of unknowns: centres, unit normals (outward), arms from the first peg to each, equations, their
-    Jacobian, all as balls."""
+    """Contacts on a box of unknowns, as balls.
+
+    They are centres, unit normals (outward), arms from the first peg to each, equations and their Jacobian.
+    """
 
     rows: Sequence[Sequence[float]]
     centers: list[tuple[arb, arb]]
@@ -97,7 +100,7 @@ def from_origin(row: Sequence[float], point: tuple[arb, arb]) -> tuple[arb, arb]
 
 
 def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
-    """Contact equation of a peg's centre: its distance from a line, (distance² - R²) / 2R from an arc's centre, in mm."""
+    """Contact equation in mm: distance from a line, or (distance² - R²) / 2R from an arc's centre."""
     x, y = from_origin(row, center)
     if row[IS_ARC] == 0.0:
         return (row[AXIS_Y] * x - row[AXIS_X] * y) / (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
@@ -133,7 +136,7 @@ def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
 
 
 def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: Limits) -> list[arb]:
-    """Numbers that must all be positive for a fixture: ends, gap, span, closure, clamping (the last for the better sign).
+    """Numbers that are positive for a fixture: ends, gap, span, closure, clamping (for the better sign).
 
     Of one of two clamps they are ends, the determinant of the standing pegs' wrenches, and its push.
     """
@@ -169,7 +172,7 @@ def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: 
 
 
 def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> list[arb]:
-    """How far in mm a contact is from breaking the rule of ends, at both ends of its feature; in balls, as no kernel is."""
+    """Distances in mm of a contact from breaking the rule of ends at both ends of its feature, in balls."""
     dx, dy = from_origin(row, center)
     along, across = dx * row[AXIS_X] + dy * row[AXIS_Y], dy * row[AXIS_X] - dx * row[AXIS_Y]
     place, scale, half = along, 1.0, row[HALF_EXTENT]
@@ -186,15 +189,17 @@ def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> 
 def wrench_minors(here: BoxContacts, length: float) -> list[arb]:
     """Signed 3 x 3 minors of the wrenches (n, q x n / L); in balls, as no kernel is."""
     n = here.normals
-    # The minors do not depend on the point that moments are taken about; from the first peg the others are known best.
+    # The minors do not depend on the point that moments are taken about; from the first peg the others are
+    # known best.
     t = [(q[0] * m[1] - q[1] * m[0]) / length for q, m in zip(here.arms, n, strict=True)]
 
     def cross(i: int, j: int) -> arb:
         one, two = here.rows[i], here.rows[j]
         if one[IS_ARC] == 0.0 or two[IS_ARC] == 0.0:
             return n[i][0] * n[j][1] - n[i][1] * n[j][0]
-        # Between arcs only the difference of the rays from their centres counts, which depends on the orientation alone
-        # where both pegs are on one carrier: parallel normals stay so wherever the part slides.
+        # Between arcs only the difference of the rays from their centres counts, which depends on the
+        # orientation alone where both pegs are on one carrier: parallel normals stay so wherever the part
+        # slides.
         x = here.arms[j][0] - here.arms[i][0] - (arb(two[X]) - one[X]) - (arb(two[REST_X]) - one[REST_X])
         y = here.arms[j][1] - here.arms[i][1] - (arb(two[Y]) - one[Y]) - (arb(two[REST_Y]) - one[REST_Y])
         return (n[i][0] * y - n[i][1] * x) * (two[SIGN] / arb(two[RADIUS]))
@@ -214,8 +219,10 @@ class SingularFrame:
     Parameters
     ----------
     box : the candidate.
-    right : (4, 4) directions of the unknowns (psi scaled by L), one in each column, the worst determined last.
-    combining, turning : combinations of the contact equations, one in each row, and ``right``, both as exact balls.
+    right : (4, 4) directions of the unknowns (psi scaled by L), one in each column, the worst determined
+        last.
+    combining, turning : combinations of the contact equations, one in each row, and ``right``, both as exact
+        balls.
     length : L in mm.
     """
 
@@ -266,12 +273,12 @@ class SingularFrame:
     def step(
         self, place: list[arb], here: BoxContacts, regular: bool = False
     ) -> tuple[list[arb] | None, bool]:
-        """A step of the interval Newton method: the part of a place that may hold solutions (None when there is none), and
-        whether it holds exactly one. ``here`` are the contacts at the place.
+        """The part of a place that may hold solutions, None without one, and whether it holds exactly one.
 
-        A ``regular`` step combines the equations by the inverse of their own Jacobian at the place's middle, where it has
-        one. Near a simple solution next to a double one, the Jacobian at the whole box's middle does not separate the
-        directions.
+        This is a step of the interval Newton method; ``here`` are the contacts at the place. A ``regular``
+        step combines the equations by the inverse of their own Jacobian at the place's middle, if it has
+        one. Near a simple solution next to a double one, the Jacobian at the whole box's middle
+        does not separate the directions.
         """
         middle = [arb(p.mid()) for p in place]
         values, slopes = self.values(self.places(middle)), self.slopes(here)
@@ -299,15 +306,10 @@ class SingularFrame:
         return out, inside
 
 
-def never() -> bool:
-    """Nobody asks to stop."""
-    return False
-
-
 def solutions_in(
-    box: CandidateBox, limits: Limits, is_stopped: Callable[[], bool] = never
+    box: CandidateBox, limits: Limits, is_stopped: Callable[[], bool] = lambda: False
 ) -> BoxOutcome | None:
-    """Finds every fixture of a box, or says why that cannot be decided; None when the work was stopped before."""
+    """Finds every fixture of a box, or says why it is undecided; None when the work was stopped before."""
     with ctx.workprec(PRECISIONS[0]):
         frame = SingularFrame.of(box, limits)
         waiting = [frame.start()]
@@ -326,21 +328,16 @@ def solutions_in(
             smaller, unique = frame.step(place, here)
             if smaller is not None and not unique and not is_smaller(smaller, place):
                 smaller, unique = frame.step(smaller, frame.places(smaller), regular=True)
-            if smaller is None:
-                continue
-            if unique:
+            if smaller is not None and unique:
                 roots.append(smaller)
-                continue
-            if is_smaller(smaller, place):
-                waiting.append(smaller)
-                continue
-            waiting += halves(smaller)
+            elif smaller is not None:
+                waiting += [smaller] if is_smaller(smaller, place) else halves(smaller)
     return judged(frame, roots, limits)
 
 
-def is_smaller(part: list[arb], place: list[arb]) -> bool:
-    """Whether a step has made a place so much smaller that it is worth another."""
-    return any(one.rad() < SMALLER * whole.rad() for one, whole in zip(part, place, strict=True))
+def is_smaller(part: list[arb], place: list[arb], share: float = SMALLER) -> bool:
+    """Whether a step has made a place so much smaller that another is worth it."""
+    return any(one.rad() < share * whole.rad() for one, whole in zip(part, place, strict=True))
 
 
 def is_empty(box: CandidateBox, here: BoxContacts, limits: Limits) -> bool:
@@ -367,7 +364,7 @@ def halves(place: list[arb]) -> list[list[arb]]:
 
 
 def judged(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxOutcome:
-    """Judge the solutions of a box by the rules, at rising precision."""
+    """Judges the solutions of a box by the rules, at rising precision."""
     fixtures: list[tuple[float, float, float, float]] = []
     reason = ""
     for root in roots:
@@ -390,17 +387,12 @@ def judged(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxO
 
 
 def refined(frame: SingularFrame, root: list[arb]) -> list[arb]:
-    """A proven solution to the precision in force."""
+    """A proven solution to the precision in force, by steps that each find a binary digit or more."""
     for _ in range(12):
         closer, _ = frame.step(root, frame.places(root))
-        if closer is not None and not is_closer(closer, root):
+        if closer is not None and not is_smaller(closer, root, 0.5):
             closer, _ = frame.step(root, frame.places(root), regular=True)
-        if closer is None or not is_closer(closer, root):
+        if closer is None or not is_smaller(closer, root, 0.5):
             break
         root = closer
     return root
-
-
-def is_closer(closer: list[arb], root: list[arb]) -> bool:
-    """Whether a step has found at least one more binary digit."""
-    return any(one.rad() < 0.5 * whole.rad() for one, whole in zip(closer, root, strict=True))

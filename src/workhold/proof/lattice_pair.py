@@ -1,7 +1,7 @@
 """Whether two pegs of one lattice press a part that lies flush on a wall, in balls.
 
-Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the lattice, as the
-exact numbers that their doubles are, to as many digits as it takes.
+Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the
+lattice. Their doubles are taken as exact numbers, and digits are added until the verdict is certain.
 """
 
 from __future__ import annotations
@@ -37,15 +37,20 @@ class LatticePair:
 
 @frozen
 class SharpPair:
-    """A pair to the last digit: the pegs' centres along the hull edge from its start and above it, in mm, and the forces
-    of the wall's two ends and both pegs, not scaled."""
+    """A pair in balls: where its pegs are, and the forces of its contacts.
+
+    Parameters
+    ----------
+    points : the pegs' centres in mm along the hull edge from its start and above it.
+    null : the forces of the wall's two ends and both pegs, not scaled.
+    """
 
     points: list[list[float]]
     null: list[float]
 
 
 def verdict_on_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, SharpPair | None]:
-    """Return whether a pair presses the part, None where that stays open, and the pair to the last digit if it does."""
+    """Returns whether a pair presses the part, None where that stays open, and the pair if it does."""
     with BALLS:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
@@ -62,7 +67,7 @@ def verdict_on_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, S
 
 
 def judged(contacts: tuple[arb, Contact, Contact], problem: Problem) -> tuple[bool | None, list[arb]]:
-    """Return the verdict on the contacts of a pair at the precision in force, and their null vector.
+    """Returns the verdict on the contacts of a pair at the precision in force, and their null vector.
 
     See ``search.lattice_pairs.closure_of`` for its formula.
     """
@@ -83,7 +88,7 @@ def judged(contacts: tuple[arb, Contact, Contact], problem: Problem) -> tuple[bo
 
 
 def contacts_of(pair: LatticePair, problem: Problem) -> tuple[arb, Contact, Contact] | None:
-    """Return the hull edge's length and both contacts: centre, outward normal, distances to the ends; None if they miss."""
+    """Returns the hull edge's length and both contacts: centre, normal, distances to ends; None on a miss."""
     start, tangent, wall = line_of(problem.workpiece.hull_edges[pair.edge], problem.workpiece.center)
     rows = [in_wall_frame(problem.rows[k].tolist(), start, tangent) for k in pair.features]
     pitch = problem.toolkit.moving.pitch
@@ -98,7 +103,7 @@ def contacts_of(pair: LatticePair, problem: Problem) -> tuple[arb, Contact, Cont
 
 
 def crossing_of(one: BallFeature, other: BallFeature, between: Point, branch: int) -> Point | None:
-    """Return where two curves cross, from the middle of the first; None where they do not, or it is not known that they do.
+    """Returns where two curves cross, from the middle of the first; None where that is not proven.
 
     Parameters
     ----------
@@ -126,7 +131,7 @@ def crossing_of(one: BallFeature, other: BallFeature, between: Point, branch: in
 
 
 def on_line(between: Point, axis: Point, radius: arb, branch: int) -> Point | None:
-    """Return where a line crosses a circle, from the line's middle; None where it surely misses it.
+    """Returns where a line crosses a circle, from the line's middle; None where it surely misses it.
 
     Parameters
     ----------

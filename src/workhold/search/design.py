@@ -11,6 +11,7 @@ from attrs import evolve
 
 from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.curves.two_and_two import CANDIDATES, CONTACTS
@@ -148,9 +149,9 @@ def answer(
     workers = thread_count(counting_number("threads", threads))
     if query.seating is not None:
         return answer_with_seating(query, workers, progress, cancel, preview, sink)
-    if query.toolkit.wall is not None:
+    if WALL_END in query.toolkit.contacts:
         return deliver(answer_in_shares(shares_beside_wall(query, cancel), progress, cancel), sink)
-    if query.toolkit.needs_pairs:
+    if query.toolkit.travels > 1:
         with LatticeShares.of(query, workers, cancel) as shares:
             return deliver(answer_in_shares(shares, progress, cancel, preview), sink)
     ways = query.toolkit.ways

@@ -15,6 +15,7 @@ from attrs import evolve
 
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.model.quality import WARNINGS
 from workhold.model.query import Query
@@ -140,9 +141,9 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     threads : how many threads share the work; None for one on each processor.
     unit : of the lengths in its words.
     """
-    toolkit, alone = query.toolkit, not query.toolkit.needs_pairs
+    toolkit, alone = query.toolkit, query.toolkit.travels == 1
     ways = [held_in(query, way) for way in toolkit.ways]
-    if toolkit.wall is not None:
+    if WALL_END in toolkit.contacts:
         found = [removals_beside_wall(way, alone) for way in ways]
     else:
         found = [removals_of(Problem.of(way), threads, unit, alone) for way in ways]

@@ -138,7 +138,7 @@ def deliver_seated(
 
 def is_put_in_by_hand(query: Query) -> bool:
     """Whether the part is pushed against its locators by hand, as with two clamps, of which none brings it home."""
-    return query.toolkit.needs_pairs
+    return not query.toolkit.closes_at_once
 
 
 def refuse_unasked(query: Query) -> None:

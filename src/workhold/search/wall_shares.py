@@ -61,7 +61,7 @@ class WallShares:
     @classmethod
     def of(cls, query: Query, cancel: Event | None) -> WallShares:
         """The shares of a query, with one clamp or two."""
-        ways, pairing = query.toolkit.ways, query.toolkit.needs_pairs
+        ways, pairing = query.toolkit.ways, query.toolkit.travels > 1
         searches = searches_of(one_clamp(query, ways[0]) if pairing else query, ways, pairing)
         problems = [search.problem for search in searches]
         collector = ClampedSeats(query, problems[0]) if pairing else WallCollector(query, problems)

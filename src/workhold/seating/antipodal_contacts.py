@@ -1,10 +1,10 @@
 """Pegs that press a part along one line or along parallel lines: equilibria in closed form.
 
-With two pegs on one line, on a common normal of two pieces or in pockets, and at a fixed height above each
-other, the jaw separation grows with their distance d on the part. It is counted along the outward normal of
-what moves, and is below 0 where both press from between, as in a hole. So equilibria are the critical points
-of d over the places on both pieces. With curvatures kappa (of convex pieces above 0) the second derivatives
-of d are 1 / d - kappa along each piece, and -1 / d across.
+Two pegs are on one line: on a common normal of two pieces, or in pockets. With one at a fixed height above
+the other the jaw separation grows with their distance d on the part. It is counted along the outward normal
+of what moves, and is below 0 where both press from between, as in a hole. So equilibria are the critical
+points of d over the places on both pieces. With curvatures kappa (of convex pieces above 0) the second
+derivatives of d are 1 / d - kappa along each piece, and -1 / d across.
 
 Of three parallel forces two are of pegs of one jaw on a line and an arc, and the third is on a parallel line.
 There the chord of the two is a tangency, and its instant centre infinitely far. S depends on the orientation
@@ -260,7 +260,10 @@ def parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: Giv
 
 
 def chords_at_tangencies(boundary: ObstacleBoundary, d: float, jaw: int) -> Array:
-    """Tangencies (C, 5) of the chords of a length, for pegs of a jaw: ``kernels.seating.parallel_and_concentric``."""
+    """Tangencies (C, 5) of the chords of a length, for pegs of a jaw.
+
+    See ``kernels.seating.parallel_and_concentric``.
+    """
     known, key = boundary.once(tangencies), (round(d, 9), jaw)
     if key not in known:
         first, end = boundary.parts[jaw].tolist()

@@ -1,4 +1,4 @@
-"""How a part is clamped: the reading on what moves, the order of tightening, and the friction below which it cannot stick.
+"""How a part is clamped: the reading on what moves, the order of tightening, and the sticking friction.
 
 The reading when the part rests in a seat is an opening, a stroke, or where the tip is.
 
@@ -37,10 +37,10 @@ from workhold.conventions import NO_REACTION
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.kernels.seating.sticking import least_friction
 from workhold.limits import MOST_FRICTION
-from workhold.model.clamps import clamp_names, first_clamps, order_words
+from workhold.model.clamps import clamp_names, first_clamps, order_words, second_over_first
 from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.seating import DRY_STEEL, length
-from workhold.model.setup import Setting, settings_of
+from workhold.model.setup import LengthSetting, settings_of
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
 from workhold.statics.contact_matrix import LOCATORS, Touched
@@ -106,7 +106,7 @@ class Gauge:
         return next(carrier for carrier in carriers if carrier.travel is not None)
 
     @property
-    def setting(self) -> Setting:
+    def setting(self) -> LengthSetting:
         """What is read in the fixture's own pose."""
         return settings_of(self.fixture, self.toolkit)[0]
 
@@ -142,9 +142,9 @@ class Gauge:
         --------
         >>> from workhold import Plate
         >>> from workhold.model.fixture import Pose
-        >>> plate, tip = Plate(pitch=20, peg_radius=3, travel=(10, 30)), Peg("clamp -x", 4, 1, 66.0, 20.0, 2, 1.0)
+        >>> tip = Peg("clamp -x", 4, 1, 66.0, 20.0, 2, 1.0)
         >>> fixture = Fixture("clamp", (tip,), Pose(0, 0, 0), -14.0, {}, "-x")
-        >>> Gauge(fixture, plate).at(-12.5)
+        >>> Gauge(fixture, Plate(pitch=20, peg_radius=3, travel=(10, 30))).at(-12.5)
         12.5
         """
         moved = evolve(self.fixture, pegs=self.pegs(travelled), jaw_separation=travelled)
@@ -185,8 +185,7 @@ def sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: To
 
     It is infinite where they balance at none up to ``MOST_FRICTION``.
     """
-    assert fixture.pair is not None
-    ratio = fixture.pair.working_ratio
+    ratio = second_over_first(fixture)
     touched = Touched.of(workpiece, toolkit)
     contacts = contacts_on_part(fixture, workpiece, toolkit, touched, touched.of_fixture(fixture, toolkit))
     low, high = 0.0, MOST_FRICTION
@@ -232,10 +231,9 @@ def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool
 
 
 WHY = (
-    "Neither of the two clamps holds the part alone, so from where they bring it home is not known: put it in its place by "
-    "hand. The locators alone fix that place."
+    "Neither of the two clamps holds the part alone, so from where they bring it home is not known: put it "
+    "in its place by hand. The locators alone fix that place."
 )
-LOCATOR_COUNT = 3
 # Friction is given to so many decimals, rounded down.
 DECIMALS = 3
 # A ratio of forces below this is given to two digits, others to hundredths.
@@ -274,7 +272,7 @@ class ByHand:
     @property
     def unpressed(self) -> tuple[tuple[Peg, ...], ...]:
         """The locators, and ends of the contact with a wall, without force under each clamp alone."""
-        known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATOR_COUNT]
+        known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
         return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
 
     def as_fields(self, text: Callable[[float], str] = MILLIMETRE.text) -> dict[str, Any]:
@@ -309,11 +307,11 @@ class ByHand:
 
     def push_words(self) -> str:
         """How to put the part in, in one step."""
-        locators = [peg.hole for peg in self.fixture.pegs[:LOCATOR_COUNT] if not peg.is_on_wall]
-        wall, noun = self.toolkit.wall, self.toolkit.carriers[0].peg
-        against = f"all three {noun}s, {listed(locators)}"
-        if wall is not None:
-            against = f"the {wall.noun}, flush, and against the {noun} in {listed(locators)}"
+        locators = [peg.hole for peg in self.fixture.placed[: -self.toolkit.tips]]
+        noun = self.toolkit.carriers[0].peg
+        in_holes = f"all three {noun}s, " if len(locators) == LOCATORS else f"the {noun} in "
+        flush = [f"the {one.noun}, flush," for one in self.toolkit.carriers if not one.contact.is_placed]
+        against = " and against ".join([*flush, in_holes + listed(locators)])
         ways = (self.fixture.direction or "").split()
         # Of clamps that push against each other neither shows the way.
         way = "" if len({name[1] for name in ways}) < len(set(ways)) else f" {self.towards}"
@@ -327,9 +325,10 @@ class ByHand:
     def touch_words(self) -> str:
         """How to see that it lies right."""
         touched = listed(
-            [f"{peg.touching} at {place_of(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATOR_COUNT]]
+            [f"{peg.touching} at {place_of(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATORS]]
         )
-        return f"Pull at a slip of paper at each: {touched}. If none comes out, the part lies against all of them."
+        out = "If none comes out, the part lies against all of them."
+        return f"Pull at a slip of paper at each: {touched}. {out}"
 
     def hold_words(self) -> str:
         """Until when to hold the part."""
@@ -351,18 +350,19 @@ class ByHand:
         together = f"{second} with {ratio:{'.2f' if ratio >= SMALL else '.2g'}} times the force of {first}"
         if least == inf:
             return [
-                f"Tightened together, {together}, both bring home a part a little off a locator, whatever the friction."
+                f"Tightened together, {together}, both bring home a part a little off a locator, whatever "
+                "the friction."
             ]
         friction = f"{floor(least * 10.0**DECIMALS) / 10.0**DECIMALS:.{DECIMALS}f}"
         steel = "dry steel has 0.1 to 0.2"
         if least >= DRY_STEEL:
             return [
-                f"Tightened together, {together}, both bring home a part a little off a locator while friction is below "
-                f"{friction}; {steel}."
+                f"Tightened together, {together}, both bring home a part a little off a locator while "
+                f"friction is below {friction}; {steel}."
             ]
         return [
-            f"From a friction of {friction} on the part can stay a little off a locator also under both clamps, {together}; "
-            f"{steel}, so tap it home meanwhile."
+            f"From a friction of {friction} on the part can stay a little off a locator also under both "
+            f"clamps, {together}; {steel}, so tap it home meanwhile."
         ]
 
     def after_words(self, text: Callable[[float], str]) -> str:
@@ -372,26 +372,29 @@ class ByHand:
         lengths = [
             f"a {one.name} of {text(one.length)} at {name}" for one, name in zip(settings, names, strict=True)
         ]
-        return f"Try the paper again. Right is {listed(lengths)}; if not, the part lies against them another way."
+        wrong = "if not, the part lies against them another way"
+        return f"Try the paper again. Right is {listed(lengths)}; {wrong}."
 
 
 def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
     """How to put a part into the two clamps of a fixture, and what is known of it there."""
-
     friction = None if toolkit.has_flats else sticking_friction_of_two(fixture, workpiece, toolkit)
     return ByHand(fixture, toolkit, friction)
 
 
 def place_of(peg: Peg, toolkit: Toolkit) -> str:
     """Where a locator is, or an end of the contact with a wall."""
-    if not peg.is_on_wall or toolkit.wall is None:
+    carrier = toolkit.carrier(peg.carrier)
+    if carrier.contact.is_placed:
         return peg.hole
-    return f"the {toolkit.wall.noun} on the {peg.hole.rpartition(' ')[2]}"
+    return f"the {carrier.noun} on the {peg.hole.rpartition(' ')[2]}"
 
 
 def places_of(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
     """Where some locators are; both ends of the contact with a wall are the wall."""
-    walls = sum(peg.is_on_wall for peg in pegs)
-    if toolkit.wall is None or walls < 2:
+    carriers = [toolkit.carrier(peg.carrier) for peg in pegs]
+    walls = [one.noun for one in carriers if not one.contact.is_placed]
+    if len(walls) < 2:
         return [place_of(peg, toolkit) for peg in pegs]
-    return [f"the {toolkit.wall.noun}", *(peg.hole for peg in pegs if not peg.is_on_wall)]
+    placed = [peg.hole for peg, one in zip(pegs, carriers, strict=True) if one.contact.is_placed]
+    return [f"the {walls[0]}", *placed]

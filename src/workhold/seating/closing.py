@@ -148,7 +148,7 @@ class Closing:
     def reached(
         self, configs: Array, aims: Array, far: Array, first: float, longest: float, most: float
     ) -> tuple[Array, NDArray[np.int64]]:
-        """Paths along aims on which no peg enters the part, from configurations (N, 4): see ``kernels.seating``.
+        """Paths along aims on which no peg enters the part, from configurations (N, 4).
 
         Parameters
         ----------
@@ -172,16 +172,16 @@ class Closing:
             room = int(begins[-1])
 
     def escape(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
-        """Whether the part can be taken straight away from all pegs, jaws as they stand, in configurations (N, 4).
+        """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws standing.
 
         It is false of configurations that are not asked for (N,).
         """
         return ~np.isnan(self.directions_away(configs, asked))
 
     def directions_away(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> Array:
-        """The directions (N,) in radians, of pegs on the part, in which it can be taken away; NaN if there is none.
+        """The directions (N,) in radians, of pegs on the part, in which it can be taken away.
 
-        It is NaN of configurations that are not asked for (N,), too.
+        NaN where there is none, and of configurations that are not asked for (N,).
         """
         out, obstacles = np.zeros(len(configs)), self.obstacles
         if asked is not None:

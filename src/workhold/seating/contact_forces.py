@@ -63,7 +63,7 @@ def with_forces(candidates: Array, given: Given, size: float) -> Array:
 
 
 def verdicts(candidates: Array, slack: float, slack_in_doubt: float) -> NDArray[np.int8]:
-    """Whether all contacts of candidates (N, 24) press and balance, as ``kernels.seating.candidates`` has it."""
+    """Whether all contacts of candidates (N, 24) press and balance; see ``kernels.seating.candidates``."""
     out = np.empty(len(candidates), np.int8)
     judge_balance(candidates, slack, slack_in_doubt, out)
     return out
@@ -185,7 +185,7 @@ def is_equilibrium(row: Array, closing: Closing) -> bool:
 
 
 def balance(wrenches: Sequence[Sequence[float]]) -> bool:
-    """Whether two or three wrenches (4,) of force, moment and force on the jaw balance it while none pulls."""
+    """Whether two or three wrenches (4,) of force, moment and force on the jaw balance it without pulling."""
     across, along, moments, on_jaw = zip(*wrenches, strict=True)
     equations = across, along, moments
     # Two forces that balance differ in their sense alone; three are square to the equations, of which two
@@ -221,10 +221,13 @@ def beside(row: Array, x: float, y: float) -> float:
 
 
 WAS_NOT_FOUND = (
-    "This fixture was not found among the seats of its own pegs, a fault of the program: from where on the part is caught "
-    "is not known, and seats may be missing."
+    "This fixture was not found among the seats of its own pegs, a fault of the program: from where on the "
+    "part is caught is not known, and seats may be missing."
 )
-OTHERS_MAY_BE = "A fixture on the same pegs was not found among their seats, a fault of the program: others may be missing."
+OTHERS_MAY_BE = (
+    "A fixture on the same pegs was not found among their seats, a fault of the program: others may be "
+    "missing."
+)
 
 
 def as_candidate(

@@ -182,7 +182,7 @@ class JoinTree:
 
     @cached_property
     def first_joins(self) -> IntArray:
-        """The number (P + 2,) of the first pass at which each place's cage joins another, -1 where it never does.
+        """The number (P + 2,) of the first pass at which each place's cage joins another, -1 for none.
 
         The outside and the stop come last.
         """
@@ -203,7 +203,7 @@ class JoinTree:
 
     @property
     def tops(self) -> Array:
-        """The separations (N + L,) of the first passes of seats and loose sets; infinite where there is none."""
+        """The separations (N + L,) of the first passes of seats and loose sets, infinite for none."""
         return np.append(self.passes[:, SEPARATION], inf)[self.first_joins[self.own]]
 
     def way_out(self, place: int) -> float | None:

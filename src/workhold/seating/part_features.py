@@ -1,8 +1,8 @@
 """The features of a part that pegs and a straight wall may touch, and whether it covers its place in others.
 
 The boundary of (part + disc of the peg radius) has offset faces, arcs around convex corners, and pockets. A
-wall is touched by corners, arcs and edges of the convex hull. The silhouette tells poses, also turned over,
-in which the part covers the same place.
+wall is touched by corners, arcs and edges of the convex hull. The silhouette distinguishes poses, also turned
+over, in which the part covers the same place.
 
 Reference: T. Lozano-Perez, "Spatial planning: a configuration space approach", IEEE Transactions on Computers
 C-32 (1983).
@@ -250,7 +250,7 @@ class Silhouette:
         return float(np.hypot(*self.points.T).max())
 
     def cover_same(self, one: Array, others: Array, turned_over: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Whether a part, perhaps turned over (N,), covers in configurations (N, 4) the place that it covers in one."""
+        """Whether a part, perhaps turned over (N,), covers in configurations (N, 4) what it does in one."""
         out = np.empty(len(others), np.int8)
         cover_same(one, others, turned_over.astype(np.int8), self.rows, self.points, SAME_PLACE, out)
         return out.astype(np.bool_)

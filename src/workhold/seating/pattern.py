@@ -1,12 +1,12 @@
-"""Four pegs of which those that move slide along x: what is solved once for all fixtures on them, and subsets.
+"""Patterns of four pegs, for which seating is solved once for all fixtures on them, and their subsets.
 
 A toolkit is turned by quarters until what moves in it opens along x, and clamps as its separation S falls.
 Where opening clamps, S is the travel with the other sign. So an opening vise is turned by half, and a clamp
 along a column by a quarter.
 
-Subsets of a pattern's pegs stand to each other in the same way in many patterns of one lattice. With S free,
-the equilibria of two or three pegs depend on how the pegs of each jaw stand to each other, and on how much
-higher one jaw's pegs are. The pegs that are left only decide whether a place is free.
+Subsets of a pattern's pegs stand to each other in the same way in many patterns of one lattice. With S free
+the equilibria of two or three pegs depend on how the pegs of each jaw stand to each other. They also depend
+on how much higher one jaw's pegs are. The other pegs only decide whether a place is free.
 
 Glossary
 --------
@@ -32,6 +32,7 @@ from attrs import define, evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.model.fixture import Fixture
 
@@ -127,8 +128,9 @@ class Pattern:
             With two clamps, for pegs with a flat, and for pegs without a radius.
         """
         refuse_unseated(toolkit)
-        numbers = tuple(k for k, peg in enumerate(fixture.pegs) if not peg.is_on_wall)
-        carriers = [toolkit.carrier(fixture.pegs[k].carrier) for k in numbers]
+        standing_on = [toolkit.carrier(peg.carrier) for peg in fixture.pegs]
+        numbers = tuple(k for k, carrier in enumerate(standing_on) if carrier.contact.is_placed)
+        carriers = [standing_on[k] for k in numbers]
         moving = next(carrier for carrier in carriers if carrier.travel is not None)
         standing = next(carrier for carrier in carriers if carrier.travel is None)
         frame = ClosingFrame.of(toolkit, moving)
@@ -137,7 +139,7 @@ class Pattern:
             np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in numbers], dtype=np.float64)
         )
         half_plane = None
-        if toolkit.wall is not None:
+        if WALL_END in toolkit.contacts:
             # It runs along x at y = 0, the part above it.
             x, y = frame.turned(np.array([0.0, 1.0])).tolist()
             half_plane = x, y, 0.0
@@ -245,13 +247,13 @@ def refuse_unseated(toolkit: Toolkit) -> None:
         With two clamps, where no peg stands still, for pegs with a flat, and for pegs without a radius.
     """
     words = "what a part does while it is clamped is told"
-    if toolkit.needs_pairs:
+    if not toolkit.closes_at_once:
         raise InputError(f"{words} of one clamp: with two the part is put against its locators by hand.")
     if all(plate.travel is not None for plate in toolkit.plates):
         raise InputError(f"{words} where some pegs stand still, and no peg of this result stands still.")
     if toolkit.has_flats:
         raise InputError(f"{words} of round pegs: those of this result have flats.")
-    if min(carrier.peg_radius for carrier in toolkit.carriers if not carrier.is_wall) <= 0.0:
+    if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0.0:
         raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")
 
 

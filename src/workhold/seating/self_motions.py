@@ -247,7 +247,7 @@ def on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMoti
 
 
 def balance(normals: list[Point], moves: list[int]) -> bool:
-    """Whether forces of three pegs through one centre balance the jaw's; ``moves`` is 1 for pegs that move."""
+    """Whether forces of three pegs through one centre balance the jaw's; ``moves`` is 1 where one moves."""
     (ax, ay), (bx, by), (cx, cy) = normals
     # As much of each as the other two span, which leaves nothing over, per unit of what presses along x.
     forces = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx

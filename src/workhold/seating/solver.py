@@ -311,16 +311,18 @@ class FixtureInPattern:
         seats = self.seats()
         factor = float(row[FORCE : FORCE + 4].sum())
         capture = None if join is None else float(join.separation - row[SEPARATION])
-        doubts = unsettled_words(sum(seat.kind == "unsettled" for seat in seats))
+        unsettled = sum(seat.kind == "unsettled" for seat in seats)
+        places = "A place" if unsettled == 1 else f"{unsettled} places"
+        doubts = [f"{places} where the part may rest could not be settled."] if unsettled else []
         if join is not None and not is_equilibrium(join.candidate, self.solver.closing(self.known, False)):
             # Only what was checked is claimed; from no opening at all the part comes home for certain.
-            join, capture, doubts = None, 0.0, (*doubts, NO_PASS)
+            join, capture, doubts = None, 0.0, [*doubts, NO_PASS]
         if self.missed and self.nearest(np.array(self.missed)) is not None:
             # Whatever missed the seat may have missed a pass out of it.
-            join, capture, way_out, doubts = None, 0.0, float(row[SEPARATION]), (*doubts, WAS_NOT_FOUND)
+            join, capture, way_out, doubts = None, 0.0, float(row[SEPARATION]), [*doubts, WAS_NOT_FOUND]
         elif self.missed:
-            doubts = (*doubts, OTHERS_MAY_BE)
-        cage, placing = (None, None)
+            doubts = [*doubts, OTHERS_MAY_BE]
+        cage, placing = None, None
         if join is not None and with_cage:
             cage, placing = self.freedom(row[CONFIG], join)
         return Seating(
@@ -333,7 +335,7 @@ class FixtureInPattern:
             sticking_friction=self.sticking(row),
             stop=self.pattern.frame.sign * self.pattern.stop if isfinite(self.pattern.stop) else None,
             seats=seats,
-            unsettled=doubts,
+            unsettled=tuple(doubts),
         ).in_toolkit(self.solver.toolkit)
 
     def lowest_pass(self, join: Join) -> Pass:
@@ -367,15 +369,6 @@ class FixtureInPattern:
         return sticking_friction(places, normals, moves)
 
 
-def unsettled_words(count: int) -> tuple[str, ...]:
-    """The sentence about so many places that could not be settled, or none."""
-    if count == 0:
-        return ()
-    return (
-        f"{'A place' if count == 1 else f'{count} places'} where the part may rest could not be settled.",
-    )
-
-
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
     """The seatings of fixtures: from how wide open each catches the part, and where else it can rest.
 
@@ -402,6 +395,6 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     (0.03, 0.083)
     """
     chosen = result[:fixtures] if isinstance(fixtures, int) else fixtures
-    if result.toolkit.needs_pairs:
+    if not result.toolkit.closes_at_once:
         return [by_hand(fixture, result.workpiece, result.toolkit) for fixture in chosen]
     return Solver(result.workpiece, result.toolkit).of_all(chosen, with_cage)

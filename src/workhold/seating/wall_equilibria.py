@@ -4,8 +4,8 @@ The wall is along x or y. Where a piece of the part's hull lies on it, one coord
 follows from the orientation. The other follows from the locator on a piece, and the separation from the tip
 on a piece. So a part that stands on one piece of its hull and touches all three has one freedom. It balances
 where the normals of locator, tip and wall go through one point, which is where S is stationary over the
-orientation. All such poses are isolated (``kernels.seating.wall_equilibria``). Four contacts are in closed form, or
-roots of polynomials (``kernels.seating.wall_equilibria``).
+orientation. All such poses are isolated (``kernels.seating.wall_equilibria``). Four contacts are in closed
+form, or roots of polynomials (``kernels.seating.wall_equilibria``).
 
 Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
 and Automation 14 (1998), where three frictionless contacts balance on concurrent normals.
@@ -91,7 +91,7 @@ class WallEquilibria:
         return atan2(-self.half_plane[1], -self.half_plane[0])
 
     def resting(self, piece: int, theta: float) -> float:
-        """The coordinate in mm of the part's place square to the wall, on which a piece of its hull stands."""
+        """The coordinate in mm of the part's place square to the wall on which a piece of its hull stands."""
         ux, uy, off = self.half_plane
         x, y, radius = self.boundary.hull.rows[piece, :3].tolist()
         c, s = cos(theta), sin(theta)
@@ -254,12 +254,12 @@ class WallEquilibria:
         return np.concatenate([found, rows_of(out)])
 
     def three_contacts(self) -> Array:
-        """Candidates (N, 24) of three contacts, with wall, locator and tip, whose normals go through one point."""
+        """Candidates (N, 24) of contacts with wall, locator and tip whose normals go through one point."""
         work = np.empty((len(self.boundary.rows), SHAPE_LENGTH)), np.empty((DEPTH, 2))
         return filled(CANDIDATE_LENGTH, 64, stationary, self.stood, *work)
 
     def against_wall(self) -> Array:
-        """Candidates (N, 24) of the tip alone against the wall, on one normal of a hull edge or a hull piece."""
+        """Candidates (N, 24) of the tip alone against the wall, on a normal of a hull edge or hull piece."""
         if self.half_plane[0] <= 0.0:
             return rows_of([])
         out = []

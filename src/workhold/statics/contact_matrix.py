@@ -66,7 +66,8 @@ def wrenches(points: Array, normals: Array, length: float) -> Array:
 
     Parameters
     ----------
-    points, normals : (..., 2) peg centres about the centre of the part, in mm, and outward unit normals there.
+    points, normals : (..., 2) peg centres about the centre of the part, in mm, and outward unit normals
+        there.
     length : L in mm.
     """
     moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
@@ -88,8 +89,9 @@ class ContactMatrices:
     ends : (N, P) distances along the contact features to their nearer ends.
     edges : (N, P) the same to their nearer edges, ends that are no tangent joints; infinite
         where there is none.
-    inverses : (N, 4, P) inverses of the contact matrices, NaN where there is none. With two clamps, P is 5: the locators
-        alone say how the part moves, and the last row are the forces at the working ratio of the clamps' forces.
+    inverses : (N, 4, P) inverses of the contact matrices, NaN where there is none. With two clamps, P is 5:
+        the locators alone say how the part moves, and the last row are the forces at the working ratio of the
+        clamps' forces.
     closing : (N, P, M) forces of all pegs per unit of the force of each thing that moves.
     """
 
@@ -109,13 +111,14 @@ class Touched:
     ----------
     center : (2,) of the part's bounding box, in the part's coordinates.
     length : L of the wrenches, half the diameter of the peg-centre locus.
-    features : (F, 12) rows of the contact features of each carrier's pegs with the slacks of their ends, one carrier after
-        the other, ordered by face; for a wall the hull edges come after them.
-    starts : where the features of each face number begin in them, carrier after carrier, then where each hull edge does, and
-        where the last ones end.
+    features : (F, 12) rows of the contact features of each carrier's pegs with the slacks of their ends, one
+        carrier after the other, ordered by face. For a wall the hull edges come after them.
+    starts : where the features of each face number begin in them, carrier after carrier, then where each hull
+        edge does, and where the last ones end.
     segments : how many face numbers there are.
     moving : (C,) 1 for a carrier that moves, 0 for others.
-    directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame, zero for one that stands still.
+    directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame, zero for one that
+        stands still.
     lies_flush : (C,) whether the part lies flush on a carrier, a wall.
     flush : how the part lies on a wall.
     """
@@ -158,7 +161,8 @@ class Touched:
         walls = [Line((a, b), (x, y)) for (a, b), (x, y) in flush.ends.tolist()]
         # A copy of one row more, because the kernel looks at row 0 even where a face has no feature.
         rows = np.zeros((len(features) + len(walls) + 1, FEATURE_LENGTH))
-        # Each carrier's by themselves: where another's pegs may stand says nothing of a joint. Many touch the same.
+        # Each carrier's by themselves: where another's pegs may stand says nothing of a joint. Many touch the
+        # same.
         different = {id(locus): list(locus) for locus in loci}
         known = {key: np.hstack([feature_rows(locus), end_slacks(locus)]) for key, locus in different.items()}
         rows[: len(features)] = np.concatenate([known[id(locus)] for locus in loci])
@@ -310,7 +314,7 @@ def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) 
 
 
 def pair_inverses(points: Array, normals: Array, reactions: Array, length: float) -> Array:
-    """What stands for the inverses (N, 4, 5) of contact matrices with two clamps, see :class:`ContactMatrices`."""
+    """Stand-ins for the inverses (N, 4, 5) with two clamps; see :class:`ContactMatrices`."""
     out = np.zeros((len(points), 4, 5))
     out[:, :LOCATORS, :LOCATORS] = locators_inverse(wrenches(points, normals, length))
     out[:, 3] = working_forces(reactions)

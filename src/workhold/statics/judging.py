@@ -2,11 +2,11 @@
 
 Glossary
 --------
-warning : a contact near an edge (one for each), a weak closure, a strong peg, a large location error, a peg that lets go
-    under a load.
+warning : a contact near an edge (one for each), a weak closure, a strong peg, a large location error, a peg
+    that lets go under a load.
 unfit : of a fixture that is none for a workshop, because the part lies anywhere or one peg hardly holds.
-penalty : points against a fixture. One stands for a location error 12 % larger (ISO 3, series R20), and tilt, a peg that
-    is not gentle and a small face cost as much as so many of those steps.
+penalty : points against a fixture. One stands for a location error 12 % larger (ISO 3, series R20). Tilt, a
+    strong peg and a small face cost so many points each.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ class Judging:
     ----------
     off : sum of the tolerances of peg and face in mm.
     small_face : in mm; a face is small below it.
-    jaw_force : that the vise is closed with, in N; None where it is not known, and no peg is warned of that lets go.
+    jaw_force : that the vise is closed with, in N; None where it is not known, and no peg is warned of that
+        lets go.
     """
 
     off: float
@@ -65,11 +66,11 @@ class Judging:
 
     @classmethod
     def of(cls, diameter: float, tolerance: Tolerance, jaw_force: float | None) -> Judging:
-        """For a part of a diameter in mm, with how far pegs and faces may be off, and the jaw force in N if it is known."""
+        """Limits for a part of a diameter in mm, a tolerance, and a jaw force in N if it is known."""
         return cls(tolerance.peg + tolerance.face, SMALL_FACE * diameter, jaw_force)
 
     def warnings(self, quality: Array, edges: Array) -> Array:
-        """How many warnings (N,) there are, from figures of quality (N, 12) and distances of contacts from edges (N, 4)."""
+        """Numbers of warnings (N,) from figures (N, 12) and contacts' distances from edges (N, 4)."""
         count = is_near_edge(edges).sum(axis=1) + is_weak(quality[:, CLOSURE_MARGIN])
         count = (
             count
@@ -112,7 +113,7 @@ def is_strong(force: Any) -> Any:
 
 
 def is_astray(error: Any, off: float) -> Any:
-    """Whether a location error is large, from it or an array of them; ``off`` is the sum of the tolerances; in mm."""
+    """Whether location errors in mm, one or an array, are large; ``off`` sums the tolerances in mm."""
     return np.round(error, FIGURE_DECIMALS) > LARGE_LOCATION_ERROR * off
 
 
@@ -122,7 +123,7 @@ def lets_go(needed: Any, jaw_force: float) -> Any:
 
 
 def is_unfit(margin: Any, error: Any, off: float) -> Any:
-    """Whether a fixture is none for a workshop, from its closure margin and location error in mm, or arrays of them.
+    """Whether closure margin and location error (mm), or arrays of them, rule a fixture out of a workshop.
 
     ``off`` is the sum of the tolerances of peg and face in mm. What is no number is unfit.
     """

@@ -32,7 +32,7 @@ These form a polytope, because the wrenches span the space, and its few corners 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import combinations, permutations
 from math import atan2, cos, degrees, hypot, inf, isfinite, radians, sin
 
@@ -42,7 +42,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import FLAT, NO_FORCE, OUTSIDE
 from workhold.errors import InputError
-from workhold.fixels.carrier import standoff
+from workhold.fixels.pegs import standoff
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.contact.quality import HALF, HIGH_X, HIGH_Y, LOW_X, LOW_Y, MIDDLE_X, MIDDLE_Y
 from workhold.limits import MOST_FRICTION, real, refuse_strong
@@ -59,9 +59,7 @@ __all__ = [
     "jaw_forces_needed",
     "jaw_stiffness",
     "jaw_words",
-    "largest_value",
     "load_cases",
-    "possible_motions",
     "shared_forces",
 ]
 
@@ -96,7 +94,8 @@ def jaw_stiffness(jaw: str | float) -> float:
         value = -1.0
     if not value >= 0:
         raise InputError(
-            f"jaw {str(jaw)[:40]!r} is not known: give screw, constant, or how many times as stiff as one contact it is."
+            f"jaw {str(jaw)[:40]!r} is not known: give screw, constant, or how many times as stiff as one "
+            "contact it is."
         )
     return value
 
@@ -110,9 +109,8 @@ def jaw_words(stiffness: float, toolkit: Toolkit) -> str:
     """
     if stiffness == 0:
         return f"a {toolkit.moving.noun} that keeps its force"
-    return f"{toolkit.locked} " + (
-        "locked" if stiffness == inf else f"{stiffness:g} times as stiff as a contact"
-    )
+    state = "locked" if stiffness == inf else f"{stiffness:g} times as stiff as a contact"
+    return f"{toolkit.locked} {state}"
 
 
 def shared_forces(forces: Array, closing: Array, stiffness: float) -> Array:
@@ -138,8 +136,8 @@ def shared_forces(forces: Array, closing: Array, stiffness: float) -> Array:
 def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
     """Jaw forces (N,) in N above which no peg of a screw vise lets go under any load; never negative.
 
-    Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of their forces, at
-    the working ratio, and what is taken from f0 is its part in the plane of both.
+    Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of
+    their forces, at the working ratio, and what is taken from f0 is its part in the plane of both.
 
     Parameters
     ----------
@@ -167,7 +165,7 @@ def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Arr
 def contacts_on_part(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, touched: Touched, matrices: ContactMatrices
 ) -> tuple[Array, Array, Array, Array]:
-    """Contacts, normals, what moves, and against which way it clamps, of a fixture as :func:`cone_edges` takes them.
+    """Contacts, normals, movers and clamping directions of a fixture, as :func:`cone_edges` takes them.
 
     Parameters
     ----------
@@ -208,10 +206,11 @@ def cone_edges(
 def possible_motions(
     contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> Array:
-    """Corners (M, 3) of the dual polytope as jaw force per unit of (g_x, g_y, moment); parameters as :func:`cone_edges`.
+    """Corners (M, 3) of the dual polytope: jaw force per unit of (g_x, g_y, moment); see :func:`cone_edges`.
 
-    The jaw force needed for a load is the largest product with it, or 0 if that is negative. There are no corners where
-    friction alone could jam the part between pegs of one carrier: then no load needs any jaw force.
+    The jaw force needed for a load is the largest product with it, or 0 if that is negative. There are no
+    corners where friction alone could jam the part between pegs of one carrier: then no load needs any jaw
+    force.
     """
     wrenches, share = cone_edges(contacts, normals, moving, against, friction, length)
     corners = []
@@ -249,16 +248,19 @@ class LoadCase:
     Parameters
     ----------
     load : the load.
-    jaw_stiffness : of the closed jaw, in that of one contact: infinite for a screw, 0 for a jaw that keeps its force.
-    jaw_force : force on the moving carrier, before the load comes, that ``smallest`` and ``largest`` are told for.
-    smallest, largest : of each peg's force, in the fixture's order. Where a force is negative the peg would have to pull: it
-        lets go, and the forces told are no longer those that act.
-    reaction : the largest peg force with as little clamping as keeps all forces from being negative (the figure of quality
-        ``load_reaction``).
+    jaw_stiffness : of the closed jaw, in that of one contact: infinite for a screw, 0 for a jaw that keeps
+        its force.
+    jaw_force : force on the moving carrier, before the load comes, that ``smallest`` and ``largest`` hold
+        for.
+    smallest, largest : of each peg's force, in the fixture's order. Where a force is negative the peg would
+        have to pull: it lets go, and the forces given are no longer those that act.
+    reaction : the largest peg force with as little clamping as keeps all forces from being negative (the
+        figure of quality ``load_reaction``).
     needed : the jaw force above which no peg lets go, and the peg that does below it; never negative.
-    needed_with_friction : the jaw force above which Coulomb friction could hold the part, None where no friction was given.
-        Optimistic: with friction the forces are not determined by statics, and this tells what the best of all possible
-        forces would need, of a jaw that keeps its force; a locked one does with no more. Pegs may let go.
+    needed_with_friction : the jaw force above which Coulomb friction could hold the part, None where no
+        friction was given. Optimistic: with friction, statics does not determine the forces, and this is
+        what the best of them would need. It assumes a jaw that keeps its force; a locked one needs no more.
+        Pegs may let go.
     """
 
     load: Load
@@ -291,8 +293,9 @@ def load_cases(
     ----------
     fixture, workpiece, toolkit : the fixture, of what and in what.
     loads : see :class:`workhold.model.requirements.Load`.
-    jaw_force : force in N that pushes the moving carrier; by default the one needed so that no peg lets go under any load.
-    friction : Coulomb's coefficient of friction between peg and part, to tell what it could add.
+    jaw_force : force in N that pushes the moving carrier; by default the one needed so that no peg lets go
+        under any load.
+    friction : Coulomb's coefficient of friction between peg and part, to say what it could add.
     jaw : "screw", "constant", or how many times as stiff as one contact the jaw is; see ``statics.loads``.
 
     Raises
@@ -327,31 +330,20 @@ def load_cases(
             load=load,
             jaw_stiffness=stiffness,
             jaw_force=jaw_force,
-            smallest=forces_of(
-                -largest_of(-forces[i], load, center).value + jaw_force * forces[i, 3]
-                for i in range(len(forces))
+            smallest=tuple(
+                float(-largest_of(-row, load, center).value + jaw_force * row[3]) for row in forces
             ),
-            largest=forces_of(
-                largest_of(forces[i], load, center).value + jaw_force * forces[i, 3]
-                for i in range(len(forces))
-            ),
+            largest=tuple(float(largest_of(row, load, center).value + jaw_force * row[3]) for row in forces),
             reaction=reaction(forces, load, center),
             needed=need,
-            needed_with_friction=None
-            if motions is None
-            else with_friction(motions, load, center, need, stiffness),
+            needed_with_friction=with_friction(motions, load, center, need, stiffness),
         )
         for load, need in zip(loads, needs, strict=True)
     )
 
 
-def forces_of(values: Iterator[float]) -> tuple[float, ...]:
-    """Numbers as a tuple of floats."""
-    return tuple(float(value) for value in values)
-
-
 def largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[float, float]:
-    """Largest value of x cos + y sin over a range of directions in degrees, and the direction in [0, 360) it is at."""
+    """Largest x cos + y sin over a range of directions in degrees, and the direction in [0, 360) it is at."""
     low, high = directions
     peak = low + (degrees(atan2(y, x)) - low) % 360.0
     candidates = [low, high, peak] if peak <= high else [low, high]
@@ -360,7 +352,7 @@ def largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[
 
 
 def largest_of(coefficients: Array, load: Load, center: tuple[float, float]) -> Worst:
-    """Where a load makes a (g_x, g_y, moment) . coefficients largest; the value tells how large, the peg is 0."""
+    """Where a load makes (g_x, g_y, moment) . coefficients largest, and that value; the peg is 0."""
     a, b, c = (float(value) for value in coefficients[:3])
     worst: Worst | None = None
     for x, y in load.points or (center,):
@@ -374,16 +366,14 @@ def largest_of(coefficients: Array, load: Load, center: tuple[float, float]) -> 
 
 
 def needed(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
-    """The jaw force needed so that no peg lets go: the largest -f0_i / h_i over pegs, points and directions."""
-    worst = max(
-        (of_peg(-forces[i] / forces[i, 3], i, load, center) for i in range(len(forces))),
-        key=lambda worst: worst.value,
-    )
+    """Jaw force so that no peg lets go: the largest -f0_i / h_i over pegs, points and directions."""
+    pushes = (of_peg(-forces[i] / forces[i, 3], i, load, center) for i in range(len(forces)))
+    worst = max(pushes, key=lambda push: push.value)
     return Worst(max(worst.value, 0.0), worst.peg, worst.point, worst.direction)
 
 
 def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
-    """The largest peg force with the least clamping (Brost & Goldberg 1996, see ``kernels.contact.quality``)."""
+    """Largest peg force with the least clamping (Brost & Goldberg 1996, ``kernels.contact.quality``)."""
     pairs = permutations(range(len(forces)), 2)
     return max(
         (of_peg(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], j, load, center) for j, i in pairs),
@@ -392,19 +382,19 @@ def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
 
 
 def of_peg(coefficients: Array, peg: int, load: Load, center: tuple[float, float]) -> Worst:
-    """As :func:`largest_of`, said of a peg."""
+    """Largest push on a peg; see :func:`largest_of`."""
     worst = largest_of(coefficients, load, center)
     return Worst(worst.value, peg, worst.point, worst.direction)
 
 
 def with_friction(
-    motions: Array, load: Load, center: tuple[float, float], need: Worst, stiffness: float
-) -> float:
-    """The jaw force that friction leaves needed; no more than without it, which a locked jaw may need less of."""
-    least = resisted(motions, load, center)
+    motions: Array | None, load: Load, center: tuple[float, float], need: Worst, stiffness: float
+) -> float | None:
+    """Jaw force needed with friction: a load's largest work on the possible motions, never negative.
+
+    It is at most the force without friction, which a locked jaw may undercut; None where motions are.
+    """
+    if motions is None:
+        return None
+    least = max([0.0, *(largest_of(motion, load, center).value for motion in motions)])
     return min(least, need.value) if stiffness else least
-
-
-def resisted(motions: Array, load: Load, center: tuple[float, float]) -> float:
-    """The jaw force that friction leaves needed: the largest work of a load on the possible motions, never negative."""
-    return max([0.0, *(largest_of(motion, load, center).value for motion in motions)])

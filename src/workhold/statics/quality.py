@@ -1,10 +1,10 @@
-"""The figures of quality of whole tables of fixtures (model: "Quality"; what they mean is in docs/quality.md).
+"""Figures of quality of whole tables of fixtures (model: "Quality"; see docs/quality.md).
 
 Glossary
 --------
-main direction : in degrees in [0, 90): of all directions of straight faces, those a quarter turn apart
-    counted as one, that with the most length of faces, given by the longest of them (the first of equally
-    long ones). Where no face is straight, or another direction has about as much, the drawing's own x.
+main direction : in degrees in [0, 90): the direction with the most length of straight faces, where
+    directions a quarter turn apart count as one. The longest face gives it, or the first of equally long
+    ones. Where no face is straight, or another direction has about as much, the drawing's own x.
 tilt : angle between the main direction and the nearest of the directions of the jaws, x and y.
 """
 
@@ -69,13 +69,13 @@ def main_direction(workpiece: Workpiece) -> float:
 
 
 def tilts(theta: Array, direction: float) -> Array:
-    """Tilts (N,) in degrees, from 0 to 45, of a part turned by theta (N,) in radians; 0 where it lies square."""
+    """Tilts (N,) in degrees, from 0 to 45, of a part turned by theta (N,) in radians; 0 is square."""
     off = np.abs((np.degrees(theta) + direction + 45.0) % 90.0 - 45.0)
     return np.where(off < SQUARE_TILT, 0.0, off)
 
 
 def face_sizes(workpiece: Workpiece) -> Array:
-    """Size (S,) in mm of the face of each number, NaN where there is none: the length of a straight one, an arc's radius."""
+    """Sizes (S,) in mm of faces by number: a straight one's length, an arc's radius, NaN without a face."""
     sizes = np.full(len(workpiece.segments), np.nan)
     for face in workpiece.faces:
         sizes[face.number] = face.segment.radius if isinstance(face.segment, Arc) else face.segment.length
@@ -110,8 +110,8 @@ def quality_of(
 
     Returns
     -------
-    (N, 12) array, columns in the order of ``model.quality.FIGURES``; NaN for figures of loads without loads, and for pegs
-    whose contact equations have no single solution.
+    (N, 12) array, columns in the order of ``model.quality.FIGURES``; NaN for figures of loads without loads,
+    and for pegs whose contact equations have no single solution.
     """
     tolerance = tolerance or Tolerance()
     known = touched or Touched.of(workpiece, toolkit)
@@ -169,7 +169,7 @@ def quality_of(
 
 
 def closures(reactions: Array) -> Array:
-    """Closure margins and clamp freedoms (N, 2) of fixtures with two clamps, from the forces (N, 5, 2) per unit of each."""
+    """Closure margins and clamp freedoms (N, 2) of fixtures with two clamps, from forces (N, 5, 2)."""
     clamps = np.zeros((len(reactions), 2, CLAMP_LENGTH))
     for k in range(2):
         clamps[:, k, PUSH] = 1.0 / reactions[:, 3 + k, k]
@@ -181,8 +181,7 @@ def closures(reactions: Array) -> Array:
 
 
 def shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NDArray[np.int64]:
-    """Numbers (N, 4) that are the same for pegs which an error of one face moves alike; of a corner on a wall one of its
-    own."""
+    """Numbers (N, 4), equal for pegs that an error of one face moves alike; one for a corner on a wall."""
     faces = block.face.astype(np.int64)
     for ends in toolkit.ends_on_walls:
         faces[:, ends] = workpiece.flush.shared[workpiece.flush.number(block.theta)]
@@ -190,7 +189,7 @@ def shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) ->
 
 
 def touched_sizes(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, sizes: Array) -> Array:
-    """Sizes (N, 4) in mm of what is touched, from those (S,) of the faces; on a wall how long the part lies on it."""
+    """Sizes (N, 4) in mm of what is touched, from the faces' (S,); on a wall the length that lies on it."""
     out = sizes.take(block.face)
     for ends in toolkit.ends_on_walls:
         flush = workpiece.flush
@@ -201,7 +200,7 @@ def touched_sizes(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, s
 def measured_fixture(
     result: Result, index: int, loads: Sequence[Load] | None = None, jaw_force: float | None = None
 ) -> Fixture:
-    """One fixture of a result with all figures of quality, for the result's loads and jaw force or for others."""
+    """A fixture of a result with all figures of quality, for the result's loads and jaw force or others."""
     row = result.table.take(slice(index, index + 1))
     asked = result.query.loads if loads is None else loads
     force = result.query.jaw_force if jaw_force is None else jaw_force
@@ -216,8 +215,8 @@ def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
 
     Returns
     -------
-    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as ``kernels.contact.quality``
-        takes them.
+    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as
+        ``kernels.contact.quality`` takes them.
     """
     outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
     cx, cy = workpiece.center

@@ -2,26 +2,30 @@
 
 The identities, for each type apart where a number is given for each:
 
-- counts = fixtures listed; counts <= found; 0 < distinct where 0 < found; distinct <= found <= distinct * rotations, those
-  of the part onto itself;
-- where more are found than listed, the best were asked for and as many are listed, or a note says that some were not kept;
-  a search that leaves others out lists as many as were asked for, and none lists more;
-- a type that is not asked for is not found;
-- candidates = discarded_by_bound + verified + undecided; escalated <= candidates, and some were where some are undecided;
-  found <= verified, since every fixture comes from a candidate of its own; what is undecided is a real place
-  (``verification.undecided``);
-- of a search: crossings_sought <= curve_pairs, and contacts_examined <= candidates once it is complete, which then has
-  examined some cells; of the algebra: no cells, candidates <= simultaneous_contacts once it is complete;
-- of a fence: cells = hull_edges, candidates = contacts_examined;
-- features >= faces touched;
-- of two clamps, where a note says that not all was counted: no pairs and seats, and found is what is listed;
-- else, where the best pair of each seat is listed: found = seats, and pairs = the sum of what those listed stand
-  for, where all are; where every pair is: found = pairs, and seats = how many there are among those listed; at each there
-  are as many as are derived, once the search is complete; each seat and pair of directions needs two contacts of locators,
-  or wall and locator, and a clamp, each pair of clamps two of its own;
-- where fixtures are ruled out by their seating, a note says how many of how many are listed, and each that is listed has
-  its seating stated; without such rules as many have it as were asked for;
-- the notes are those that follow from these numbers.
+- counts = fixtures listed; counts <= found; 0 < distinct where 0 < found; distinct <= found <= distinct *
+  rotations of the part onto itself.
+- Where more are found than listed, the best were asked for and as many are listed, or a note says that some
+  were not kept. None lists more than were asked for.
+- A type that is not asked for is not found.
+- candidates = discarded_by_bound + verified + undecided; escalated <= candidates, and escalated > 0 where
+  undecided > 0.
+- found <= verified, since every fixture comes from a candidate of its own.
+- What is undecided is a real place (``verification.undecided``).
+- Of a search crossings_sought <= curve_pairs. Once it is complete it has cells, and contacts_examined <=
+  candidates.
+- The algebra has no cells. Once it is complete candidates <= simultaneous_contacts.
+- Beside a wall cells = hull_edges, candidates = contacts_examined.
+- features >= faces touched.
+- With two clamps and a note that not all was counted there are no pairs and seats, and found = listed.
+- Otherwise, with two clamps and the best pair of each seat listed found = seats. Where all are listed,
+  pairs = the sum of what each stands for.
+- With two clamps and every pair listed found = pairs, and seats = those among the fixtures listed. Once the
+  search is complete each seat has as many pairs as are derived.
+- Each seat and pair of directions needs two contacts of locators, or wall and locator, and a clamp. Each pair
+  of clamps needs two of its own.
+- Where seating rules fixtures out, a note says how many of how many are listed, and each has its seating
+  stated. Without such rules as many have it as were asked for.
+- The notes are those that follow from these numbers.
 
 What became of the candidates, and how much work that was, is otherwise known to the search alone.
 """
@@ -33,6 +37,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from flint import ctx
 
+from workhold.fixels.contacts import WALL_END
 from workhold.model.search_report import (
     Proof,
     best_note,
@@ -49,7 +54,7 @@ from workhold.model.search_report import (
 )
 from workhold.verification.ball_geometry import PRECISIONS, BallOutline
 from workhold.verification.listing import Listing
-from workhold.verification.repeats import Seen
+from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat_clamps import pairs_at
 from workhold.verification.undecided import undecided_faults
@@ -64,11 +69,13 @@ MOST_NAMED = 20
 
 
 def account_faults(listing: Listing, rotations: int) -> Iterator[str]:
-    """What in a result's numbers about itself contradicts what it lists, or each other; one sentence each. So many
-    ``rotations`` carry the part onto itself at most."""
+    """Contradictions between a result's numbers about itself and what it lists; one sentence each.
+
+    At most so many ``rotations`` carry the part onto itself.
+    """
     yield from count_faults(listing, rotations)
     yield from seating_faults(listing)
-    if listing.query.toolkit.needs_pairs:
+    if listing.query.toolkit.travels > 1:
         yield from pair_count_faults(listing)
     if listing.proof is None:
         yield "it has no proof, the account of the search"
@@ -105,14 +112,14 @@ def seating_faults(listing: Listing) -> Iterator[str]:
     """Contradictions between how many fixtures have their seating stated and how many should."""
     query, listed = listing.query, len(listing.fixtures)
     # With two clamps there is none to state.
-    first = listing.fixtures[: 0 if query.toolkit.needs_pairs else query.seating or 0]
-    told = sum(fixture.seating is not None for fixture in first)
-    if query.has_seating_rules and (told < listed or listed > len(first)):
-        yield f"{listed} fixtures are listed for their seating, but it is told of {told}"
-    elif listing.complete and told < len(first):
-        yield f"the seating of {len(first)} fixtures is asked for, but it is told of {told}"
+    first = listing.fixtures[: (query.seating or 0) if query.toolkit.closes_at_once else 0]
+    stated = sum(fixture.seating is not None for fixture in first)
+    if query.has_seating_rules and (stated < listed or listed > len(first)):
+        yield f"{listed} fixtures are listed for their seating, but it is stated of {stated}"
+    elif listing.complete and stated < len(first):
+        yield f"the seating of {len(first)} fixtures is asked for, but it is stated of {stated}"
     if any(fixture.seating is not None for fixture in listing.fixtures[len(first) :]):
-        yield f"the seating of more fixtures is told than of the {len(first)} that it is asked of"
+        yield f"the seating of more fixtures is stated than of the {len(first)} that it is asked of"
 
 
 def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
@@ -120,15 +127,18 @@ def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
     undecided, found = len(proof.undecided), sum(listing.found.values())
     accounted = proof.discarded_by_bound + proof.verified + undecided
     if accounted != proof.candidates:
-        yield f"the proof says {proof.candidates} candidates, but {accounted} are discarded, verified or undecided"
+        yield (
+            f"the proof says {proof.candidates} candidates, but {accounted} are discarded, verified or "
+            "undecided"
+        )
     yield from undecided_faults(proof.undecided, listing.query)
     if proof.escalated > proof.candidates:
         yield f"the proof says {proof.escalated} of {proof.candidates} candidates were escalated"
     # Of two clamps whether they close may be in doubt where neither was.
     single = sum(len(entry.faces) < listing.query.toolkit.peg_count for entry in proof.undecided)
-    if (single if listing.query.toolkit.needs_pairs else undecided) and not proof.escalated:
+    pairs = listing.query.toolkit.travels > 1
+    if (single if pairs else undecided) and not proof.escalated:
         yield f"the proof says that {undecided} candidates are undecided, but none was escalated"
-    pairs = listing.query.toolkit.needs_pairs
     if too_few_contacts(listing, proof) if pairs else found > proof.verified:
         yield f"the proof says {proof.verified} candidates were verified, but {found} fixtures were found"
 
@@ -136,19 +146,23 @@ def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
 def statistics_faults(listing: Listing) -> Iterator[str]:
     """Contradictions in the numbers that say how much work the search was."""
     numbers, proof = listing.statistics, listing.proof
-    known = [SEARCH, ALGEBRA] if listing.query.toolkit.wall is None else [FENCE]
+    is_flush = WALL_END in listing.query.toolkit.contacts
+    known = [FENCE] if is_flush else [SEARCH, ALGEBRA]
     if set(numbers) not in map(set, known) or min(numbers.values()) < 0:
         yield f"the statistics are not {', '.join(known[0])}, each a number from 0"
         return
     touched = len({peg.face for fixture in listing.fixtures for peg in fixture.pegs})
     if numbers["features"] < touched:
         yield f"the statistics say {numbers['features']} features, but the fixtures touch {touched} faces"
-    if listing.query.toolkit.wall is not None:
+    if is_flush:
         if proof is not None and (proof.cells, proof.candidates) != (
             numbers["hull_edges"],
             numbers["contacts_examined"],
         ):
-            yield "the proof has other cells or candidates than the statistics have hull edges or contacts examined"
+            yield (
+                "the proof has other cells or candidates than the statistics have hull edges or contacts "
+                "examined"
+            )
         return
     by_algebra = is_by_algebra(numbers)
     if not by_algebra and numbers["crossings_sought"] > numbers["curve_pairs"]:
@@ -193,7 +207,7 @@ def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
         yield (undecided_note(undecided),)
     if found and listing.query.has_seating_rules:
         yield tuple(seated_notes(listing))
-    if found and listing.query.seating is not None and listing.query.toolkit.needs_pairs:
+    if found and listing.query.seating is not None and not listing.query.toolkit.closes_at_once:
         yield (by_hand_note(),)
     systems = listing.statistics.get("undecided", 0)
     yield from (tuple(n for n in listing.notes if n.startswith("Undecided: ")) or ("Undecided: ",),) * min(
@@ -202,7 +216,7 @@ def notes_implied(listing: Listing) -> Iterator[Sequence[str]]:
     if listing.complete and not found and not undecided and not is_by_algebra(listing.statistics):
         wording = listing.query.toolkit.wording
         verified = 0 if proof is None else proof.verified
-        if listing.query.toolkit.needs_pairs:
+        if listing.query.toolkit.travels > 1:
             yield no_pair_notes(listing, verified)
             return
         yield (no_place_note(verified, wording),) if verified else no_fixture_notes(wording)
@@ -223,7 +237,7 @@ def may_be_said(note: str, listing: Listing) -> bool:
 
 
 def seated_notes(listing: Listing) -> Iterator[str]:
-    """The notes that may say how many fixtures had their seating worked out, and of how many it is as asked."""
+    """The notes that may say how many fixtures had their seating worked out, and how many are as asked."""
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     most = min(query.seating or 0, found)
     for looked_at in range(listed if not listing.complete else most, most + 1):
@@ -246,10 +260,11 @@ def pair_count_faults(listing: Listing) -> Iterator[str]:
     found, listed = sum(listing.found.values()), len(listing.fixtures)
     pairs, seats = listing.pairs, listing.seats
     if is_uncounted(listing):
+        note = "a note says that not all was counted"
         if pairs is not None or seats is not None:
-            yield f"a note says that not all was counted, but pairs says {pairs} and seats {seats}"
+            yield f"{note}, but pairs says {pairs} and seats {seats}"
         if found != listed:
-            yield f"a note says that not all was counted, but found says {found} fixtures, and {listed} are listed"
+            yield f"{note}, but found says {found} fixtures, and {listed} are listed"
         return
     if pairs is None or seats is None:
         yield "it does not say how many pairs of clamps there are, and at how many seats"
@@ -274,14 +289,14 @@ def is_uncounted(listing: Listing) -> bool:
 
 
 def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
-    """Where every pair of clamps is listed: another number of seats, or of pairs at one of them, than is derived."""
+    """Numbers of seats, or of pairs at one, that differ from those derived where every pair is listed."""
     query, found = listing.query, sum(listing.found.values())
-    if not query.toolkit.needs_pairs or query.listing != "all" or found != len(listing.fixtures):
+    if query.toolkit.travels == 1 or query.listing != "all" or found != len(listing.fixtures):
         return
     if is_uncounted(listing):
         return
     hardware = ToolkitRules(query.toolkit)
-    seen, at_seat = Seen(hardware), Counter[int]()
+    seen, at_seat = KnownFixtures(hardware), Counter[int]()
     for index, fixture in enumerate(listing.fixtures):
         if index not in refuted:
             first = seen.add(index, fixture)
@@ -295,12 +310,15 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
         for index, count in sorted(at_seat.items()):
             limits = pairs_at(listing.fixtures[index], query, hardware, outline)
             if limits is not None and not limits[0] <= count <= limits[1]:
-                yield f"there are {limits[0]} pairs of clamps at the seat of fixture {index + 1}, and {count} are listed"
+                yield (
+                    f"there are {limits[0]} pairs of clamps at the seat of fixture {index + 1}, and {count} "
+                    "are listed"
+                )
                 return
 
 
 def too_few_contacts(listing: Listing, proof: Proof) -> bool:
-    """Whether so many fixtures cannot come from so many contacts of locators, or wall and locator, and a clamp."""
+    """Whether fewer contacts of locators, or wall and locator, and a clamp were verified than needed."""
     found, pairs = sum(listing.found.values()), len(listing.query.toolkit.arrangements)
     if 2 * (listing.seats or 0) > pairs * proof.verified:
         return True
@@ -308,9 +326,12 @@ def too_few_contacts(listing: Listing, proof: Proof) -> bool:
 
 
 def no_pair_notes(listing: Listing, verified: int) -> tuple[str, ...]:
-    """The sentences of which one says why nothing is listed: how many seats were looked at is known to the search alone."""
+    """The sentences of which one says why nothing is listed.
+
+    How many seats were looked at is known to the search alone.
+    """
     toolkit, numbers_of = listing.query.toolkit, listing.statistics
-    if toolkit.wall is not None:
+    if WALL_END in toolkit.contacts:
         never, no_locator, *_ = no_fixture_notes(toolkit.wording)
         if not (numbers_of.get("hull_edges") and numbers_of.get("locator_places")):
             return (no_locator if numbers_of.get("hull_edges") else never,)

@@ -147,7 +147,7 @@ class LineSide:
         return abs(cross(self.tangent, from_start)).union(norm(from_start).min(norm(from_end)))
 
     def away(self, point: Point) -> Point | None:
-        """Along the way to a point from the nearest point of the side, of any length; None when that is not certain."""
+        """A vector from the nearest point of the side to a point, of any length; None where uncertain."""
         along = dot((point[0] - self.start[0], point[1] - self.start[1]), self.tangent)
         if along > 0 and along < self.length:
             return self.normal
@@ -213,7 +213,7 @@ class ArcSide:
         return from_ends if within < 0 else from_circle.union(from_ends)
 
     def away(self, point: Point) -> Point | None:
-        """Along the way to a point from the nearest point of the side, of any length; None when that is not certain."""
+        """A vector from the nearest point of the side to a point, of any length; None where uncertain."""
         ray = self.from_center(point)
         within = self.within(ray)
         if self.whole or within > 0:
@@ -258,8 +258,8 @@ def line_side(start: Point, end: Point) -> LineSide:
 def arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
     """The arc between two points with a bulge.
 
-    With chord (dx, dy) the centre lies (1 - b²)/(4b) chords to the left of the chord's middle, and the radius is
-    (1 + b²)/(4|b|) chords (from r = c / (2 sin(half sweep))).
+    With chord (dx, dy) the centre lies (1 - b²)/(4b) chords to the left of the chord's middle, and the radius
+    is (1 + b²)/(4|b|) chords (from r = c / (2 sin(half sweep))).
     """
     b = arb(bulge)
     dx, dy = end[0] - start[0], end[1] - start[1]
@@ -281,7 +281,8 @@ def vertex_side(vertex: Vertex, following: Vertex) -> Side:
 def whole_face(run: Sequence[Side]) -> Side:
     """One side for neighbours that continue the same line or circle.
 
-    They agree to rounding only: a line runs from the first start to the last end, a circle is that of the first arc.
+    They agree to rounding only: a line runs from the first start to the last end, a circle is that of the
+    first arc.
     """
     first, last = run[0], run[-1]
     if len(run) == 1:
@@ -350,7 +351,7 @@ class BallOutline:
         return cls(tuple(segments), faces, others, smooth, turns, neighbours)
 
     def smooth_ends(self, face: int, has_flat: bool) -> tuple[bool, bool]:
-        """Whether a face meets its neighbours tangentially at its start and end, as pegs that touch it feel it.
+        """Whether a face meets its neighbours tangentially at its start and end, for pegs that touch it.
 
         One with a flat changes over from flat to round between a line and an arc.
         """
@@ -365,6 +366,27 @@ class BallOutline:
 
 
 def turn_at(one: Side, two: Side, joint: Point) -> arb:
-    """By how much the normals of two sides differ at a joint, the larger component; they are tangent below ``TANGENT``."""
+    """The larger component of the difference of two sides' normals at a joint.
+
+    The sides meet tangentially where it is below ``TANGENT``.
+    """
     (ax, ay), (bx, by) = one.outward(joint), two.outward(joint)
     return abs(ax - bx).max(abs(ay - by))
+
+
+def box_center(outline: BallOutline) -> Point:
+    """Centre in mm of the bounding box of a workpiece.
+
+    The box is that of its joints, and of the arcs where they run along x or y.
+    """
+    middle = []
+    for axis in (0, 1):
+        places = [side.start[axis] for side in outline.segments]
+        for side in outline.segments:
+            if isinstance(side, ArcSide):
+                for sign in (1, -1):
+                    within = side.within((arb(sign), arb(0)) if axis == 0 else (arb(0), arb(sign)))
+                    if not within < 0:
+                        places.append(side.center[axis] + sign * side.radius)
+        middle.append((least(places) + largest(places)) / 2)
+    return middle[0], middle[1]

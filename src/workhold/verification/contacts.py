@@ -1,9 +1,9 @@
-"""The contacts of a fixture in balls: their equations, force closure without friction, forces and wrench radius.
+"""The contacts of a fixture in balls: equations, force closure without friction, forces and wrench radius.
 
 The equations (model: condition 1) are in the unknowns theta, x, y and the travels of what moves. A workpiece
-point q lies at R(theta) q + t, t = (x, y). A peg that moves is at its hole's place plus S times its way, S
-being its travel: of jaws the separation, of a clamp how far its tip is from its hole. With u the vector from
-t to the peg's centre, N = R n and C = R c, a peg of radius rho touches
+point q lies at R(theta) q + t, t = (x, y). A peg that moves is at its hole's place plus its travel S times
+its way. Of jaws the travel is the separation; of a clamp it is how far its tip is from its hole. With u the
+vector from t to the peg's centre, N = R n and C = R c, a peg of radius rho touches
 
 - a line with outward normal n and level l when N · u - l - rho = 0;
 - an arc about c when (|u - C|² - reach²) / 2 = 0, reach = r + rho on a convex and r - rho on a concave arc.
@@ -27,7 +27,7 @@ from typing import ClassVar
 from attrs import field, frozen
 from flint import arb, arb_mat
 
-from workhold.fixels.carrier import Flat
+from workhold.fixels.pegs import Flat
 from workhold.model import fixture as model
 from workhold.verification.ball_geometry import LineSide, Point, Side, cross, dot, least, root, turned
 from workhold.verification.tolerances import (
@@ -85,8 +85,9 @@ class BallContact:
     hole : where it is in mm without any travel.
     way : unit vector along which it moves as the travel grows; (0, 0) where it stands still.
     side : the face touched.
-    radius : in mm, how far the peg's centre is from the side: its radius, or of a flat on a line the flat's distance.
-    body : radius of the peg in mm where it has a flat, which its body keeps of all else; None where that is ``radius``.
+    radius : distance in mm of the peg's centre from the side: its radius, or that of a flat on a line.
+    body : radius of the peg in mm where it has a flat, which its body keeps of all else; None where that is
+        ``radius``.
     travel : the number of its travel among those of a pose.
     """
 
@@ -106,7 +107,7 @@ class BallContact:
 
     @property
     def size(self) -> arb:
-        """Of the side: the length of a straight one, an arc's radius; in mm."""
+        """The length of a straight side, or the radius of an arc, in mm."""
         return self.side.length if isinstance(self.side, LineSide) else self.side.radius
 
     def outward(self, pose: BallPose) -> Point:
@@ -146,7 +147,7 @@ def standoff(side: Side, peg_radius: float, flat: Flat | None) -> arb:
 
 
 def contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:
-    """Values (N x 1) and Jacobian (N x N) of the contact equations on a box (N x 1) of angle, x, y and travels."""
+    """Values (N x 1) and Jacobian (N x N) of the contact equations on a box (N x 1) of the unknowns."""
     pose = BallPose.of(*unknowns.entries())
     values, rows = [], []
     for contact in contacts:
@@ -157,7 +158,7 @@ def contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[
 
 
 def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
-    """The null vector of four wrenches, not scaled: (-1)^i det of the wrenches other than i, in mm; in balls."""
+    """The null vector of four wrenches in balls, in mm: (-1)^i det of the wrenches other than i."""
     moments = [cross(q, n) for q, n in zip(points, normals, strict=True)]
     vector = []
     for i in range(4):
@@ -172,7 +173,10 @@ def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
 
 
 def span(vector: Sequence[arb], wrench_length: float) -> arb:
-    """Sizes of the minors summed, moments in parts of L in mm: how far the wrenches are from lying in one plane."""
+    """How far wrenches are from lying in one plane: the sum of the sizes of their minors.
+
+    Moments are in parts of L, in mm.
+    """
     return sum((abs(entry) for entry in vector), arb(0)) / wrench_length
 
 
@@ -218,7 +222,7 @@ class Balance:
         return least(self.shares)
 
     def inverse(self, contacts: Sequence[BallContact], pose: BallPose) -> list[list[arb]] | None:
-        """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None where there may be none."""
+        """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None if uncertain."""
         rows = [
             [*normal, cross(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal)]
             for contact, point, normal in zip(contacts, self.points, self.normals, strict=True)
@@ -230,7 +234,7 @@ class Balance:
         return row
 
     def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
-        """The part of some forces that lies along those with which what moves presses: what locking it takes away."""
+        """The component of forces along those of what moves: the part that locking it takes up."""
         own = self.forces
         share = sum((a * b for a, b in zip(forces, own, strict=True)), arb(0)) / sum(
             (a * a for a in own), arb(0)
@@ -284,10 +288,10 @@ Wrench = tuple[arb, arb, arb]
 def wrench_radius(
     center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]
 ) -> arb | None:
-    """The wrench radius of contacts, about a centre with L in mm; None where all wrenches may lie in one line.
+    """The wrench radius of contacts about a centre, L in mm; None where all wrenches may be on one line.
 
-    The nearest plane through three wrenches counts that has all others on one side. Several may lie in one plane, or two be
-    equal, to ``FLAT``; where that is in doubt the ball holds both cases.
+    The nearest plane through three wrenches counts that has all others on one side. Several may lie in one
+    plane, or two be equal, to ``FLAT``; where that is in doubt the ball holds both cases.
     """
     (x, y), nearest = center, None
     arms = [(px - x, py - y) for px, py in points]

@@ -1,15 +1,17 @@
-"""The figures of quality, in balls and from the outline alone (model: "Quality"; what they mean is in docs/quality.md).
+"""The figures of quality, in balls and from the outline alone.
 
-With A the matrix of rows (n_x, n_y, q x n, n . w) of a fixture's contacts at q with outward unit normals n, in the
-workpiece's frame and about its origin, w being the way of a peg that moves, such as x on the right jaw, and 0 of one that
-stands still:
+They are defined in docs/quality.md and, as formulas, in the model ("Quality"). Let A be the matrix of the
+rows (n_x, n_y, q x n, n . w) of a fixture's contacts at q with outward unit normals n. They are in the
+workpiece's frame and about its origin. The vector w is the way of a peg that moves, such as x on the right
+jaw, and 0 of one that stands still.
 
-- when peg i stands delta_i too far towards the workpiece, A y = -delta, y being the workpiece's movement, its turn and how
-  far what moves gives way;
-- forces f that balance a load (g_x, g_y, moment) while what moves is not pushed are A^-T (g_x, g_y, moment, 0).
+- When peg i stands delta_i too far towards the workpiece, A y = -delta. Here y is the workpiece's movement,
+  its turn and how far what moves gives way.
+- Forces f that balance a load (g_x, g_y, moment) while what moves is not pushed are
+  A^-T (g_x, g_y, moment, 0).
 
-Neither the movements of points nor the forces depend on the point that moments are taken about, or on their scale. These are
-the figures of ``statics.quality``, and nothing of it is used.
+Neither the movements of points nor the forces depend on the point that moments are taken about, or on their
+scale. The figures are those of ``statics.quality``, of which nothing is used.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ from workhold.verification.ball_geometry import (
     ArcSide,
     BallOutline,
     Point,
+    box_center,
     cross,
     dot,
     exact_point,
@@ -89,7 +92,7 @@ class DirectedLoad:
         return cls(points, arb(load.force), arb(load.moment), *sides, direction((high - low) / 2)[0])
 
     def largest(self, x: arb, y: arb) -> arb:
-        """Largest scalar product of (x, y) with a direction: its length within the range, otherwise that with an end."""
+        """Largest scalar product of (x, y) with a direction in the range."""
         size, at_ends = norm((x, y)), dot(self.low, (x, y)).max(dot(self.high, (x, y)))
         within = dot(self.middle, (x, y)) - size * self.half_cosine
         return size if within > 0 else at_ends if within < 0 else at_ends.union(size)
@@ -112,13 +115,14 @@ class Measure:
     diameter : of the part, in mm.
     center : of the part's bounding box.
     arcs : the convex arcs of the outer loop, each face whole.
-    centers, corners : (A, 4) and (C, 4) rows 1, x² + y², x, y of their centres, and of the joints of the outer loop that may
-        be farthest from some point; in mm.
+    centers : (A, 4) rows 1, x² + y², x, y of the centres of these arcs, in mm.
+    corners : (C, 4) such rows of the joints of the outer loop that may be farthest from some point.
     peg, face : how far they may be off, in mm.
     loads : as asked for.
     direction : main direction of the part in degrees (``verification.judging``).
     jaw_force : in N, None where none was said.
-    beside : the barriers on the contact feature of each face and radius, as far as known (``verification.touching``).
+    beside : the barriers on the contact feature of each face and radius, as far as known
+        (``verification.touching``).
     """
 
     outline: BallOutline
@@ -209,10 +213,10 @@ class Measure:
         return end_distance(contact.side, contact.radius, self.barriers(contact, face), center)
 
     def edge_distance(self, contact: BallContact, face: int, center: Point) -> arb | None:
-        """Distance in mm of a peg on a face from the nearer edge of its contact feature; None where there is none.
+        """Distance in mm of a peg on a face from the nearer edge of its contact feature; None for no edge.
 
-        A tangent joint is none, unless it is with a hollow that leaves a peg no way on. Where either is in doubt, any
-        distance between the two is right.
+        A tangent joint is none, unless it is with a hollow that leaves a peg no way on. Where either is in
+        doubt, any distance between the two is right.
         """
         beside, outline, radius = self.barriers(contact, face), self.outline, contact.radius
         readings: list[tuple[bool, bool]] = []
@@ -237,8 +241,8 @@ class Measure:
     def jaw_force_needed(self, inverse: Sequence[Sequence[arb]], balance: Balance | SeatBalance) -> arb:
         """Jaw force in N above which no peg of a screw vise lets go, and never less than 0.
 
-        Of the forces f0 that balance a load while the jaw keeps its force, locking it leaves the part f0 - P f0 at right
-        angles to those of the jaw, or of both clamps: the largest of ((P f0)_i - f0_i) / h_i.
+        Let f0 balance a load while the jaw keeps its force, and let P project on the forces of the jaw, or of
+        both clamps. Locking leaves f0 - P f0, so the figure is the largest of ((P f0)_i - f0_i) / h_i.
         """
         most, rows = arb(0), [balance.of_all(row) for row in inverse[:3]]
         pairs = list(zip(map(balance.kept_by_closing, rows), rows, strict=True))
@@ -247,7 +251,7 @@ class Measure:
         return most
 
     def under_loads(self, most: arb, a: arb, b: arb, c: arb) -> arb:
-        """The largest a f_x + b f_y + c m under some load of force f and moment m, or more where that is known."""
+        """The largest of ``most`` and of a f_x + b f_y + c m under all loads of force f and moment m."""
         for load in self.loads:
             for x, y in load.points:
                 most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
@@ -256,9 +260,10 @@ class Measure:
     def location_error(self, inverse: Sequence[Sequence[arb]], faces: Sequence[int]) -> arb:
         """Largest movement in mm of a point of the silhouette, over all corners of the box of tolerances.
 
-        A point q moves by v + t (-q_y, q_x), t being the turn. The square of that, |v|² + t² |q|² + 2 t (q x v), is a convex
-        function of q, so it is largest at a joint, or where a convex arc about m is farthest along the movement of m: by
-        |v(m)| + r |t|. Both signs of all errors move alike, so the last error keeps its sign.
+        A point q moves by v + t (-q_y, q_x), t being the turn. The square |v|² + t² |q|² + 2 t (q x v) is a
+        convex function of q. So the movement is largest at a joint, or where a convex arc about m is farthest
+        along the movement of m: there it is |v(m)| + r |t|. Both signs of all errors move alike, so the last
+        error keeps its sign.
         """
         generators, located = [], range(len(inverse[0]))
         for face in {faces[k] for k in located}:
@@ -287,8 +292,9 @@ class Measure:
     def load_reaction(self, inverse: Sequence[Sequence[arb]], balance: Balance | SeatBalance) -> arb:
         """Largest peg force in N under some load, with the least clamping that leaves no force negative.
 
-        Forces that balance a load are f0 + k lambda. The least k without a negative one is the largest -f0_i / lambda_i, so
-        peg j presses with the largest over i of f0_j - f0_i lambda_j / lambda_i, linear in the load's direction for each i.
+        Forces that balance a load are f0 + k lambda. The least k without a negative one is the largest
+        -f0_i / lambda_i. So peg j presses with the largest over i of f0_j - f0_i lambda_j / lambda_i. This is
+        linear in the load's direction for each i.
         """
         most, rows = arb(0), [balance.of_all(row) for row in inverse[:3]]
         for i, j in permutations(range(len(balance.shares)), 2):
@@ -298,7 +304,7 @@ class Measure:
 
 
 def moved_arc(arc: ArcSide, x: arb, y: arb, turn: arb, known: arb) -> arb:
-    """How far the point of a convex arc moves that moves most, if it is not one of its ends; else what is known."""
+    """The largest movement of a point inside a convex arc, or the ``known`` one where an end moves most."""
     way = x - turn * arc.center[1], y + turn * arc.center[0]
     moved = norm(way) + abs(turn) * arc.radius
     within = arc.within((way[1], -way[0]) if turn > 0 else (-way[1], way[0]))
@@ -311,54 +317,35 @@ def moment_rows(points: Sequence[Point]) -> arb_mat:
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
-    """Points without those that certainly lie inside the convex hull of all (Andrew's monotone chain, 1979)."""
+    """Points that may be corners of the convex hull of all (Andrew's monotone chain, 1979)."""
     ordered = sorted(points, key=lambda point: (float(point[0]), float(point[1])))
     chain: list[Point] = []
     for run in (ordered, ordered[::-1]):
         first = len(chain)
         for point in run:
-            while len(chain) - first >= 2 and turns_right(chain[-2], chain[-1], point):
+            while len(chain) - first >= 2:
+                (ax, ay), (bx, by) = chain[-2:]
+                if not cross((bx - ax, by - ay), (point[0] - bx, point[1] - by)) < 0:
+                    break
                 chain.pop()
             chain.append(point)
     return chain
 
 
-def turns_right(a: Point, b: Point, c: Point) -> bool:
-    """Whether the way from a to c by b certainly turns clockwise."""
-    return bool(cross((b[0] - a[0], b[1] - a[1]), (c[0] - b[0], c[1] - b[1])) < 0)
-
-
-def box_center(outline: BallOutline) -> Point:
-    """Centre in mm of the bounding box of a workpiece: of its joints, and of the arcs where they run along x or y."""
-    middle = []
-    for axis in (0, 1):
-        places = [side.start[axis] for side in outline.segments]
-        for side in outline.segments:
-            if isinstance(side, ArcSide):
-                for sign in (1, -1):
-                    within = side.within((arb(sign), arb(0)) if axis == 0 else (arb(0), arb(sign)))
-                    if not within < 0:
-                        places.append(side.center[axis] + sign * side.radius)
-        middle.append((least(places) + largest(places)) / 2)
-    return middle[0], middle[1]
-
-
 def figure_missing(fixture: Fixture, loads: Sequence[Load]) -> str:
-    """The figure of quality that a fixture lacks or has too many, in one sentence without a full stop; empty for neither."""
+    """A sentence on a figure of quality that is missing or superfluous, without a full stop; or nothing."""
     for figure in FIGURES:
-        wanted, why = (
-            bool(loads) or figure not in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED]),
-            "no loads",
-        )
+        of_loads = figure in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED])
+        wanted, why = bool(loads) or not of_loads, "no loads"
         if figure is FIGURES[CLAMP_FREEDOM]:
-            wanted, why = fixture.pair is not None, "no two clamps"
+            wanted, why = len(fixture.travels) > 1, "no two clamps"
         if wanted != (figure.key in fixture.quality):
             return f"its {figure.words} is " + ("missing" if wanted else f"given, and there are {why}")
     return ""
 
 
 def parts_spared(balance: Balance | SeatBalance) -> arb:
-    """To which parts of themselves forces and figures of the file agree with the derived ones."""
+    """The relative error to which forces and figures of the file agree with the derived ones."""
     amplification = largest(balance.forces)
     return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
 
@@ -368,9 +355,10 @@ def written_numbers(
 ) -> Iterator[Finding]:
     """Whether the forces of pegs of some names and the figures of quality of the file are the derived ones.
 
-    They were computed in double precision from a pose that is rounded, which moves a fixture by as much more, and then its
-    forces by as much more again, as its forces are larger than the clamping force. A derived end distance is a range where
-    the clearance passes slowly through zero, and any number in it is right; so is a count beside the edge of what it counts.
+    The file's numbers were computed in double precision from a rounded pose. An error of the pose moves a
+    fixture by as many times more as its forces exceed the clamping force, and its forces by that factor
+    again. A derived end distance is a range where the clearance passes slowly through zero, and so is a count
+    beside the edge of what it counts. Any number in the range is right.
     """
     part = parts_spared(balance)
     for name, peg, force in zip(names, fixture.pegs, balance.forces, strict=True):

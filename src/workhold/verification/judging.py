@@ -1,7 +1,7 @@
 """What is warned of in a fixture and counts against it, and whether fixtures are listed in that order.
 
-Both are rules of docs/quality.md. Warnings and penalties are counted in balls: where a figure may be on
-either side of the number that decides, by what the file's numbers may be off, the ball holds both counts.
+Both are rules of docs/quality.md. Warnings and penalties are counted in balls. The file's numbers may be off,
+so a figure may lie on either side of the number that decides; then the ball holds both counts.
 
 In the order ("Which comes first") fixtures that are none for a workshop come last. Every figure but the last
 counts to two significant digits, the last to nine decimals; what is equal stands in the order of types,
@@ -54,10 +54,10 @@ __all__ = ["main_direction", "order_faults", "penalty", "rank", "tilt", "warning
 
 
 def main_direction(faces: Sequence[Side]) -> arb:
-    """Direction in degrees of the straight faces that, with those along or square to them, have the most length.
+    """Direction in degrees of the straight faces that are longest with those along or square to them.
 
-    The longest of them counts, the first of equally long ones. Which they are is asked in doubles. The drawing's own x
-    where there are none, or others have about as much.
+    The longest of them counts, the first of equally long ones; they are chosen in doubles. It is the
+    drawing's own x where there is no straight face, or others have about as much length.
     """
     lines = [side for side in faces if isinstance(side, LineSide)]
     if not lines:
@@ -87,7 +87,7 @@ def main_direction(faces: Sequence[Side]) -> arb:
 
 
 def tilt(pose: BallPose, direction: arb) -> arb:
-    """Angle in degrees between the main direction and the nearest of the jaws' two; 0 where that counts as square."""
+    """Angle in degrees from the main direction to the nearer of the jaws' two; 0 if it counts as square."""
     angle = pose.theta * 180 / arb.pi() + direction
     off = abs(angle - 90 * round(float(angle.mid()) / 90))
     within = SQUARE_TILT - off
@@ -100,7 +100,7 @@ def counted(low: int, high: int) -> arb:
 
 
 def over(value: arb, limit: arb | float, part: arb) -> tuple[int, int]:
-    """Whether a value is above a limit, at least and at most, when it may be off by a part of itself and a hair."""
+    """Whether a value with a relative error, and a hair, is above a limit: at least and at most, 0 or 1."""
     spare = HAIR + part * abs(value)
     above = value - limit
     return int(bool(above > spare)), int(not above < -spare)
@@ -114,8 +114,16 @@ def within_sum(pairs: Sequence[tuple[int, int]]) -> arb:
 def warnings(
     figures: Mapping[str, arb], edges: Sequence[arb], off: arb, jaw_force: float | None, part: arb
 ) -> arb:
-    """How many warnings there are: contacts near an edge, a weak closure, a strong peg, a large location error, a peg that
-    lets go; ``off`` is the sum of the tolerances in mm and ``part`` how far the file's figures may be off."""
+    """How many warnings there are.
+
+    They are for contacts near an edge, a weak closure, a strong peg, a large location error, and a peg that
+    lets go.
+
+    Parameters
+    ----------
+    off : the sum of the tolerances in mm.
+    part : relative error of the file's figures.
+    """
     pairs = [over(-edge, -NEAR_EDGE, part) for edge in edges]
     pairs.append(over(-figures["closure_margin"], -WEAK_CLOSURE, part))
     pairs.append(over(figures["clamp_amplification"], STRONG_PEG, part))
@@ -126,8 +134,7 @@ def warnings(
 
 
 def penalty(figures: Mapping[str, arb], off: arb, diameter: float, part: arb) -> arb:
-    """Points for the location error, rounded up, and for a tilt (which is 0 or more than the square one), a strong peg and a
-    small face."""
+    """Points for the location error, rounded up, and for a tilt, a strong peg and a small face."""
     points = [(0, 0)]
     if off > 0:
         steps = POINTS_PER_DECADE * (figures["location_error"] / off).log() / arb(10).log()
@@ -148,30 +155,31 @@ DIGITS = 1e-12
 LEAST = 1e-15
 # What a number is counted as at least and at most.
 Range = tuple[float, float]
-# Type, directions and holes, orientation in radians, and faces, by which fixtures that are equally good are put in order.
+# Type, directions and holes, orientation in radians, and faces, which order fixtures that are equally good.
 Rank = tuple[list[int], float, list[int]]
 MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in RANKED}
 
 
 def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: ToolkitRules) -> Iterator[str]:
-    """A fault when a fixture belongs before the one before it; none where the figures ranked by are not written."""
+    """A fault for a fixture out of order, where the figures ranked by are written."""
     off, usual = query.tolerance.peg + query.tolerance.face, query.without_seating.ranking
     if any(key not in fixture.quality for fixture in fixtures for key in usual):
         return
     rows = [[unfit(fixture, off), *ranges(fixture.quality, usual)] for fixture in fixtures]
-    told = [figures_told(fixture) for fixture in fixtures]
+    stated = [figures_stated(fixture) for fixture in fixtures]
     seated = [
         None if figures is None else [row[0], *ranges(figures, query.ranking), *row[1:]]
-        for row, figures in zip(rows, told, strict=True)
+        for row, figures in zip(rows, stated, strict=True)
     ]
     count = sum(one is not None for one in seated)
     if any(one is None for one in seated[:count]):
-        yield "the seating of a fixture is told, but not that of all before it"
+        yield "the seating of a fixture is stated, but not that of all before it"
         return
     # Of a search that was interrupted those come first whose seating was worked out by then.
     whole = count == query.seating
     if whole and any(is_better(row, first) for first in rows[:count] for row in rows[count : count + 1]):
-        yield f"fixture {count + 1} has no seating told, but without it is better than one before it that has"
+        contrast = "but without it is better than one before it that has"
+        yield f"fixture {count + 1} has no seating stated, {contrast}"
     ranking = query.ranking
     for place in range(1, len(rows)):
         one, before = seated[place], seated[place - 1]
@@ -183,22 +191,25 @@ def order_faults(fixtures: Sequence[Fixture], query: Query, hardware: ToolkitRul
             yield f"fixture {place + 1} is better than the one before it, by {', '.join(ranking)}"
             return
         if better is None and is_earlier(fixtures[place], fixtures[place - 1], hardware):
-            yield f"fixture {place + 1} is as good as the one before it, and comes before it by type, holes and pose"
+            yield (
+                f"fixture {place + 1} is as good as the one before it, and comes before it by type, holes "
+                "and pose"
+            )
             return
 
 
-def figures_told(fixture: Fixture) -> dict[str, float] | None:
-    """The figures of a fixture with those of its seating, whose warnings count as well; None where that is not stated."""
+def figures_stated(fixture: Fixture) -> dict[str, float] | None:
+    """The figures of quality and seating, whose warnings count as well; None where no seating is stated."""
     claim: Claim | None = fixture.seating
     if claim is None:
         return None
-    figures = {**fixture.quality, **claim.told.figures}
-    return figures | {"warnings": figures.get("warnings", 0.0) + warning_count(claim.told)}
+    figures = {**fixture.quality, **claim.seating.figures}
+    return figures | {"warnings": figures.get("warnings", 0.0) + warning_count(claim.seating)}
 
 
-def warning_count(told: Seating) -> int:
-    """As how many warnings of quality a seating counts: two for a small opening, one for a close reading."""
-    opening, reading = told.capture_opening, told.reading_of()
+def warning_count(seating: Seating) -> int:
+    """How many warnings of quality a seating counts as: two for a small opening, one for a close reading."""
+    opening, reading = seating.capture_opening, seating.reading_of()
     small = opening is not None and opening < SMALL_CAPTURE
     return 2 * small + (reading is not None and round(reading, 9) < CLOSE_READING)
 
@@ -231,21 +242,22 @@ def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
 
 
 def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
-    """By what a fixture stands among those that are equally good.
+    """The numbers that order fixtures that are equally good.
 
-    Without a wall and with one thing that moves it is seen as it clamps along -x: columns count from the first peg of each
-    carrier, rows from the lowest of all; with as many pegs on both jaws it counts as it is at an orientation below half a
-    turn. All others count in the holes in which they stand.
+    Without a wall and with one thing that moves a fixture is turned so that it clamps along -x. Then columns
+    count from the first peg of each carrier, rows from the lowest of all. With as many pegs on both jaws it
+    counts as it is at an orientation below half a turn. All others count in the holes in which they stand.
     """
     ways = [list(WAYS).index(name) for name in directions_of(fixture)]
     numbers = [hardware.toolkit.types.index(fixture.type), *ways]
     theta = radians(fixture.pose.theta_deg)
-    if hardware.wall is not None or len(ways) > 1:
+    if len(ways) > 1 or not hardware.half_turns:
         pegs = list[Peg]()
         for carrier in hardware.carriers.values():
             there = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
             pegs += sorted(there, key=hole_and_face) if carrier in hardware.lattices else there
-        holes = [[getattr(peg, noun) for peg in pegs if not peg.is_on_wall] for noun in ("column", "row")]
+        placed = [peg for peg in pegs if hardware.carriers[peg.carrier].contact.is_placed]
+        holes = [[getattr(peg, noun) for peg in placed] for noun in ("column", "row")]
         return [*numbers, *holes[0], *holes[1]], (theta + SAME) % tau - SAME, [peg.face for peg in pegs]
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]
     clamps = [peg for peg in fixture.pegs if direction_of(peg)]
@@ -266,14 +278,14 @@ def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
 
 
 def hole_and_face(peg: Peg) -> tuple[int, int, int]:
-    """By what pegs of one carrier stand in order."""
+    """The numbers that order the pegs of one carrier."""
     return peg.column, peg.row, peg.face
 
 
 def unfit(fixture: Fixture, off: float) -> Range:
-    """1 for a fixture that is none for a workshop, 0 for one that is; of figures that are not written nothing is known.
+    """A range about 1 for a fixture that is unfit for a workshop, about 0 for one that is fit.
 
-    ``off`` is the sum of the tolerances of peg and face, in mm.
+    It is 0 to 1 without the figures. ``off`` is the sum of the tolerances of peg and face, in mm.
     """
     margin, error = (fixture.quality.get(key) for key in ("closure_margin", "location_error"))
     if margin is None or error is None:
@@ -289,7 +301,10 @@ def two_digits(value: float) -> float:
 
 
 def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool | None:
-    """Whether one row of numbers is certainly less than another, at the first that may differ; None when they are equal."""
+    """Whether one row of numbers is certainly less than another, at the first that may differ.
+
+    None where the rows are equal.
+    """
     for (low, high), (least, most) in zip(one, other, strict=True):
         if high < least:
             return True

@@ -1,10 +1,9 @@
 """What a result claims of its fixtures and their seating, number for number as its file writes it.
 
-Reading a result to use it drops what can be worked out again, such as the pegs' x and y, and takes what the
-file does not give for the usual. A verification has to see every number, and what is missing. Head and lines
-come by the one reader there is of result files (``files.result.parts``). What is made of them here is
-compared with nothing of the search. Fixtures stand in a file as JSON objects (``verification.reading``) or in
-columns.
+Reading a result to use it drops what can be worked out again, such as the pegs' x and y. Where the file does
+not give something it takes the usual value. A verification has to see every number, and what is missing. Head
+and lines are read by ``files.result.parts``, the one reader of result files. Fixtures stand in a file as JSON
+objects (``verification.reading``) or in columns. Nothing of the search is used.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from numpy.typing import NDArray
 
 from workhold.archive import is_archive, mapped_archive
 from workhold.errors import InputError
-from workhold.files.result.fixture_forms import checked_seating, seatings_told
+from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.forms import Head
 from workhold.files.result.parts import checked_head, read_parts
 from workhold.files.text import json_value
@@ -56,16 +55,16 @@ class Claim:
     Parameters
     ----------
     fields : as they are written.
-    told : their meaning in the model, which works out again what follows from other fields.
+    seating : their meaning in the model, which works out again what follows from other fields.
     """
 
     fields: Mapping[str, Any]
-    told: Seating
+    seating: Seating
 
     @property
     def capture_opening(self) -> float | None:
         """The capture opening that is claimed, in mm."""
-        return self.told.capture_opening
+        return self.seating.capture_opening
 
 
 def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: int) -> Claim:
@@ -76,8 +75,8 @@ def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: in
     InputError
         When they cannot be used.
     """
-    told = checked_seating(fields, pose, Path(path), number)
-    return Claim(fields, told.in_toolkit(query.toolkit, query.opening))
+    seating = checked_seating(fields, pose, Path(path), number)
+    return Claim(fields, seating.in_toolkit(query.toolkit, query.opening))
 
 
 def with_claims(fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result") -> list[Fixture]:
@@ -90,9 +89,9 @@ def with_claims(fixtures: Sequence[Fixture], query: Query, path: Path | str = "t
     """
     out = list(fixtures)
     for place, fixture in enumerate(out):
-        told = fixture.seating
-        if told is not None:
-            fields = told.as_fields() if isinstance(told, Seating) else told
+        seating = fixture.seating
+        if seating is not None:
+            fields = seating.as_fields() if isinstance(seating, Seating) else seating
             out[place] = evolve(fixture, seating=claim_of(fields, fixture.pose, query, path, place + 1))
     return out
 
@@ -175,7 +174,7 @@ class FixturesInColumns(Sequence[Fixture]):
         for carrier, along, column, row, face, force in zip(carriers, travels, *each, strict=True):
             one = self.toolkit.carriers[carrier]
             x, y = one.place(column, row, along)
-            if one.is_wall:
+            if not one.contact.is_placed:
                 # Where the part lies on it follows from the pose, and is not written.
                 x = nan
             called = None if one.on is None or min(column, row) < 0 else one.place_name(column, row)
@@ -193,9 +192,8 @@ class FixturesInColumns(Sequence[Fixture]):
         low, high = (float(end[0]) for end in ratios(np.array([numbers["force"]])))
         reactions = tuple((one, other) for one, other in numbers["force"])
         pair = Pair((travelled[0], travelled[1]), (low, high), reactions, numbers["pairs"])
-        return with_working_forces(
-            Fixture(arrangement.name, tuple(pegs), pose, travelled[0], known, arrangement.direction, pair)
-        )
+        listed = Fixture(arrangement.name, tuple(pegs), pose, travelled[0], known, arrangement.direction)
+        return with_working_forces(listed, pair)
 
 
 @frozen(eq=False)
@@ -248,7 +246,7 @@ def listing_of(result: Result) -> Listing:
 
 
 def read_listing(path: str | Path) -> Listing:
-    """Read what a result file claims.
+    """What a result file claims.
 
     Raises
     ------
@@ -279,7 +277,7 @@ def read_listing(path: str | Path) -> Listing:
 
 
 def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[Any]]:
-    """The head of a file, and its fixtures, or their numbers and the seating of the first where it is one in columns.
+    """The head of a file, its fixtures, or their columns, and the seating of the first of a file in columns.
 
     Raises
     ------
@@ -291,7 +289,7 @@ def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[A
             text, columns = columns_of(path)
             data = json_value(text)
             head = checked_head(data, path)
-            return head, columns, seatings_told(data, path)
+            return head, columns, seatings_of(data, path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
     return *read_parts(path, fixtures_of), []
@@ -304,7 +302,7 @@ def taken_in(
     query: Query,
     path: Path,
 ) -> Sequence[Fixture]:
-    """Fixtures as they are read, of a kind of toolkit, and the seating of the first where it stands apart from them.
+    """Fixtures with the travels of their clamps and with the seating that stands apart in a file of columns.
 
     Raises
     ------
@@ -315,11 +313,12 @@ def taken_in(
         listed = FixturesInColumns(fixtures, hardware.toolkit)
         if len(seatings) > len(listed):
             raise InputError(
-                f"the seating of {len(seatings)} fixtures is told, but {len(listed)} are listed."
+                f"the seating of {len(seatings)} fixtures is stated, but {len(listed)} are listed."
             )
         poses = [fixture.pose for fixture in listed[: len(seatings)]]
-        told = enumerate(zip(seatings, poses, strict=True), 1)
-        return evolve(listed, claims=tuple(claim_of(one, pose, query, path, k) for k, (one, pose) in told))
+        numbered = enumerate(zip(seatings, poses, strict=True), 1)
+        claims = tuple(claim_of(fields, pose, query, path, k) for k, (fields, pose) in numbered)
+        return evolve(listed, claims=claims)
     out = []
     for number, fixture in enumerate(fixtures, 1):
         try:
@@ -330,9 +329,9 @@ def taken_in(
 
 
 def keys_missing(head: Head) -> list[str]:
-    """A fault for every key of the form that is not there: what would be taken for it is claimed by nobody."""
-    # Of a vise and a toolkit one is enough, an account that is missing is named in any case, and a fit decides nothing; a
-    # departure counts in the tolerance of the faces, which is there.
+    """A fault for every key of the form that is missing, for which a reader would take the usual value."""
+    # Of a vise and a toolkit one is enough, a missing account is named in any case, and a fit decides
+    # nothing. A departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
     spared |= {"workpiece.departure", "tolerance.departure", "vise.flat", "toolkit.flat"}
     if head.seating is None:
@@ -361,7 +360,7 @@ def numbers_of(
 
 
 def turned_loops(loops: Sequence[Any], query: Query) -> list[str]:
-    """A fault for every loop that does not run with the material on its left, which makes its numbers ambiguous."""
+    """A fault for every loop without the material on its left, which makes its numbers ambiguous."""
     return [
         f"loop {index} does not have the material on its left"
         for index, (written, used) in enumerate(zip(loops, query.workpiece.loops, strict=True))

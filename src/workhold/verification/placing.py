@@ -140,9 +140,7 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
     """The restriction that a fixture breaks, in one sentence without a full stop; empty when it keeps all."""
     restrictions = query.restrictions
     avoided = {face.number for face in query.workpiece.faces if set(face.segments) & set(restrictions.avoid)}
-    for name, peg in zip(hardware.names, fixture.pegs, strict=True):
-        if peg.is_on_wall:
-            continue
+    for name, peg in hardware.placed(fixture):
         if peg.face in avoided:
             return f"{name} touches face {peg.face}, which is to be avoided"
         for zone in restrictions.zones:
@@ -157,18 +155,23 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
     )
     if restrictions.angles and not any(inside):
         return f"the part lies at {theta:g} degrees, which is outside the angles asked for"
-    if hardware.wall is None:
-        return hardware.crowding(fixture)
-    noun = hardware.wall.noun
-    # Of a corner on a wall both faces are to be avoided.
-    for contact in hardware.contacts(fixture, BallOutline.of(query.workpiece)):
-        if isinstance(contact, WallContact) and avoided.issuperset(contact.faces):
-            return f"the part lies on the {noun} with face {contact.faces[0]}, which is to be avoided"
-    sine, cosine = (arb(theta) / 180).sin_cos_pi()
-    for zone in restrictions.zones:
-        if zone_low(zone, cosine, sine) + fixture.pose.y < -AGREEMENT:
-            return f"the {noun} stands in a keep-out zone"
-    return hardware.crowding(fixture)
+    return broken_at_wall(fixture, query, hardware, avoided) or hardware.crowding(fixture)
+
+
+def broken_at_wall(fixture: Fixture, query: Query, hardware: ToolkitRules, avoided: set[int]) -> str:
+    """The restriction on faces or zones that a wall breaks, as :func:`broken_restriction` says it."""
+    sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
+    for wall in hardware.walls:
+        # Of a corner on a wall both faces are to be avoided.
+        for contact in hardware.contacts(fixture, BallOutline.of(query.workpiece)):
+            if isinstance(contact, WallContact) and avoided.issuperset(contact.faces):
+                return (
+                    f"the part lies on the {wall.noun} with face {contact.faces[0]}, which is to be avoided"
+                )
+        for zone in query.restrictions.zones:
+            if zone_low(zone, cosine, sine) + fixture.pose.y < -AGREEMENT:
+                return f"the {wall.noun} stands in a keep-out zone"
+    return ""
 
 
 def in_part(fixture: Fixture, peg: Peg) -> Point:

@@ -80,7 +80,7 @@ def fixture_from(item: Any) -> Fixture:
     if is_pair:
         low, high = two_numbers(item, "ratio", least=1)
         pair = Pair((0.0, 0.0), (low, high), tuple(forces), whole(item, "pairs"))
-        fixture = with_working_forces(evolve(fixture, pair=pair))
+        fixture = with_working_forces(fixture, pair)
     fixture = with_flats(fixture, item["flats"]) if "flats" in item else fixture
     # What its fields say is looked at where the query is known.
     return evolve(fixture, seating=item["seating"]) if "seating" in item else fixture
@@ -98,12 +98,12 @@ def with_flats(fixture: Fixture, flats: Any) -> Fixture:
     return evolve(fixture, pegs=tuple(pegs))
 
 
-def with_working_forces(fixture: Fixture) -> Fixture:
-    """A fixture with two clamps whose forces are per unit of both clamps' at its working ratio."""
-    assert fixture.pair is not None
-    ratio = fixture.pair.working_ratio
-    forces = [(one + ratio * other) / (1 + ratio) for one, other in fixture.pair.reactions]
-    return evolve(fixture, pegs=tuple(evolve(p, force=f) for p, f in zip(fixture.pegs, forces, strict=True)))
+def with_working_forces(fixture: Fixture, pair: Pair) -> Fixture:
+    """A fixture held by a pair of clamps, with forces per unit of both clamps' at the working ratio."""
+    ratio = pair.working_ratio
+    forces = [(one + ratio * other) / (1 + ratio) for one, other in pair.reactions]
+    pegs = tuple(evolve(p, force=f) for p, f in zip(fixture.pegs, forces, strict=True))
+    return evolve(fixture, pegs=pegs, pair=pair)
 
 
 def directions_from(item: Mapping[str, Any]) -> list[str]:
@@ -164,7 +164,7 @@ def wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
 def wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
     """The two ends of the contact with a wall from a JSON object; with two clamps forces stand elsewhere."""
     if not isinstance(item, dict):
-        raise UnusableError("its wall is not told by places, segments and forces")
+        raise UnusableError("its wall is not given by places, segments and forces")
     pairs = []
     for key in ("from", "to", "segments", "forces"):
         value = [0.0, 0.0] if key == "forces" and is_pair else item.get(key)

@@ -4,17 +4,17 @@ Two fixtures are the same (model: "When two fixtures are the same") with the sam
 the same pattern of holes. Lattice steps, names of pegs and the half turn that leaves the toolkit as it is
 make no difference. Nor do the names of faces: the pose says what is touched.
 
-Which rotations carry a workpiece onto itself is derived from the marks of its faces alone. The rotations of
-order n carry the faces that are not about the kept point in cycles of n, so n divides their number; and the
-mean of the faces' middles is that point. Each such part of a turn is tried, the smallest first. What a
-drawing has to ``SAME`` is taken for symmetric, so of one that misses it by about as much it cannot be said.
+Which rotations carry a workpiece onto itself is derived from the marks of its faces alone. They keep the mean
+of the faces' middles. Rotations of order n carry the faces that are not about this point in cycles of n, so n
+divides their number. Each such part of a turn is tried, the smallest first. A drawing symmetric to ``SAME``
+counts as symmetric. Of one that misses this by about as much, nothing can be said.
 
 Glossary
 --------
 pattern : the holes of a fixture in a form in which equal fixtures have equal ones, with the place of the
     workpiece.
-stance : how the pegs of a fixture stand to each other; fixtures of one stance are on the same pegs, and each
-    of them is among the seats of the others.
+stance : how the pegs of a fixture stand to each other. Fixtures of one stance are on the same pegs, and each
+    is among the seats of the others.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import numpy as np
 from attrs import field, frozen
 from numpy.typing import NDArray
 
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.fixture import Fixture, Peg
@@ -43,7 +44,7 @@ from workhold.verification.rules.travel import (
 )
 from workhold.verification.tolerances import SAME
 
-__all__ = ["Key", "Place", "Seen", "Turning", "pattern_faults", "stance"]
+__all__ = ["Key", "Place", "KnownFixtures", "PartRotations", "pattern_faults", "stance"]
 
 Key = tuple[Any, ...]
 # Orientation, place in the workpiece's frame of the first peg, and how far from it each other group of pegs
@@ -56,7 +57,7 @@ CERTAIN, PERHAPS = 0.25, 4.0
 
 
 @frozen
-class Turning:
+class PartRotations:
     """The rotations of a workpiece onto itself.
 
     Parameters
@@ -71,7 +72,7 @@ class Turning:
     is_certain: bool
 
     @classmethod
-    def of(cls, workpiece: Workpiece) -> Turning:
+    def of(cls, workpiece: Workpiece) -> PartRotations:
         """The rotations of a workpiece."""
         marks = np.array([marks_of(face.segment) for face in workpiece.faces])
         center = marks[:, 0].mean()
@@ -82,12 +83,12 @@ class Turning:
 
     @property
     def angles(self) -> list[float]:
-        """In radians, the identity left out."""
+        """The angles of the rotations in radians, without the identity."""
         return [tau * k / self.order for k in range(1, self.order)]
 
 
 def marks_of(face: Segment) -> list[complex]:
-    """Middle, start and end of a face, or thrice a whole circle's centre; and its radius, negative in a hollow."""
+    """Middle, start, end and radius of a face, negative in a hollow; of a whole circle thrice its centre."""
     radius = face.sign * face.radius if isinstance(face, Arc) else 0.0
     points = (
         [face.center] * 3 if isinstance(face, Arc) and face.is_full else [face.at(0.0), face.start, face.end]
@@ -113,7 +114,7 @@ TURNED = 4 * SAME
 
 
 @frozen(eq=False)
-class Seen:
+class KnownFixtures:
     """The fixtures of a list looked at so far.
 
     Parameters
@@ -132,12 +133,12 @@ class Seen:
     known: dict[Key, list[tuple[int, Place]]] = field(factory=dict, init=False)
 
     @classmethod
-    def of(cls, turning: Turning, hardware: ToolkitRules) -> Seen:
+    def of(cls, turning: PartRotations, hardware: ToolkitRules) -> KnownFixtures:
         """Nothing seen yet of fixtures of a workpiece that is carried onto itself in these ways."""
         return cls(hardware, turning.angles, turning.center)
 
     def add(self, index: int, fixture: Fixture) -> int | None:
-        """Take in a fixture that is not refuted; return the index of an earlier one that is the same."""
+        """Adds a fixture that is not refuted, and returns the index of an earlier one that is the same."""
         first, alone = self.find(fixture), True
         for key, place in patterns(fixture, self.hardware):
             known = self.known.setdefault(key, [])
@@ -170,8 +171,7 @@ def patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Key, Pl
     clamps = [direction_of(peg) for peg in fixture.pegs if direction_of(peg)]
     if tuple(clamps) != directions_of(fixture) or not there.issuperset(one.name for one in hardware.lattices):
         return iter(())
-    # With a wall nothing is the same after a turn.
-    named = [pattern(fixture, hardware, sign) for sign in ((1, -1) if hardware.wall is None else (1,))]
+    named = [pattern(fixture, hardware, sign) for sign in ((1, -1) if hardware.half_turns else (1,))]
     least = min(key for key, _ in named)
     return ((key, place) for key, place in named if key == least)
 
@@ -203,7 +203,7 @@ def pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, P
     clamps.sort()
     alone = hardware.every or len(clamps) < 2
     lines = tuple((way, line) if alone else way for way, line, _ in clamps)
-    above = lowest if hardware.wall is not None and hardware.lattices[0].travel is None else 0
+    above = lowest if hardware.keeps_rows else 0
     theta = radians(fixture.pose.theta_deg)
     x, y = first.x - fixture.pose.x, first.y - fixture.pose.y
     # By a motion of its own, not ``Pose``, which is checked.
@@ -230,7 +230,7 @@ SAME_SEAT = 1e-5
 
 def pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
     """A fault for the first fixture that is not among the seats of one whose pegs stand as its own do."""
-    if query.toolkit.needs_pairs:
+    if not query.toolkit.closes_at_once:
         return
     seated = [fixture for fixture in fixtures[: query.seating or 0] if fixture.seating is not None]
     stances = [stance(fixture, query.toolkit) for fixture in (fixtures if seated else ())]
@@ -251,7 +251,10 @@ def pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
             if any(min(own.apart, other.apart) < there < max(own.apart, other.apart) for there in own.met):
                 continue
             if not any(is_seat(seat, moved, apart) for seat in fixture.seating.fields["seats"]):
-                yield f"fixture {place + 1} stands on the pegs of fixture {number + 1}, but is not among its seats"
+                yield (
+                    f"fixture {place + 1} stands on the pegs of fixture {number + 1}, but is not among its "
+                    "seats"
+                )
                 return
 
 
@@ -275,7 +278,7 @@ class Stance:
 
 def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
     """How the pegs of a fixture stand in a toolkit."""
-    by_place = sorted((peg for peg in fixture.pegs if not peg.is_on_wall), key=lambda peg: (peg.x, peg.y))
+    by_place = sorted(fixture.placed, key=lambda peg: (peg.x, peg.y))
     still = [peg for peg in by_place if toolkit.carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]
     tip = moved[0]
@@ -296,8 +299,8 @@ def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
     if carrier.on is not None:
         # A clamp's stroke is counted from its hole, and a wall stands where it is.
         x, y = carrier.place(tip.column, tip.row)
-        numbers += [x - first_x, y - first_y] if carrier.has_a_hole else []
-        numbers += [first_y] if toolkit.wall is not None else []
+        numbers += [x - first_x, y - first_y] if carrier.measure == "stroke" else []
+        numbers += [first_y] if WALL_END in toolkit.contacts else []
         reach = [carrier.peg_radius + toolkit.carrier(peg.carrier).peg_radius for peg in still]
         met = [
             along(peg)

@@ -1,9 +1,10 @@
-"""A seat, three locators that fix the pose by themselves, and two clamps that press the part against them, in balls.
+"""Three locators that fix the pose by themselves, and two clamps that press the part against them, in balls.
 
-With the wrenches w_i = (n_i, q_i x n_i) of the locators and W = [w_1 w_2 w_3], the locators take up a = -W^-1 w per unit
-of force on the face of a clamp with the wrench w, and b = a / p per unit of its own force, p being its push: the share of
-that along its direction. With forces f1, f2 of two clamps they carry b1 f1 + b2 f2. None of this depends on the point that
-moments are taken about or, but for det W, on their scale.
+Let w_i = (n_i, q_i x n_i) be the wrenches of the locators, and W = [w_1 w_2 w_3]. Per unit of force on the
+face of a clamp with the wrench w the locators take up a = -W^-1 w. Per unit of the clamp's own force they
+take up b = a / p. Here p is its push, the share of the force on the face along its direction. With forces f1,
+f2 of two clamps the locators carry b1 f1 + b2 f2. Apart from det W none of this depends on the scale of
+moments, or on the point that they are taken about.
 
 Glossary
 --------
@@ -58,8 +59,8 @@ class LocatorWrenches:
 
     Parameters
     ----------
-    points, normals : their centres in mm, or the points that touch a wall, and the outward unit normals there, in the
-        workpiece's frame.
+    points : their centres in mm, or the points that touch a wall, in the workpiece's frame.
+    normals : the outward unit normals there.
     """
 
     points: Sequence[Point]
@@ -85,7 +86,7 @@ class LocatorWrenches:
 
     @cached_property
     def determinant(self) -> arb:
-        """Of the three wrenches, in mm."""
+        """The determinant of the three wrenches, in mm."""
         return determinant(self.wrenches)
 
     def taken(self, point: Point, normal: Point) -> tuple[arb, arb, arb]:
@@ -127,7 +128,7 @@ class Push:
 
     @cached_property
     def alone(self) -> arb:
-        """The least that a locator takes up as a share of all forces: above zero where the clamp holds the part alone."""
+        """The least share of all forces on a locator: above zero where the clamp holds the part alone."""
         a, b, c = self.taken
         return a.min(b).min(c) / (1 + abs(a) + abs(b) + abs(c))
 
@@ -147,7 +148,7 @@ class Ratio:
 
     @property
     def angles(self) -> tuple[arb, arb]:
-        """Its ends as angles in radians."""
+        """The ends of the interval as angles in radians."""
         return self.low.atan(), arb.pi() / 2 if self.high is None else self.high.atan()
 
     @property
@@ -187,11 +188,11 @@ def settled(reaction: arb) -> arb | None:
 
 
 def closure_margin(one: Push, other: Push) -> arb:
-    """The largest least entry of null vectors of all five wrenches that sum to 1; 0 or less where none is positive.
+    """The largest least entry of null vectors of all five wrenches that sum to 1; 0 or less for none.
 
-    They are (1 - s) (a1, 1, 0) + s (a2, 0, 1), scaled. Over 0 <= s <= 1 every entry is linear before scaling, so the least
-    of them is the largest where two are equal. Two whose difference may be constant are equal nowhere or everywhere, and
-    then another two are where it counts.
+    They are (1 - s) (a1, 1, 0) + s (a2, 0, 1), scaled. Over 0 <= s <= 1 every entry is linear before scaling,
+    so the least of them is the largest where two are equal. Two whose difference may be constant are equal
+    nowhere or everywhere, and then another two are where it counts.
     """
     ends = list(zip((*one.taken, arb(1), arb(0)), (*other.taken, arb(0), arb(1)), strict=True))
     best = arb(0)
@@ -219,7 +220,8 @@ class SeatBalance:
     points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
     seat : the locators, of which a wall's ends are two.
     pushes : both clamps.
-    known_ratio : in which their forces may be; None where a reaction is exactly at the edge of what counts as none.
+    known_ratio : in which their forces may be; None where a reaction is exactly at the edge of what counts as
+        none.
     """
 
     points: Sequence[Point]
@@ -245,7 +247,7 @@ class SeatBalance:
         return self.known_ratio
 
     def push_findings(self, wrench_length: float) -> Iterator[Finding]:
-        """Whether the locators fix the pose, and both clamps push without holding the part alone; L is in mm."""
+        """Whether the locators fix the pose, both clamps push, and neither holds the part alone; L in mm."""
         spanned = abs(self.seat.determinant) / wrench_length
         words = (
             f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}"
@@ -286,7 +288,7 @@ class SeatBalance:
 
     @cached_property
     def reactions(self) -> list[tuple[arb, arb]]:
-        """Of each peg its force per unit of the first clamp's, and of the second's."""
+        """The force of each peg per unit of the first clamp's force, and of the second's."""
         one, other = self.pushes
         own = [(1 / one.push, arb(0)), (arb(0), 1 / other.push)]
         return [*zip(one.reactions, other.reactions, strict=True), *own]
@@ -313,7 +315,7 @@ class SeatBalance:
         return inverted([list(wrench) for wrench in self.seat.wrenches])
 
     def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
-        """A number for each peg, from a row of the inverse: clamps that keep their force take nothing of a load."""
+        """A row of the inverse, with 0 for each clamp, which keeps its force and takes nothing of a load."""
         return [*row, arb(0), arb(0)]
 
     def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:

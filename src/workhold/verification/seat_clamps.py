@@ -1,8 +1,8 @@
-"""All clamps that may push at a seat, and the pairs of them that hold the part there, in closed form and in balls.
+"""All clamps that may push at a seat, and the pairs that hold the part there, in closed form and in balls.
 
-A clamp's tip moves along a row or column of holes. Every such line meets the contact feature of each face in a point or two,
-of which those count where the clamp pushes. So the clamps of a seat are found by going through lines, faces and points, and
-nothing is sought. What is in doubt is carried along as such.
+A clamp's tip moves along a row or column of holes. Every such line meets the contact feature of each face in
+a point or two, of which those count where the clamp pushes. So the clamps of a seat are found by going
+through lines, faces and points, and nothing is sought. What is in doubt is carried along as such.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ from workhold.verification.tolerances import (
 )
 from workhold.verification.touching import on_line, touching_findings
 
-__all__ = ["SeatClamp", "Standing", "pairs_at"]
+__all__ = ["SeatClamp", "SeatOnPlate", "pairs_at"]
 
 # mm. Lines of holes this near beside the part are looked at as well.
 BESIDE = 1e-3
@@ -103,13 +103,14 @@ class SeatPair:
 
 
 @frozen(eq=False)
-class Standing:
+class SeatOnPlate:
     """A seat as it stands on the plate.
 
     Parameters
     ----------
     query, hardware, outline : what is asked, of what toolkit, and the workpiece.
-    pegs, locators : those in holes that stand still, three or, beside a wall, one, and their contacts by name.
+    pegs : those in holes that stand still: three, or one beside a wall.
+    locators : their contacts by name.
     pose : the solution, in which the first travel is 0.
     seat : their wrenches, a wall's with them.
     """
@@ -131,10 +132,10 @@ class Standing:
         query: Query,
         hardware: ToolkitRules,
         outline: BallOutline,
-    ) -> Standing:
+    ) -> SeatOnPlate:
         """The seat of a fixture in a pose."""
         named = zip(hardware.names, fixture.pegs[:LOCATORS], contacts, strict=False)
-        held = [(name, peg, contact) for name, peg, contact in named if not peg.is_on_wall]
+        held = [(name, peg, contact) for name, peg, contact in named if not contact.is_flush]
         locators = [(name, contact) for name, _, contact in held]
         still = BallPose.of(pose.theta, pose.x, pose.y, arb(0))
         seat = LocatorWrenches.of(contacts[:LOCATORS], still)
@@ -186,7 +187,7 @@ class Standing:
         yield from found
 
     def lines(self, side: Side, direction: str) -> list[int]:
-        """Numbers of the rows, or columns, on which a tip may touch a side, and that fit on the plate with the locators."""
+        """Numbers of the rows, or columns, that fit on the plate and on which a tip may touch a side."""
         upright = direction.endswith("y")
         axis = self.axis(upright)
         ends = [side.center] if isinstance(side, ArcSide) else [side.start, side.end]
@@ -211,7 +212,7 @@ class Standing:
         return self.pose.x - x if upright else self.pose.y - y
 
     def clamps_on(self, side: Side, face: int, line: int, direction: str) -> Iterator[SeatClamp]:
-        """The clamps on a line that touch a side and keep all rules of their own, those in doubt with them."""
+        """The clamps on a line that touch a side and may keep all rules of their own."""
         upright, radius = direction.endswith("y"), arb(self.radius(direction))
         if isinstance(side, ArcSide) and not side.reach(radius) > 0:
             return
@@ -294,7 +295,7 @@ class Standing:
         pose: BallPose,
         balance: SeatBalance,
     ) -> Iterator[Finding]:
-        """Whether the clamps are bolted in the holes of the least total travel, and stand for all pairs that they are to."""
+        """Whether the clamps are bolted with the least total travel and stand for the pairs of the seat."""
         if self.hardware.stroke.span is not None:
             yield from self.stroke_findings(fixture, contacts, pose)
         if not self.hardware.every:
@@ -333,23 +334,29 @@ def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -
     freedom, margin = balance.ratio.freedom, balance.margin
     freest = largest([freedom, *(one.freedom for one in sure)])
     worse = freest - freedom - SAME_FREEDOM - HAIR
-    words = f"another pair of clamps at its seat has a freedom of {number(freest)} degrees, this one {number(freedom)}"
+    words = (
+        f"another pair of clamps at its seat has a freedom of {number(freest)} degrees, this one "
+        f"{number(freedom)}"
+    )
     yield from rule(-worse, words, words)
     rivals = [one.margin for one in sure if freest - one.freedom < SAME_FREEDOM - HAIR]
     widest = largest([margin, *rivals])
-    words = f"an equally free pair of clamps at its seat has a closure margin of {number(widest)}, this one {number(margin)}"
+    words = (
+        f"an equally free pair of clamps at its seat has a closure margin of {number(widest)}, this one "
+        f"{number(margin)}"
+    )
     yield from rule(2 * HAIR - (widest - margin), words, words)
 
 
 def pairs_at(
     fixture: Fixture, query: Query, hardware: ToolkitRules, outline: BallOutline
 ) -> tuple[int, int] | None:
-    """How many pairs of clamps there are at a fixture's seat, at least and at most; None where its place is not proven."""
+    """The least and greatest number of pairs of clamps at a fixture's seat; None for no proven pose."""
     contacts = hardware.contacts(fixture, outline)
     pose, _ = proven_pose(contacts, fixture.pose, hardware.travels(fixture))
     if pose is None:
         return None
-    standing = Standing.of(fixture, contacts, pose, query, hardware, outline)
+    standing = SeatOnPlate.of(fixture, contacts, pose, query, hardware, outline)
     pairs = list(standing.pairs(directions_of(fixture)))
     return sum(one.sure for one in pairs), len(pairs)
 

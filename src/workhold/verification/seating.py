@@ -1,14 +1,15 @@
-"""Whether the seating that a result states for a fixture is so, from the outline, the pegs and its numbers alone.
+"""Proof of the seating that a result states for a fixture, from the outline, the pegs and its numbers alone.
 
-Of a seat its pose, difference and contacts are given. Each contact must touch to ``AGREEMENT``, asked in balls, no peg
-may be in the part, and forces h >= 0 along the normals must balance on the part while those of the pegs that move add up to
-one along their way. So a seat or a pass that is none is refuted; that none is missing no file shows.
+Of a seat its pose, difference and contacts are given. Each contact must touch to ``AGREEMENT``, checked in
+balls, and no peg may be in the part. Forces h >= 0 along the normals must balance on the part, while those of
+the pegs that move add up to one along their way. So a stated seat or pass that is none is refuted. That none
+is missing cannot be seen from a file.
 
 Glossary
 --------
 local : a place in the part's own frame, as drawn, also where the part is turned over (x to -x).
-wrench : of a contact the force on the part along x and y, its moment about the part's centre in parts of its arm, and how
-    much of it the pegs that move bear along their way.
+wrench : force on the part along x and y, moment about its centre in parts of its arm, and share of the pegs
+    that move, along their way.
 """
 
 from __future__ import annotations
@@ -21,33 +22,36 @@ from typing import Any
 
 import numpy as np
 from attrs import define
-from flint import arb
 from numpy.typing import NDArray
 
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
-from workhold.verification.ball_geometry import BallOutline, Point, exact_point, norm, turned
+from workhold.verification.ball_geometry import BallOutline, Point, norm
 from workhold.verification.contacts import BallPose
 from workhold.verification.listing import Claim
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import travelled
 from workhold.verification.seating_contacts import (
+    PRESSES,
     FloatOutline,
     StatedContact,
+    balances,
     stop_of,
     touching_faults,
+    touching_peg,
     touching_wall,
 )
 from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
-__all__ = ["Judged", "SeatingJudge"]
+__all__ = ["StatedSeating", "SeatingJudge"]
 
 Array = NDArray[np.float64]
 # Files have nine decimals, of numbers that follow from others that are rounded so.
 ROUNDED = 4e-9
-# No unit. Balance of forces per unit of clamping force; a force above minus the second presses.
-BALANCED, PRESSES = 1e-6, 1e-9
-# No unit. Friction at which the part can stick is given to this part of it; where it never can, not below the second.
+# No unit. Balance of forces per unit of clamping force.
+BALANCED = 1e-6
+# No unit. The relative error of the friction at which the part can stick; it is not below the second number
+# where the part never can.
 FRICTION, MOST_FRICTION = 1e-5, 50.0
 STRICT = ("fixture", "corner", "pocket", "curved")
 
@@ -74,17 +78,17 @@ class SeatingJudge:
         return FloatOutline.of(self.outline.segments, self.query.workpiece)
 
     def fault(self, fixture: Fixture) -> str:
-        """What is wrong with the seating of a fixture, one sentence without a full stop; empty where all is so."""
+        """What is wrong with the seating of a fixture, a sentence without a full stop; empty for nothing."""
         claim: Claim | None = fixture.seating
         if claim is None:
             return ""
-        if fixture.pair is not None:
-            return "its seating is told, and with two clamps there is none"
-        return next((f"its seating: {words}" for words in Judged(self, fixture, claim).faults()), "")
+        if len(fixture.travels) > 1:
+            return "its seating is stated, and with two clamps there is none"
+        return next((f"its seating: {words}" for words in StatedSeating(self, fixture, claim).faults()), "")
 
 
 @define(slots=False)
-class Judged:
+class StatedSeating:
     """A fixture and what is claimed of its seating."""
 
     judge: SeatingJudge
@@ -109,13 +113,8 @@ class Judged:
     @cached_property
     def on_wall(self) -> list[int]:
         """Which of the pegs are ends of the contact with a wall."""
-        return [number for number, peg in enumerate(self.fixture.pegs) if peg.is_on_wall]
-
-    @property
-    def wall(self) -> str:
-        """What the wall is called that the part lies on."""
-        wall = self.judge.hardware.wall
-        return "" if wall is None else wall.noun
+        carriers = [self.judge.hardware.carriers[peg.carrier] for peg in self.fixture.pegs]
+        return [number for number, carrier in enumerate(carriers) if not carrier.contact.is_placed]
 
     @property
     def travel(self) -> float:
@@ -133,17 +132,16 @@ class Judged:
     def faults(self) -> Iterator[str]:
         """Everything that is wrong."""
         seats = self.fields["seats"]
-        own = [place for place, seat in enumerate(self.claim.told.seats) if seat.is_own]
+        own = [place for place, seat in enumerate(self.claim.seating.seats) if seat.is_own]
         if len(own) != 1:
-            yield f"it tells {len(own)} seats in the fixture's own pose"
+            yield f"it has {len(own)} seats in the fixture's own pose"
             return
         mine = seats[own[0]]
         if abs(mine["jaw_separation"] - self.travel) > AGREEMENT:
             yield "the separation of the fixture's own seat is not the fixture's"
-        told = {contact["peg"]: contact for contact in mine["contacts"]}
-        is_own = len(told) == len(mine["contacts"]) == len(self.fixture.pegs) and all(
-            map(self.is_own, told.values())
-        )
+        of_peg = {contact["peg"]: contact for contact in mine["contacts"]}
+        is_own = len(of_peg) == len(mine["contacts"]) == len(self.fixture.pegs)
+        is_own = is_own and all(map(self.is_own, of_peg.values()))
         if mine["kind"] != "fixture" or not is_own:
             yield "the fixture's own seat does not have the fixture's contacts"
         order = [seat["jaw_separation"] for seat in seats]
@@ -172,7 +170,7 @@ class Judged:
         contacts = [
             self.touching(contact, seat["pose"], seat["mirrored"], apart) for contact in seat["contacts"]
         ]
-        yield from touching_faults(contacts, self.on_wall, self.wall)
+        yield from touching_faults(contacts, self.on_wall, self.judge.hardware.wall_noun)
         if self.kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
             yield f"is called {seat['kind']}, which its contacts are not"
         if seat["kind"] in STRICT and len(seat["forces"]) != len(contacts):
@@ -185,9 +183,9 @@ class Judged:
             yield "is no equilibrium of its contacts"
 
     def is_own(self, contact: Mapping[str, int]) -> bool:
-        """Whether a contact in the fixture's pose is one of the fixture's: on its face, on a wall where its end is."""
+        """Whether a contact in the fixture's pose is the fixture's: on its face, or at its end on a wall."""
         peg = self.fixture.pegs[contact["peg"]]
-        if not peg.is_on_wall:
+        if contact["peg"] not in self.on_wall:
             return contact.get("face") == peg.face
         (x, y), (u, v) = (
             self.touching(contact, vars_of(self.fixture), False, 0.0).at,
@@ -197,7 +195,7 @@ class Judged:
 
     @cached_property
     def ends(self) -> list[Point]:
-        """Where each peg of the fixture, or an end of its wall, touches; not every form of a file says it of a wall."""
+        """Where each peg of the fixture, or end of its wall, touches; not every file says so of a wall."""
         contacts = self.judge.hardware.contacts(self.fixture, self.judge.outline)
         return [contact.place(BallPose.written(self.fixture.pose)) for contact in contacts]
 
@@ -214,7 +212,7 @@ class Judged:
 
     def figure_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
         """Figures that do not follow from seats and contacts."""
-        fields, told = self.fields, self.claim.told
+        fields = self.fields
         opening, factor, reading = (fields[key] for key in ("capture_opening", "room_factor", "reading"))
         if abs(sum(own["forces"]) - factor) > BALANCED:
             yield "room_factor is not the sum of the forces"
@@ -233,7 +231,7 @@ class Judged:
         out = fields["way_out"]
         if out is not None and (opening is None or out < opening - ROUNDED):
             yield "the way out is nearer than the capture opening"
-        yield from self.friction_faults(told.sticking_friction, own)
+        yield from self.friction_faults(self.claim.seating.sticking_friction, own)
         if not agree(
             stop_of(self.fixture.pegs, self.judge.query.toolkit, self.travel), fields["stop"], AGREEMENT
         ):
@@ -241,12 +239,12 @@ class Judged:
 
     def counts(self, place: int, seat: Mapping[str, Any]) -> bool:
         """Whether a seat is a wrong one that counts."""
-        told, query = self.claim.told, self.judge.query
-        if told.seats[place].is_own or seat["same_place"]:
+        seating, query = self.claim.seating, self.judge.query
+        if seating.seats[place].is_own or seat["same_place"]:
             return False
         if query.opening is not None and not self.clamping * seat["difference"] < query.opening:
             return False
-        return told.most is None or seat["jaw_separation"] <= told.most
+        return seating.most is None or seat["jaw_separation"] <= seating.most
 
     def pass_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
         """What is wrong with the pass, the cage and the placing."""
@@ -267,7 +265,8 @@ class Judged:
         contacts = [self.touching(contact, top["pose"], False, rise) for contact in top["contacts"]]
         if not 2 <= len(contacts) <= 3:
             yield "the pass does not have two or three contacts"
-        yield from (f"the pass {words}" for words in touching_faults(contacts, self.on_wall, self.wall))
+        faults = touching_faults(contacts, self.on_wall, self.judge.hardware.wall_noun)
+        yield from (f"the pass {words}" for words in faults)
         yield from (f"the pass {words}" for words in self.freedom_faults(top["pose"], False, rise))
         if not self.can_balance(contacts, top["pose"], False):
             yield "the pass is no equilibrium of its contacts"
@@ -282,10 +281,10 @@ class Judged:
             if not low - AGREEMENT <= min(0.0, shift) <= max(0.0, shift) <= high + AGREEMENT:
                 yield f"the cage leaves out the seat or its pass in {name}"
 
-    def friction_faults(self, told: float, own: Mapping[str, Any]) -> Iterator[str]:
+    def friction_faults(self, stated: float, own: Mapping[str, Any]) -> Iterator[str]:
         """Whether the part can stick below a friction, or cannot just above."""
         contacts = [self.touching(contact, own["pose"], False, 0.0) for contact in own["contacts"]]
-        low, high = told * (1.0 - FRICTION), told * (1.0 + FRICTION) + ROUNDED
+        low, high = stated * (1.0 - FRICTION), stated * (1.0 + FRICTION) + ROUNDED
         if min(low, MOST_FRICTION) > ROUNDED and self.sticks(contacts, own["pose"], min(low, MOST_FRICTION)):
             yield "the part can stick below the sticking friction"
         if high < MOST_FRICTION and not self.sticks(contacts, own["pose"], high):
@@ -320,8 +319,9 @@ class Judged:
         radii = np.array([carriers[self.fixture.pegs[number].carrier].peg_radius for number in numbers])
         if not self.judge.rough.is_free(pegs, radii - AGREEMENT, pose, mirrored):
             yield "has a peg in the part"
-        if self.wall and self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
-            yield f"has the part in the {self.wall}"
+        for wall in self.judge.hardware.walls:
+            if self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
+                yield f"has the part in the {wall.noun}"
 
     def covers(self, seat: Mapping[str, Any]) -> bool | None:
         """Whether the part in a seat covers the place of its fixture; None where that is nearly so."""
@@ -339,27 +339,8 @@ class Judged:
         number = contact["peg"]
         if number in self.on_wall:
             return touching_wall(self.judge.outline, contact, pose, mirrored)
-        x, y = self.peg(number, apart)
-        sine, cosine = (arb(pose["theta_deg"]) / 180).sin_cos_pi()
-        local = turned(exact_point(x - pose["x"], y - pose["y"]), cosine, -sine)
-        local = (-local[0], local[1]) if mirrored else local
-        outline = self.judge.outline
         radius = self.judge.hardware.carriers[self.fixture.pegs[number].carrier].peg_radius
-        face = contact.get("face")
-        side = outline.faces.get(contact["corner"] if face is None else face)
-        if side is None:
-            return StatedContact(number, exact_point(x, y), exact_point(0.0, 0.0), float("inf"), False)
-        if face is None:
-            way, inside = (local[0] - side.start[0], local[1] - side.start[1]), True
-            off = abs(norm(way) - radius)
-        else:
-            way, off = side.outward(local), abs(side.gap(local) - radius)
-            inside = bool(abs(side.distance(local) - radius) < AGREEMENT)
-        size = norm(way)
-        normal = way[0] / size, way[1] / size
-        normal = turned((-normal[0], normal[1]) if mirrored else normal, cosine, sine)
-        at = arb(x) - radius * normal[0], arb(y) - radius * normal[1]
-        return StatedContact(number, at, normal, float(off.upper()), inside)
+        return touching_peg(self.judge.outline, contact, pose, mirrored, self.peg(number, apart), radius)
 
     def wrenches(
         self,
@@ -368,7 +349,7 @@ class Judged:
         mirrored: bool,
         friction: float = 0.0,
     ) -> Array:
-        """Wrenches (4, K) of contacts that press along their normals, and by friction along their tangents."""
+        """Wrenches (4, K) of contacts that press along normals and, by friction, along tangents."""
         cx, cy = self.place(self.judge.query.workpiece.center, pose, mirrored)
         columns = []
         for one in contacts:
@@ -408,23 +389,3 @@ def agree(derived: float | None, written: float | None, spare: float = ROUNDED) 
     if derived is None or written is None:
         return derived is written
     return abs(derived - written) <= spare
-
-
-def balances(wrenches: Array, spare: float = 1e-9) -> bool:
-    """Whether wrenches (4, K) add up, with factors of which none is below 0, to nothing but what moves bearing one.
-
-    Where any do, then some that are independent: no more than four.
-    """
-    target = np.array([0.0, 0.0, 0.0, 1.0])
-    if not np.isfinite(wrenches).all():
-        # A peg that is said to stand in the centre of an arc has no normal.
-        return False
-    for size in range(1, min(wrenches.shape[1], 4) + 1):
-        for chosen in combinations(range(wrenches.shape[1]), size):
-            some = wrenches[:, chosen]
-            forces = np.linalg.lstsq(some, target, rcond=None)[0]
-            if forces.min() > -PRESSES and np.abs(some @ forces - target).max() < spare * (
-                1.0 + forces.sum()
-            ):
-                return True
-    return False

@@ -1,13 +1,13 @@
-"""What a stated seating is held against: contacts, stops, and the part in doubles.
+"""What a stated seating is compared with: contacts, the stop, and the part in doubles.
 
-Contacts that are stated are worked out anew from the outline. What moves stops somewhere without the part,
-too. The part in doubles is for what needs no ball: whether pegs are clear of it, and whether it covers the
-same place.
+Stated contacts are derived anew from the outline. The stop is where what moves comes to rest without the
+part. Doubles suffice to ask whether pegs are clear of the part, and whether it covers the same place.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from math import ceil, cos, inf, pi, radians, sin, sqrt
 
 import numpy as np
@@ -15,6 +15,7 @@ from attrs import frozen
 from flint import arb
 from numpy.typing import NDArray
 
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Peg
 from workhold.model.workpiece import Workpiece
@@ -25,11 +26,21 @@ from workhold.verification.ball_geometry import (
     Point,
     Side,
     exact_point,
+    norm,
     turned,
 )
 from workhold.verification.tolerances import AGREEMENT
 
-__all__ = ["FloatOutline", "StatedContact", "stop_of", "touching_faults", "touching_wall"]
+__all__ = [
+    "PRESSES",
+    "balances",
+    "touching_peg",
+    "FloatOutline",
+    "StatedContact",
+    "stop_of",
+    "touching_faults",
+    "touching_wall",
+]
 
 # mm. A tip may be in a locator by this much: rounding.
 APART = 1e-6
@@ -76,14 +87,43 @@ def touching_wall(
     return StatedContact(number, at, down, float(abs(at[1]).upper()), bool(off < AGREEMENT))
 
 
+def touching_peg(
+    outline: BallOutline,
+    contact: Mapping[str, int],
+    pose: Mapping[str, float],
+    mirrored: bool,
+    center: tuple[float, float],
+    radius: float,
+) -> StatedContact:
+    """A contact with a face or a corner of a round peg about a center, of a radius in mm."""
+    number, (x, y), face = contact["peg"], center, contact.get("face")
+    sine, cosine = (arb(pose["theta_deg"]) / 180).sin_cos_pi()
+    local = turned(exact_point(x - pose["x"], y - pose["y"]), cosine, -sine)
+    local = (-local[0], local[1]) if mirrored else local
+    side = outline.faces.get(contact["corner"] if face is None else face)
+    if side is None:
+        return StatedContact(number, exact_point(x, y), exact_point(0.0, 0.0), float("inf"), False)
+    if face is None:
+        way, inside = (local[0] - side.start[0], local[1] - side.start[1]), True
+        off = abs(norm(way) - radius)
+    else:
+        way, off = side.outward(local), abs(side.gap(local) - radius)
+        inside = bool(abs(side.distance(local) - radius) < AGREEMENT)
+    size = norm(way)
+    normal = way[0] / size, way[1] / size
+    normal = turned((-normal[0], normal[1]) if mirrored else normal, cosine, sine)
+    at = arb(x) - radius * normal[0], arb(y) - radius * normal[1]
+    return StatedContact(number, at, normal, float(off.upper()), inside)
+
+
 def touching_faults(contacts: Sequence[StatedContact], on_wall: Sequence[int], wall: str) -> Iterator[str]:
-    """Contacts that do not touch what they are said to touch, or stand there twice, or lack the wall's first end.
+    """Contacts that do not touch as stated, are stated twice, or lack the wall's first end.
 
     The pegs ``on_wall`` are ends of the contact with what is called ``wall``.
     """
     ends = [one.peg for one in contacts if one.peg in on_wall]
     if ends != list(on_wall[: len(ends)]):
-        yield f"does not tell the ends on the {wall} from the first on"
+        yield f"does not name the ends on the {wall} from the first on"
     if len({(one.peg, *(round(float(part.mid()), 5) for part in one.at)) for one in contacts}) < len(
         contacts
     ):
@@ -102,7 +142,7 @@ def stop_of(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float |
     separation : the travel there, in mm.
     """
     moved = [peg for peg in pegs if toolkit.carrier(peg.carrier).travel is not None]
-    still = [peg for peg in pegs if peg not in moved and not peg.is_on_wall]
+    still = [peg for peg in pegs if peg not in moved and toolkit.carrier(peg.carrier).contact.is_placed]
     moving, tip = toolkit.carrier(moved[0].carrier), moved[0]
     assert moving.travel is not None
     if toolkit.clamping < 0:
@@ -117,13 +157,37 @@ def stop_of(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float |
         # It moves against its unit vector, and meets what lies there.
         if square > 0.0 and along <= 0.0:
             ends.append(separation + min(along + sqrt(square), APART))
-    if toolkit.wall is not None and uy > 0.0:
+    if WALL_END in toolkit.contacts and uy > 0.0:
         ends.append(separation + moving.peg_radius - tip.y)
     least = max(ends)
     return None if least == -inf else least
 
 
 Array = NDArray[np.float64]
+# No unit. A force above minus this, per unit of clamping force, presses.
+PRESSES = 1e-9
+
+
+def balances(wrenches: Array, spare: float = 1e-9) -> bool:
+    """Whether factors of 0 or more make wrenches (4, K) add up to (0, 0, 0, 1), what moves bearing one.
+
+    If some do, then at most four that are independent do (Caratheodory's theorem).
+    """
+    target = np.array([0.0, 0.0, 0.0, 1.0])
+    if not np.isfinite(wrenches).all():
+        # A peg that is said to stand in the centre of an arc has no normal.
+        return False
+    for size in range(1, min(wrenches.shape[1], 4) + 1):
+        for chosen in combinations(range(wrenches.shape[1]), size):
+            some = wrenches[:, chosen]
+            forces = np.linalg.lstsq(some, target, rcond=None)[0]
+            if forces.min() > -PRESSES and np.abs(some @ forces - target).max() < spare * (
+                1.0 + forces.sum()
+            ):
+                return True
+    return False
+
+
 # Places looked at on each segment; corners of the polygon in it for a whole circle, at least.
 POINTS, CORNERS = 8, 64
 

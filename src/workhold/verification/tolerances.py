@@ -34,43 +34,46 @@ from flint import arb
 
 __all__ = ["Finding", "number", "rule"]
 
-# mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at most this; a
-# contact may lie so far past a tangent joint, and lies more than this inside any other end.
+# mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at
+# most this; a contact may lie so far past a tangent joint, and lies more than this inside any other end.
 HAIR = 1e-9
 # mm. The body of a clamp, which touches the part at its tip, may enter it by at most this.
 BODY_SLACK = 1e-7
-# No unit. Sides whose normals at their joint agree to this in both components meet tangentially: the angle in radians by
-# which the rounded coordinates and bulges of a drawing may turn them.
+# No unit. Sides whose normals at their joint agree to this in both components meet tangentially: the angle in
+# radians by which the rounded coordinates and bulges of a drawing may turn them.
 TANGENT = 1e-5
-# mm. An edge or none may be counted at a joint that is tangent, or nearly so, where the ends of contact features are farther
-# apart; so it may beside a hollow whose contact feature is about as long as ``HAIR``.
+# mm. An edge or none may be counted at a joint that is tangent, or nearly so, where the ends of contact
+# features are farther apart; so it may beside a hollow whose contact feature is about as long as ``HAIR``.
 SAME_END = 9e-7
 # mm. A peg fills a hollow whose radius exceeds its own by no more than this: no place there is a contact.
 FILLED = 5e-7
-# No unit. The least share of a peg in the closure, the shares scaled to sum 1: 0 when three normals meet in one point.
+# No unit. The least share of a peg in the closure, the shares scaled to sum 1: 0 when three normals meet in
+# one point.
 LEAST_SHARE = 1e-9
-# No unit. The least clamping force, the shares scaled to sum 1: 0 at a double solution of the contact equations, where the
-# rounding of a drawing alone leaves up to 1e-7 or so.
+# No unit. The least clamping force, the shares scaled to sum 1: 0 at a double solution of the contact
+# equations, where the rounding of a drawing alone leaves up to 1e-7 or so.
 LEAST_CLAMPING = 1e-6
-# No unit. Of two clamps each pushes with more than this part of the force on its face; with less it grazes the workpiece.
+# No unit. Of two clamps each pushes with more than this part of the force on its face; with less it grazes
+# the workpiece.
 LEAST_PUSH = 1e-6
 # No unit. The most a peg is pressed with per unit of a clamp's force.
 MOST_FORCE = 1e6
-# No unit. With two clamps the wrenches of the locators, moments in parts of L, have a larger determinant than this: with
-# less the pose is a double root, which a rounded drawing leaves at 1e-7 or so.
+# No unit. With two clamps the wrenches of the locators, moments in parts of L, have a larger determinant than
+# this: with less the pose is a double root, which a rounded drawing leaves at 1e-7 or so.
 LEAST_SEAT = 1e-6
-# No unit. A locator's force per unit of a clamp's this near to zero is zero. A clamp whose least such force, as a share of
-# all and per unit of that on its face, is more holds the part without the other.
+# No unit. A locator's force per unit of a clamp's this near to zero is zero. A clamp whose least such force,
+# as a share of all and per unit of that on its face, is more holds the part without the other.
 NO_REACTION = 1e-9
-# Degrees. Of the pairs of clamps of a seat whose freedom is the largest but for this the one of the largest margin stands
-# for all.
+# Degrees. Of the pairs of clamps of a seat whose freedom is the largest but for this the one of the largest
+# margin stands for all.
 SAME_FREEDOM = 1e-4
 # No unit. Of five wrenches those nearer than this to a plane through three of them are on it.
 FLAT = 1e-12
-# No unit. The sizes of the four minors, moments in parts of L, sum to more than this; with less, the normals meet in one
-# point or are parallel up to the rounding of the drawing, and four such contacts close nothing.
+# No unit. The sizes of the four minors, moments in parts of L, sum to more than this; with less, the normals
+# meet in one point or are parallel up to the rounding of the drawing, and four such contacts close nothing.
 LEAST_SPAN = 1e-7
-# mm. What is this near to a wall, or enters it by so much, lies on it; the contact with a wall is longer than the second.
+# mm. What is this near to a wall, or enters it by so much, lies on it; the contact with a wall is longer than
+# the second.
 FLUSH, LEAST_FLUSH = 1e-7, 1e-6
 # Radians and mm. Fixtures in the same holes with orientations and places nearer than this are the same.
 SAME = 1e-6
@@ -82,13 +85,15 @@ WHOLE = 1e-9
 
 # mm or degrees. Places and angles written in a file agree with the derived ones to this.
 AGREEMENT = 1e-6
-# No unit, and for each square of the clamp amplification. Forces and figures of quality written in a file agree with the
-# derived ones to these parts of themselves, and a hair of their unit. They are written with twelve digits; see ``figures``.
+# No unit, and for each square of the clamp amplification. Forces and figures of quality written in a file
+# agree with the derived ones to these parts of themselves, and a hair of their unit. They are written with
+# twelve digits; see ``figures``.
 FIGURE_AGREEMENT = 1e-7
 ROUNDING = 1e-13
 
-# What is warned of (mm, no unit, times the jaw force, times the sum of the tolerances), what makes a fixture none for a
-# workshop, and what counts against one (degrees, shares, times the jaw force, points); docs/quality.md.
+# What is warned of (mm, no unit, times the jaw force, times the sum of the tolerances), what makes a fixture
+# none for a workshop, and what counts against one (degrees, shares, times the jaw force, points);
+# docs/quality.md.
 NEAR_EDGE, WEAK_CLOSURE, STRONG_PEG, LARGE_LOCATION_ERROR = 1.0, 0.02, 3.0, 5.0
 UNFIT_LOCATION_ERROR, UNFIT_CLOSURE = 50.0, 0.0025
 SMALL_CAPTURE, CLOSE_READING = 1.0, 0.1

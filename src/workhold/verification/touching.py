@@ -8,10 +8,11 @@ Rules, with the hair of ``tolerances``:
   every other segment. So where the feature is trimmed, because the peg comes to touch a second face across
   its own, the contact lies so far inside too.
 
-Theorem: let a peg's centre p be at distance rho on the outer side of the line or circle of its face, its foot
-inside the face, and every other segment farther than rho (of a flat: than the peg radius, which is no less).
-Then p lies on the trimmed contact feature, off its ends, and outside the workpiece. For the open segment from
-the foot to p starts on the outer side and meets no part of the outline, so it never enters the material.
+Theorem: let a peg's centre p be at distance rho on the outer side of the line or circle of its face, with its
+foot inside the face. Let every other segment be farther than rho, or with a flat farther than the peg radius,
+which is no less. Then p lies on the trimmed contact feature, off its ends, and outside the workpiece. For the
+open segment from the foot to p starts on the outer side and meets no part of the outline, so it never enters
+the material.
 
 Along its way a peg enters a side where its centre is nearer to it than the peg's radius. That changes only
 where the way meets the boundary of (side + disc): lines beside a straight side, circles inside and outside an
@@ -70,8 +71,8 @@ Barrier = tuple[arb, arb]
 def end_distance(side: Side, radius: arb, beside: Iterable[Barrier], center: Point) -> arb:
     """Distance in mm along its contact feature from a peg's centre to the nearer end.
 
-    A whole circle has no end; half its circumference counts. Nothing trims it: whatever else there is lies beyond the
-    material behind it.
+    A whole circle has no end; half its circumference counts. Nothing trims it: whatever else there is lies
+    beyond the material behind it.
     """
     if isinstance(side, ArcSide) and side.whole:
         return arb.pi() * side.reach(radius)
@@ -85,7 +86,7 @@ def end_distance(side: Side, radius: arb, beside: Iterable[Barrier], center: Poi
 def edge_distances(
     side: Side, radius: arb, beside: Iterable[Barrier], center: Point, smooth: tuple[bool, bool]
 ) -> list[arb]:
-    """Distances to every barrier and to the ends of the side that are no tangent joints, as ``smooth`` says of its two."""
+    """Distances to every barrier and to those ends of the side that ``smooth`` calls no tangent joints."""
     if isinstance(side, ArcSide) and side.whole:
         return []
     slacks = side.slacks(center, radius)
@@ -95,7 +96,7 @@ def edge_distances(
 
 
 def barriers(side: Side, radius: arb, body: arb, others: Iterable[Side]) -> list[Barrier]:
-    """The barriers on the way along a side of a peg whose centre is ``radius`` mm from it; none on a whole circle.
+    """The barriers on the way along a side of a peg ``radius`` mm from it; none on a whole circle.
 
     ``body`` is the peg's own radius in mm, more than that where its flat lies on the side.
     """
@@ -133,7 +134,7 @@ def way_point(side: Side, radius: arb, place: arb) -> Point:
 
 
 def entered(side: Side, radius: arb, other: Side, near: arb) -> list[Barrier]:
-    """Ranges of places on the way along a side whose points are nearer than ``near`` mm to another side, in order."""
+    """Ranges of places on the way along a side that are nearer than ``near`` mm to another side, in order."""
     extent = length_of(side, radius)
     crossings = []
     for point in crossing_points(side, radius, other, near):
@@ -152,7 +153,7 @@ def entered(side: Side, radius: arb, other: Side, near: arb) -> list[Barrier]:
 
 
 def crossing_points(side: Side, radius: arb, other: Side, near: arb) -> Iterator[Point]:
-    """Where the line or circle of a peg's way meets the lines and circles at ``near`` mm from another side."""
+    """Where a peg's way meets the lines and circles at ``near`` mm from another side."""
     circles = [(other.start, near), (other.end, near)]
     if isinstance(other, ArcSide):
         circles += [(other.center, other.radius + near), (other.center, other.radius - near)]
@@ -165,7 +166,7 @@ def crossing_points(side: Side, radius: arb, other: Side, near: arb) -> Iterator
 
 
 def on_line(side: Side, radius: arb, normal: Point, level: arb) -> Iterator[Point]:
-    """Points of the way on the line of all x with normal . x = level; none when it may be parallel to a straight way."""
+    """Points of the way with normal . x = level; none where that may be parallel to a straight way."""
     if isinstance(side, ArcSide):
         yield from on_ring(side, radius, normal, (level - dot(normal, side.center)) / side.reach(radius))
         return
@@ -296,7 +297,7 @@ def clear_within(contact: BallContact, center: Point, sides: Sequence[Side], rea
 
 
 def steepness(contact: BallContact, side: Side, around: Point) -> arb:
-    """Bound, 1 or less, on how much a side's clearance changes per mm that the peg slides, its centre in a box.
+    """A bound of 1 or less on the change of a side's clearance per mm that the peg slides in a box.
 
     It is the cosine between the peg's way and the way from the side's nearest point to the peg's centre.
     """

@@ -1,12 +1,13 @@
-"""Whether an undecided entry of a proof is a real place: four contacts, or two chords, that there may be.
+"""Whether an undecided entry of a proof is a real place: four contacts, or two chords, that may exist.
 
-The entry names faces, holes and a range of orientations. At these orientations the centres of pegs of one jaw are known from
-two of them: in the workpiece's frame each moves on the line or circle of its face moved out by the peg radius, and the first
-on that of any other one moved back by the step between their holes; where the two cross is found in balls. Every other peg
-must then touch its face, inside the ends; pegs of two jaws must stand in rows as far apart as the entry says, and the
-smallest gap apart. What certainly is not so anywhere in the range is a fault; where ways run parallel nothing is said.
-What is undecided need not be a solution, but may miss one by as much as pegs move within the range: it was not excluded
-because the search knew no better.
+The entry names faces, holes and a range of orientations. In the workpiece's frame each peg's centre moves on
+the line or circle of its face, moved out by the peg radius. The first peg of a jaw also lies on that of any
+other one, moved back by the step between their holes. Where the two cross is found in balls, and so the
+centres of all pegs of the jaw are known. Every other peg must then touch its face, inside the ends. Pegs of
+two jaws must stand in rows as far apart as the entry says, and the smallest gap apart.
+
+What certainly is not so anywhere in the range is a fault. Where ways run parallel nothing is said. An
+undecided entry need not be a solution: it may miss one by as much as pegs move within the range.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from math import hypot, radians
 from attrs import evolve, frozen
 from flint import arb, ctx
 
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Arrangement, Carrier
 from workhold.model.query import Query
 from workhold.model.search_report import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
@@ -41,9 +43,10 @@ from workhold.verification.touching import on_circle, on_line
 
 __all__ = ["undecided_faults"]
 
-# mm. Features end so much farther out while contacts are sought, and contacts are as far off as their errors are.
+# mm. Features end so much farther out while contacts are sought; contacts are off by their errors.
 LOOSE = 10 * AGREEMENT
-# No unit. Lines with a sine less than this between them may be taken for parallel, and the others cross where they do.
+# No unit. Lines with a sine less than this between them may be taken for parallel, and the others cross where
+# they do.
 PARALLEL = 1e-7
 # Degrees. An orientation is written to 1e-10.
 WRITTEN = 1e-9
@@ -52,8 +55,16 @@ REASONS = (AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED)
 
 @frozen(eq=False)
 class TouchingPeg:
-    """A peg that touches a side: the side, how far in mm its centre is from that, the step to it from the first peg in the
-    workpiece's frame in mm, its column, and how far in mm it may be off."""
+    """A peg that touches a side.
+
+    Parameters
+    ----------
+    side : what it touches.
+    radius : how far in mm its centre is from the side.
+    step : from the first peg to it in the workpiece's frame, in mm.
+    column : of its hole.
+    loose : how far in mm it may be off.
+    """
 
     side: Side
     radius: arb
@@ -69,7 +80,7 @@ def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str
     with ctx.workprec(PRECISIONS[0]):
         outline = BallOutline.of(query.workpiece)
         for number, entry in enumerate(entries, 1):
-            parts = single_entries(entry, query) if query.toolkit.needs_pairs else ((entry, query),)
+            parts = single_entries(entry, query) if query.toolkit.travels > 1 else ((entry, query),)
             fault = next(filter(None, (entry_fault(*part, outline) for part in parts)), "")
             if fault:
                 yield f"undecided candidate {number} of the proof {fault}"
@@ -78,14 +89,13 @@ def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str
 def entry_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     """What is wrong with an entry of four contacts or two chords; empty when nothing is."""
     fault = written_fault(entry, query, outline)
-    if query.toolkit.wall is None:
+    if WALL_END not in query.toolkit.contacts:
         fault = fault or holes_fault(entry, query) or place_fault(entry, query, outline)
     return fault
 
 
 def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, Query]]:
-    """The contacts of a seat and a clamp that an entry of two clamps is made of, one or two, each with a query of that clamp
-    alone."""
+    """The entries of one clamp that an entry of two clamps consists of, each with a query of that clamp."""
     _, *directions = entry.type.split()
     alone = {one.direction: (one.name, way) for way in query.toolkit.ways for one in way.arrangements}
     asked = (
@@ -122,7 +132,7 @@ def arrangement_of(entry: Undecided, query: Query) -> Arrangement:
 
 
 def along_x(entry: Undecided, query: Query) -> tuple[Undecided, list[Carrier]]:
-    """An entry with what each of its four pegs stands on, on a plate as it is turned so that its clamp moves in -x."""
+    """An entry turned so that its clamp moves in -x, with the carriers of its four pegs."""
     arrangement, carriers = arrangement_of(entry, query), query.toolkit.carriers
     if is_of_chords(entry) and arrangement.pegs != (2, 2):
         pegs = [carriers[0]] * 4
@@ -224,13 +234,13 @@ def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
 
 
 def outline_size(query: Query) -> float:
-    """How far apart in mm any two points of the workpiece, or pegs that touch it, are at most, or a little more."""
+    """An upper bound in mm of the distance of two points of the workpiece, or of pegs that touch it."""
     x0, y0, x1, y1 = query.workpiece.bounds
     return hypot(x1 - x0, y1 - y0) + 2.0 * max(carrier.peg_radius for carrier in query.toolkit.carriers)
 
 
 def first_pegs(group: Sequence[TouchingPeg]) -> list[Point] | None:
-    """Where the first peg of a jaw may be when all its pegs touch; None when that may be anywhere along a way."""
+    """Where the first peg of a jaw may be when all its pegs touch; None for anywhere along a way."""
     one = group[0]
     other = next((peg for peg in group[1:] if are_across(one, peg)), None)
     if other is None:
@@ -247,7 +257,7 @@ def first_pegs(group: Sequence[TouchingPeg]) -> list[Point] | None:
 
 
 def are_across(one: TouchingPeg, other: TouchingPeg) -> bool:
-    """Whether the ways of two pegs of one jaw certainly are no nearly parallel lines and no nearly concentric circles."""
+    """Whether two pegs of one jaw certainly have ways that are not nearly parallel or concentric."""
     a, b = one.side, other.side
     if isinstance(a, LineSide) and isinstance(b, LineSide):
         return bool(abs(cross(a.tangent, b.tangent)) > PARALLEL)
@@ -282,7 +292,7 @@ def may_touch(peg: TouchingPeg, first: Point) -> bool:
 
 
 def on_row(moved: TouchingPeg, tail: Point, up: arb, turn: Point) -> list[Point] | None:
-    """Where a peg may be that stands ``up`` mm above another in the toolkit; None where its side runs along."""
+    """Where a peg may be that stands ``up`` mm above another; None where its side runs along the row."""
     side, across = moved.side, turned((arb(0), arb(1)), turn[0], -turn[1])
     if isinstance(side, LineSide):
         slope = dot(across, side.tangent)

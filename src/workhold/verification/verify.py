@@ -22,10 +22,10 @@ from workhold.verification.figures import Measure, figure_missing, pair_numbers,
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
-from workhold.verification.repeats import Seen, Turning, pattern_faults
+from workhold.verification.repeats import KnownFixtures, PartRotations, pattern_faults
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
-from workhold.verification.seat_clamps import Standing
+from workhold.verification.seat_clamps import SeatOnPlate
 from workhold.verification.seating import SeatingJudge
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 from workhold.verification.touching import touching_findings
@@ -66,7 +66,7 @@ class Ruling:
 def verify_fixture(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, contact_margin: float = 0.0
 ) -> Ruling:
-    """Prove or refute one fixture from workpiece, toolkit, pegs and faces alone.
+    """Proves or refutes one fixture from workpiece, toolkit, pegs and faces alone.
 
     Parameters
     ----------
@@ -159,24 +159,37 @@ class Judge:
     ) -> Iterator[Finding]:
         """Whether the contacts of a fixture close at a pose, with the forces and figures that are written."""
         hardware, pair = self.hardware, fixture.pair
-        balance: Balance | SeatBalance
         if pair is None:
             balance = Balance.of(contacts, pose, self.query.toolkit.clamping)
             loose = list(closure_findings(balance, self.wrench_length, hardware.names, hardware.slack_words))
-        else:
-            balance = SeatBalance.of(contacts, pose)
-            yield from balance.push_findings(self.wrench_length)
-            loose = list(balance.closure_findings())
-        yield from loose
-        if loose and (is_proven or pair is not None):
+            yield from loose
+            if not (loose and is_proven):
+                yield from self.figure_findings(fixture, contacts, pose, measure, balance)
             return
-        if pair is not None and isinstance(balance, SeatBalance):
-            yield from pair_numbers(pair, hardware.names, balance)
-        figures = measure.figures(contacts, hardware.shared_faces(fixture, contacts), pose, balance)
-        yield from written_numbers(fixture, hardware.names, balance, figures)
-        if pair is not None and isinstance(balance, SeatBalance) and is_proven:
-            standing = Standing.of(fixture, contacts, pose, self.query, hardware, measure.outline)
-            yield from standing.pair_findings(fixture, pair, contacts, pose, balance)
+        seat = SeatBalance.of(contacts, pose)
+        yield from seat.push_findings(self.wrench_length)
+        loose = list(seat.closure_findings())
+        yield from loose
+        if loose:
+            return
+        yield from pair_numbers(pair, hardware.names, seat)
+        yield from self.figure_findings(fixture, contacts, pose, measure, seat)
+        if is_proven:
+            standing = SeatOnPlate.of(fixture, contacts, pose, self.query, hardware, measure.outline)
+            yield from standing.pair_findings(fixture, pair, contacts, pose, seat)
+
+    def figure_findings(
+        self,
+        fixture: Fixture,
+        contacts: Sequence[BallContact],
+        pose: BallPose,
+        measure: Measure,
+        balance: Balance | SeatBalance,
+    ) -> Iterator[Finding]:
+        """Whether forces and figures of quality in the file are those derived from a balance."""
+        names, faces = self.hardware.names, self.hardware.shared_faces(fixture, contacts)
+        figures = measure.figures(contacts, faces, pose, balance)
+        yield from written_numbers(fixture, names, balance, figures)
 
 
 def flat_findings(
@@ -199,7 +212,8 @@ def flat_findings(
 
 # What a result in any toolkit alone cannot show, beside what ``not_shown`` says.
 NOT_SHOWN = (
-    "how many candidates there were and what became of each, beyond what must add up, and which others are undecided",
+    "how many candidates there were and what became of each, beyond what must add up, and which others are "
+    "undecided",
     "how much work the search was: its cells and statistics, beyond their order",
     "whether a search that says it was interrupted was",
 )
@@ -258,11 +272,16 @@ class Verification:
 
 def not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
     """What a result in a toolkit, perhaps with seating, alone cannot show; answering its query again does."""
-    left_out = "seats" if toolkit.needs_pairs else "fixtures"
+    left_out = "seats" if toolkit.travels > 1 else "fixtures"
     yield f"whether {left_out} were left out, with all counts adjusted"
-    yield f"whether the query was wider: what is listed also meets one with {ToolkitRules(toolkit).wider_words}"
+    yield (
+        f"whether the query was wider: what is listed also meets one with {ToolkitRules(toolkit).wider_words}"
+    )
     if is_seated:
-        yield "whether a fixture has further seats, or a lower pass, and how far its way out, cage, placing and depths go"
+        yield (
+            "whether a fixture has further seats, or a lower pass, and how far its way out, cage, placing "
+            "and depths go"
+        )
     yield from NOT_SHOWN
 
 
@@ -271,7 +290,7 @@ def no_progress(fraction: float, unproven: int) -> None:
 
 
 def verify(result: Result, progress: Progress = no_progress) -> Verification:
-    """Derive every fixture of a result again, in ball arithmetic, from workpiece, toolkit, pegs and faces alone.
+    """Derives every fixture of a result again in balls, from workpiece, toolkit, pegs and faces alone.
 
     Examples
     --------
@@ -286,7 +305,7 @@ def verify(result: Result, progress: Progress = no_progress) -> Verification:
 
 
 def verify_file(path: str | Path, progress: Progress = no_progress) -> Verification:
-    """Derive every fixture of a result file again, as :func:`verify` does, and compare every number written with it.
+    """Derives every fixture of a result file again, and compares every number written; see :func:`verify`.
 
     Raises
     ------
@@ -300,8 +319,8 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     """Verify what a result claims."""
     query, everything = listing.query, listing.fixtures
     judge, seating = Judge(query), SeatingJudge(query)
-    turning = Turning.of(query.workpiece)
-    seen = Seen.of(turning, judge.hardware)
+    turning = PartRotations.of(query.workpiece)
+    seen = KnownFixtures.of(turning, judge.hardware)
     rulings: list[tuple[Verdict, str]] = []
     bits, doubtful = PRECISIONS[0], 0
     for place, fixture in enumerate(everything):
@@ -342,9 +361,11 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     )
 
 
-def distinct_faults(listing: Listing, seen: Seen) -> Iterator[str]:
-    """Numbers of distinct fixtures that are not those of the fixtures listed, or cannot be where more are found: each of
-    those that are not listed makes a set of its own, or belongs to one."""
+def distinct_faults(listing: Listing, seen: KnownFixtures) -> Iterator[str]:
+    """Numbers of distinct fixtures that the fixtures listed contradict.
+
+    Where more are found than listed, each of the others makes a set of its own, or belongs to one.
+    """
     for kind, counts in listing.counts.items():
         sets, distinct, others = seen.sets.get(kind, 0), listing.distinct[kind], listing.found[kind] - counts
         if others > 0 and not sets <= distinct <= sets + others:

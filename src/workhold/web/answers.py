@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields, written
-from workhold.fixels.carrier import Carrier, standoff
+from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
+from workhold.fixels.pegs import standoff
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Segment
+from workhold.geometry.segment import Arc, Box, Segment
 from workhold.model.clamps import ShownClamp, order_words
 from workhold.model.fixture import Fixture
 from workhold.model.quality import FIGURES
@@ -43,15 +44,15 @@ __all__ = [
     "toolkit_answer",
 ]
 
-# Undecided candidates told of a proof; the result file has them all.
+# Undecided candidates of a proof that are listed; the result file has them all.
 MOST_UNDECIDED = 50
-# Segments of a drawing or a layer, parts, gaps and layers of a file that are told to be shown.
+# Segments of a drawing or a layer, parts, gaps and layers of a file that are sent to be shown.
 MOST_STROKES, MOST_PARTS, MOST_GAPS, MOST_LAYERS = 20_000, 200, 500, 60
 PLACE = re.compile(r"\((-?\d[\d.eE+-]*), (-?\d[\d.eE+-]*)\)")
 
 
 def place_in(sentence: str) -> dict[str, float] | None:
-    """The first place (x, y) that a sentence names, if any.
+    """Finds the first place (x, y) that a sentence names, if any.
 
     >>> place_in("loop 0 crosses itself at (1.5, -2): mend it.")
     {'x': 1.5, 'y': -2.0}
@@ -64,7 +65,7 @@ def place_in(sentence: str) -> dict[str, float] | None:
 
 
 def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    """A part with its segments and faces."""
+    """Describes a part with its segments and faces."""
     face_of = {number: face.number for face in workpiece.faces for number in face.segments}
     segments, number = [], 0
     for index, loop in enumerate(workpiece.loop_segments):
@@ -85,7 +86,7 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
 
 
 def shape(segment: Segment, bulge: float) -> dict[str, Any]:
-    """Ends and circle of a segment."""
+    """Describes ends and circle of a segment."""
     arc = segment if isinstance(segment, Arc) else None
     return {
         "start": list(segment.start),
@@ -97,14 +98,14 @@ def shape(segment: Segment, bulge: float) -> dict[str, Any]:
 
 
 def face_answer(number: int, segment: Segment) -> dict[str, Any]:
-    """A face: its size is the length of a line and the radius of an arc; a hollow arc is concave."""
+    """Describes a face: its size is the length of a line or the radius of an arc; a hollow arc is concave."""
     if isinstance(segment, Arc):
         return {"number": number, "kind": "arc", "size": segment.radius, "concave": segment.sign < 0}
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
 
 
 def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
-    """Chains as lists of x, y in mm and bulge, as many as are shown."""
+    """Describes chains as lists of x, y in mm and bulge, as many as are shown."""
     strokes, room = [], MOST_STROKES
     for chain in chains:
         room -= len(chain.bulges)
@@ -117,7 +118,7 @@ def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
 
 
 def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
-    """What a file holds and leaves open; strokes and outlines are chains of x, y in mm and bulge."""
+    """Describes what a file holds and leaves open; strokes and outlines are chains of x, y in mm, bulge."""
     return {
         "part": part,
         "error": refusal or None,
@@ -143,7 +144,7 @@ def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> di
 
 
 def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
-    """A toolkit that comes with the program; its kind is one of those the page has fields for."""
+    """Describes a preset; its kind is one of those that the page has fields for."""
     from workhold.web.toolkits import page_kind
 
     given = toolkit_fields(loaded.toolkit)
@@ -160,7 +161,7 @@ def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
 
 
 def figures_answer() -> list[dict[str, Any]]:
-    """The figures of quality."""
+    """Describes the figures of quality."""
     return [
         {
             "key": figure.key,
@@ -177,7 +178,7 @@ def figures_answer() -> list[dict[str, Any]]:
 def rows_answer(
     table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, ranks: Iterable[int]
 ) -> list[dict[str, Any]]:
-    """Fixtures as rows; ``ranks`` are those of the table's fixtures."""
+    """Describes fixtures as rows; ``ranks`` are those of the table's fixtures."""
     return [
         {"rank": rank, **fixture_answer(fixture_at(table, toolkit, number, workpiece), workpiece, toolkit)}
         for number, rank in enumerate(ranks)
@@ -185,10 +186,11 @@ def rows_answer(
 
 
 def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
-    """What shows of each carrier, and after them of each clamp, which has no lattice: its body is under ``clamp``.
+    """Describes what is shown of each carrier, then of each wall and each clamp.
 
-    ``origin`` is its hole in column 0 and row 0, ``pegs`` are the numbers of its pegs, ``used_columns`` and ``used_rows``
-    those of them and of clamps; ``measured`` are the upper or right ends of the axes that its travel is measured between.
+    ``origin`` is the hole in column 0 and row 0, and ``pegs`` are the numbers of the pegs. ``used_columns``
+    and ``used_rows`` are those of the pegs and of clamps. ``measured`` are the upper or right ends of the
+    axes between which the travel is measured. A clamp has no lattice; its body is under ``clamp``.
     """
     ends = [(one.setting, [list(high) for _, high in one.axes]) for one in seen.measured]
     measured = {setting.carrier.name: axes for setting, axes in ends if setting.tip is None}
@@ -201,7 +203,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
             "pitch": each.carrier.pitch,
             "columns": [each.columns[0], each.columns[-1]],
             "rows": [each.rows[0], each.rows[-1]],
-            "plate": [each.plate.x0, each.plate.y0, each.plate.x1, each.plate.y1],
+            **body_answer(each.plate),
             "hole_radius": each.hole_radius,
             "names_at": each.names_at,
             "pegs": [next(numbers) for _ in each.pegs],
@@ -220,7 +222,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     walls = [
         {
             **lattice_of_none(each.carrier),
-            "plate": [each.bar.x0, each.bar.y0, each.bar.x1, each.bar.y1],
+            **body_answer(each.bar),
             "pegs": [next(numbers) for _ in each.ends],
             "peg_radius": 0.0,
             "clamping": None,
@@ -232,7 +234,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     clamps = [
         {
             **lattice_of_none(each.carrier),
-            "plate": [each.room.x0, each.room.y0, each.room.x1, each.room.y1],
+            **body_answer(each.room),
             "pegs": [next(numbers)],
             "peg_radius": each.carrier.peg_radius,
             "clamping": each.clamping,
@@ -243,7 +245,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
                 "tip": [each.tip.x, each.tip.y],
                 "draws_back": draws_back(each),
                 "bolt_radius": plate.hole_radius,
-                "line": [plate.plate.x0, plate.plate.y0, plate.plate.x1, plate.plate.y1],
+                "line": corners(plate.plate),
             },
         }
         for each, axes in zip(seen.clamps, of_clamps, strict=True)
@@ -251,15 +253,25 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     return lattices + walls + clamps
 
 
+def body_answer(body: Box) -> dict[str, list[float]]:
+    """Describes the corners of what carries the pegs: a plate, a wall, or the room of a clamp."""
+    return {"plate": corners(body)}
+
+
+def corners(box: Box) -> list[float]:
+    """Lists x and y of the lower left and the upper right corner of a rectangle."""
+    return [box.x0, box.y0, box.x1, box.y1]
+
+
 def stroke_of(clamp: ShownClamp) -> float:
-    """How far in mm the tip is out of the hole, along the way that it clamps."""
+    """Measures how far in mm the tip is from the hole, in the direction in which it clamps."""
     assert clamp.hole is not None
     (x, y), (dx, dy) = clamp.hole, clamp.clamping
     return (clamp.tip.x - x) * dx + (clamp.tip.y - y) * dy
 
 
 def is_reached(clamp: ShownClamp) -> bool:
-    """Whether the tip is where the clamp can reach from its hole; so it is where only the line is told."""
+    """Whether the clamp reaches its tip from its hole; always so where only its line is known."""
     travel = clamp.carrier.travel
     if clamp.hole is None or travel is None or travel.most is None:
         return True
@@ -267,7 +279,9 @@ def is_reached(clamp: ShownClamp) -> bool:
 
 
 def draws_back(clamp: ShownClamp) -> float | None:
-    """How far in mm a clamp can be drawn back from where it clamps; None where only its line is told."""
+    """Measures how far in mm a clamp can be drawn back from where it clamps; None where only its line is
+    known.
+    """
     travel = clamp.carrier.travel
     if clamp.hole is None or travel is None or travel.most is None:
         return None
@@ -275,7 +289,7 @@ def draws_back(clamp: ShownClamp) -> float | None:
 
 
 def lattice_of_none(carrier: Carrier) -> dict[str, Any]:
-    """The holes of what has none of its own."""
+    """Describes the lattice of a carrier without holes."""
     return {
         "letter": "",
         "origin": carrier.place(0, 0),
@@ -290,26 +304,21 @@ def lattice_of_none(carrier: Carrier) -> dict[str, Any]:
 
 
 def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
-    """What fixtures of a toolkit can be told apart by: what the page calls each, and in words."""
+    """Lists the arrangements of a toolkit's fixtures: the title of each on the page, and its description."""
     return [{"title": one.title, "words": arrangement_words(one, toolkit)} for one in toolkit.arrangements]
 
 
-def settings_answer(fixture: Fixture, toolkit: Toolkit) -> list[dict[str, Any]]:
-    """The lengths to set, each with its sign and its name."""
-    return [
-        {"sign": one.sign, "name": one.name, "length": one.length} for one in settings_of(fixture, toolkit)
-    ]
-
-
 def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
-    """A fixture by itself, without a rank."""
-    pair = fixture.pair
+    """Describes a fixture, without its rank."""
     return {
         "type": fixture.type,
         "title": toolkit.arrangement(fixture.type, fixture.direction).heading,
-        "settings": settings_answer(fixture, toolkit),
+        "settings": [
+            {"sign": one.sign, "name": one.name, "length": one.length}
+            for one in settings_of(fixture, toolkit)
+        ],
         "order": order_words(fixture),
-        "pairs": None if pair is None else pair.count,
+        "pairs": fixture.pair and fixture.pair.count,
         "mover": toolkit.moving.noun,
         "origin": toolkit.datum.name,
         "holes": [peg.hole for peg in fixture.pegs],
@@ -329,7 +338,7 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
 
 
 def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
-    """Outward normals and contacts of a fixture's pegs in the toolkit's frame."""
+    """Lists outward normals and contacts of a fixture's pegs in the toolkit's frame."""
     segments = {face.number: face.segment for face in workpiece.faces}
     normals, contacts = [], []
     for peg in fixture.pegs:
@@ -348,7 +357,7 @@ def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
 
 
 def proof_answer(proof: Proof) -> dict[str, Any]:
-    """The account of a search, with how many candidates are undecided and the first of them."""
+    """Describes the proof of a search, with how many candidates are undecided and the first of them."""
     entry = proof_entry(proof)
     return {
         **entry,
@@ -358,7 +367,7 @@ def proof_answer(proof: Proof) -> dict[str, Any]:
 
 
 def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
-    """Why there is no fixture."""
+    """Describes why there is no fixture."""
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,

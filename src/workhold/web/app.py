@@ -18,7 +18,7 @@ from workhold.errors import InputError
 from workhold.web import fixture_routes, job_routes, part_routes
 from workhold.web.answers import place_in
 from workhold.web.forms import sentence_of
-from workhold.web.guard import Guard, Hosts, Limits
+from workhold.web.guard import Guard, Hosts, ServerLimits
 from workhold.web.jobs import TooManyError
 from workhold.web.pool import BusyError, FailedError, StoppedError
 from workhold.web.state import ServerState, state_of
@@ -52,8 +52,10 @@ SENTENCES = {
 STATUSES = ("400", "401", "404", "408", "409", "413", "429", "500", "503")
 
 
-def create_app(limits: Limits | None = None, hosts: Hosts | None = None, token: str | None = None) -> FastAPI:
-    """The application.
+def create_app(
+    limits: ServerLimits | None = None, hosts: Hosts | None = None, token: str | None = None
+) -> FastAPI:
+    """Makes the application.
 
     Parameters
     ----------
@@ -61,7 +63,7 @@ def create_app(limits: Limits | None = None, hosts: Hosts | None = None, token: 
     hosts : names it may be called by; only those of this machine by default.
     token : a secret that every request must bring, or None.
     """
-    limits = limits or Limits()
+    limits = limits or ServerLimits()
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
@@ -72,7 +74,8 @@ def create_app(limits: Limits | None = None, hosts: Hosts | None = None, token: 
     app = FastAPI(
         title="workhold",
         version=__version__,
-        summary="Finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence and a stop.",
+        summary="Finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence "
+        "and a stop.",
         description="Lengths are in mm, angles in degrees, forces in N.",
         lifespan=lifespan,
         openapi_url="/api/openapi.json",
@@ -95,12 +98,12 @@ def create_app(limits: Limits | None = None, hosts: Hosts | None = None, token: 
 
 
 async def page(request: Request) -> Response:
-    """The page."""
+    """Sends the page."""
     return await static_file(request, "index.html")
 
 
 async def static_file(request: Request, path: str) -> Response:
-    """A file of the page."""
+    """Sends a file of the page."""
     file = state_of(request).files.get(path)
     if file is None:
         raise HTTPException(404, "There is no such page.")
@@ -111,7 +114,7 @@ async def static_file(request: Request, path: str) -> Response:
 
 
 def wrong(status: int, sentence: str, headers: dict[str, str] | None = None) -> JSONResponse:
-    """An error as an answer."""
+    """Makes the answer for an error."""
     more = {"Retry-After": "1"} if status in (429, 503) else {}
     if status in (408, 413):
         more["Connection"] = "close"
@@ -120,7 +123,7 @@ def wrong(status: int, sentence: str, headers: dict[str, str] | None = None) -> 
 
 
 def add_error_handlers(app: FastAPI) -> None:
-    """Turn every error into a status and one sentence."""
+    """Answers every error with a status and one sentence."""
 
     def on(error_class: type[Exception], status: int) -> None:
         async def handler(request: Request, error: Exception) -> Response:
@@ -152,12 +155,12 @@ def add_error_handlers(app: FastAPI) -> None:
     app.add_exception_handler(RequestValidationError, refused)
     app.add_exception_handler(HTTPException, plain)
     app.add_exception_handler(ClientDisconnect, left)
-    # The server's log tells what it was.
+    # The server's log says what it was.
     app.add_exception_handler(Exception, fault)
 
 
 def description(app: FastAPI) -> dict[str, Any]:
-    """The OpenAPI description, with this server's way to say what is wrong."""
+    """Makes the OpenAPI description, with this server's answers for errors."""
     if app.openapi_schema is None:
         schema = get_openapi(
             title=app.title,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import date
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from attrs import evolve, frozen
@@ -60,7 +61,10 @@ class FamilyForm(Form):
         tolerance = None if self.tolerance is None else self.tolerance.tolerance()
         parts = [form.workpiece(most_segments) for form in self.workpieces]
         asked = {"contact_margin": self.contact_margin, "ranking": ranking, "tolerance": tolerance}
-        return tuple((part.name, Query(part, toolkit, self.types, **asked)) for part in parts)  # type: ignore[arg-type]
+        return tuple(
+            (part.name, Query(part, toolkit, self.types, **asked))  # type: ignore[arg-type]
+            for part in parts
+        )
 
 
 @frozen(eq=False)
@@ -79,7 +83,7 @@ class FamilyFound:
     text: str
 
     def answer(self) -> dict[str, Any]:
-        """What the page shows."""
+        """Describes the family for the page."""
         from math import isfinite
 
         family = self.family
@@ -105,7 +109,7 @@ class FamilyFound:
         }
 
     def plan(self, setups: int | None) -> Plan:
-        """The plan with at most so many set-ups; None is the fewest.
+        """Returns the plan with at most so many set-ups; None is the fewest.
 
         Raises
         ------
@@ -119,7 +123,7 @@ class FamilyFound:
 
 
 def find_family(payload: tuple[tuple[str, Query], ...], order: Order) -> FamilyFound:
-    """Find a family; reports are ("progress", fraction, found)."""
+    """Finds a family; reports are ("progress", fraction, found)."""
     from workhold.family.family import Asked, family_of, family_text
 
     def progress(fraction: float, found: int) -> None:
@@ -156,7 +160,7 @@ def find_family(payload: tuple[tuple[str, Query], ...], order: Order) -> FamilyF
 
 
 def numbered(names: list[str]) -> list[str]:
-    """Names of which no two are the same.
+    """Numbers names that are repeated, so that no two are the same.
 
     >>> numbered(["a", "b", "a"])
     ['a', 'b', 'a (2)']
@@ -169,7 +173,7 @@ def numbered(names: list[str]) -> list[str]:
 
 @frozen(eq=False)
 class FamilyPaper:
-    """What to make of a family: one of :data:`PAPERS`, of the plan with at most so many set-ups, in a unit, of a day."""
+    """An order of one of :data:`PAPERS`: the plan of at most so many set-ups, in a unit, of a day."""
 
     kind: str
     found: FamilyFound
@@ -179,9 +183,9 @@ class FamilyPaper:
 
 
 def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
-    """The bytes of what was ordered."""
-    from workhold.drawing.scene import stacked
+    """Makes the bytes of what was ordered."""
     from workhold.family.pages import draw_curve, draw_setups
+    from workhold.presenting.papers import pages_bytes
     from workhold.units import unit_named
 
     found = payload.found
@@ -193,8 +197,4 @@ def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
     pages = draw_setups(
         found.plan(payload.setups), found.family.figure, payload.day, unit_named(payload.unit)
     )
-    if payload.kind == "sheets.svg":
-        return stacked(pages).encode("utf-8")
-    from workhold.drawing.pdf import svg_to_pdf
-
-    return svg_to_pdf(pages, payload.day)
+    return pages_bytes(pages, Path(payload.kind).suffix, payload.day)

@@ -60,7 +60,7 @@ def ranked(result: Result, rank: int) -> int:
 
 @router.get("", summary="One fixture")
 async def fixture(request: Request, name: str, rank: Rank, revision: Revision = None) -> dict[str, Any]:
-    """Its row, with contacts and outward normals in the vise frame."""
+    """The row of a fixture, with contacts and outward normals in the vise frame."""
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
     row = rows_answer(result.table.take(np.array([index])), result.workpiece, result.toolkit, [rank])[0]
@@ -131,8 +131,10 @@ async def paper(
     day: Annotated[date | None, Query(alias="date")] = None,
     revision: Revision = None,
 ) -> Response:
-    """Of a fixture; all but the picture wait for the search to be over. Lengths are in the unit asked for, loads JSON as in
-    a search, and the date is today's if not given."""
+    """A paper of a fixture; all but the picture wait for the search to be over.
+
+    Lengths are in the unit asked for, loads JSON as in a search, and the date is today's if not given.
+    """
     job = found_job(request, name)
     result = result_of_job(job, revision, when_over=kind != "picture.svg")
     ranked(result, rank)
@@ -175,17 +177,16 @@ seating_router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
 async def seated(
     request: Request, name: str, rank: int, revision: int | None
 ) -> tuple[Held, Seating | ByHand]:
-    """A fixture with its seating, or how it is put into two clamps: worked out once and kept with the job while it is
-    used."""
+    """Finds the seating of a fixture, or how it is put into two clamps, once, and keeps it with the job."""
     job = found_job(request, name)
     result = result_of_job(job, revision)
     held = result[ranked(result, rank)], result.workpiece, result.toolkit
     key = (job.revision, rank)
     if key not in job.seatings:
         # On a first run kernels are compiled for it, which takes as long as a search may.
-        told = await at_desk(request, "seating", held, state_of(request).limits.seconds)
-        job.keep_seating(key, told)
-        return held, told
+        found = await at_desk(request, "seating", held, state_of(request).limits.seconds)
+        job.keep_seating(key, found)
+        return held, found
     return held, job.seatings[key]
 
 
@@ -193,24 +194,27 @@ async def seated(
 async def seating(
     request: Request, name: str, rank: Rank, unit: UnitName = "mm", revision: Revision = None
 ) -> dict[str, Any]:
-    """From how wide open the part is caught, every other seat of the same pegs, and the same in sentences."""
-    held, told = await seated(request, name, rank, revision)
-    return {"rank": rank, **seating_answer(held, told, unit)}
+    """How wide open the part is still caught, every other seat of the same pegs, and both in sentences."""
+    held, found = await seated(request, name, rank, revision)
+    return {"rank": rank, **seating_answer(held, found, unit)}
 
 
 @seating_router.post("/closing", summary="Close the jaws from where the part was put")
 async def closing(
     request: Request, name: str, rank: Rank, form: ClosingForm, revision: Revision = None
 ) -> dict[str, Any] | None:
-    """The way that part and jaws go without friction, as turn in degrees, x and y of its pose and how far the
-    jaws are open beyond where they hold it, in mm, and what it ends in: ``right``,
-    ``same place``, ``wrong``, ``elsewhere``, ``stop``, ``outside`` or ``lost``. Who hangs up has it stopped."""
-    held, told = await seated(request, name, rank, revision)
-    if isinstance(told, ByHand):
+    """The frictionless way of part and jaws: turn in degrees, x and y of the pose and the opening in mm.
+
+    The opening is counted from where the jaws hold the part. The ending is one of ``right``, ``same place``,
+    ``wrong``, ``elsewhere``, ``stop``, ``outside`` and ``lost``. The simulation stops when the client hangs
+    up.
+    """
+    held, found = await seated(request, name, rank, revision)
+    if isinstance(found, ByHand):
         raise InputError(
             "no closing can be played with two clamps: the part is put against its locators by hand."
         )
     answer: dict[str, Any] | None = await at_desk_while_heard(
-        request, "closing", ClosingOrder(held, told, form)
+        request, "closing", ClosingOrder(held, found, form)
     )
     return answer

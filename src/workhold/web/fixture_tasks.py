@@ -10,13 +10,14 @@ from datetime import date
 from hashlib import sha256
 from importlib.util import find_spec
 from math import inf
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from attrs import frozen
 from pydantic import Field
 
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.seating_words import SeatingWords
+from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.seats import caption
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
@@ -61,13 +62,14 @@ class PaperOrder:
     Parameters
     ----------
     kind : one of :data:`KINDS`.
-    result : all fixtures for a sheet, which tells of the others; else one of no other.
+    result : all fixtures for a sheet, which names the others; else one of no other.
     rank, count : of the fixture, from 1, and how many there are.
     paper : "a4" or "letter".
     unit : "mm" or "inch".
     day : written on the sheet.
-    wishes : what is asked of a sheet or a set-up, named as in :func:`workhold.drawing.result_sheet.result_details` and
-        :func:`workhold.files.dxf.writer.setup_dxf`; lengths in mm.
+    wishes : what is asked of a sheet or a set-up, named as in
+        :func:`workhold.drawing.result_sheet.result_details` and :func:`workhold.files.dxf.writer.setup_dxf`;
+        lengths in mm.
     result_hash : of the result's file, or None where it is not known yet.
     """
 
@@ -83,7 +85,7 @@ class PaperOrder:
 
     @classmethod
     def of(cls, kind: str, result: Result, rank: int, *options: Any) -> PaperOrder:
-        """An order that carries no more of a result than is needed."""
+        """Makes an order that carries no more of a result than is needed."""
         small = result
         if not kind.startswith("sheet"):
             small = result.part(slice(rank - 1, rank))
@@ -101,15 +103,14 @@ def has_step() -> bool:
 
 
 def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
-    """The bytes of what was ordered, and the hash of the result's file if it was needed."""
+    """Makes the bytes of what was ordered, and the hash of the result's file if it was needed."""
     return MAKERS[payload.kind](payload)
 
 
 def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
-    """The setup sheet."""
+    """Draws the setup sheet."""
     from workhold.drawing.result_sheet import result_sheet
-    from workhold.drawing.scene import stacked
-    from workhold.units import unit_named
+    from workhold.presenting.papers import pages_bytes
 
     digest = order.result_hash or hash_of(order.result)
     pages = result_sheet(
@@ -121,15 +122,11 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
         unit=unit_named(order.unit),
         **{name: wish for name, wish in order.wishes.items() if name != "clearance"},
     )
-    if order.kind == "sheet.svg":
-        return stacked(pages).encode("utf-8"), digest
-    from workhold.drawing.pdf import svg_to_pdf
-
-    return svg_to_pdf(pages, order.day), digest
+    return pages_bytes(pages, Path(order.kind).suffix, order.day), digest
 
 
 def hash_of(result: Result) -> str:
-    """SHA-256 of the result's file."""
+    """Returns the SHA-256 of the result's file."""
     from workhold.files.result.writer import result_text
 
     digest = sha256()
@@ -138,39 +135,25 @@ def hash_of(result: Result) -> str:
     return digest.hexdigest()
 
 
-def setup_drawing(order: PaperOrder) -> tuple[bytes, str | None]:
-    """The set-up as DXF."""
-    from workhold.files.dxf.writer import CLEARANCE, setup_dxf
-    from workhold.model.setup import part_zero
-    from workhold.units import unit_named
+def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
+    """Writes the set-up as DXF or STEP, or lists its pins, which need no part zero."""
+    from workhold.presenting.papers import model_bytes
 
-    result = order.result
-    zero = part_zero(result.workpiece, order.wishes["zero"], unit_named(order.unit))
-    clearance = order.wishes["clearance"]
-    clearance = CLEARANCE if clearance is None else clearance
-    return setup_dxf(order.fixture, result.workpiece, result.toolkit, zero, clearance), None
-
-
-def setup_solid(order: PaperOrder) -> tuple[bytes, str | None]:
-    """The set-up as STEP."""
-    if not has_step():
+    ending = Path(order.kind).suffix
+    if ending == ".step" and not has_step():
         from workhold.files.step.library import REQUIREMENT
 
         raise InputError(
             f"this server writes no STEP files: take the DXF, or install {REQUIREMENT} beside it."
         )
-    from workhold.files.step.writer import setup_step
-    from workhold.model.setup import part_zero
-    from workhold.units import unit_named
-
-    result = order.result
-    zero = part_zero(result.workpiece, order.wishes["zero"], unit_named(order.unit))
-    sizes = {name: order.wishes[name] for name in ("thickness", "peg_length", "peg_height")}
-    return setup_step(order.fixture, result.workpiece, result.toolkit, zero=zero, **sizes), None
+    settings = {**order.wishes, "unit": unit_named(order.unit)}
+    if ending == ".csv":
+        settings["zero"] = None
+    return model_bytes(order.fixture, order.result, ending, settings, order.wishes["clearance"]), None
 
 
 def picture(order: PaperOrder) -> tuple[bytes, str | None]:
-    """The picture to set the vise from."""
+    """Draws the picture to set the vise from."""
     from workhold.drawing.fixture_pictures import draw_fixture
 
     result = order.result
@@ -178,28 +161,13 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     return draw_fixture(order.fixture, result.workpiece, result.toolkit, title=title).encode("utf-8"), None
 
 
-def pins(order: PaperOrder) -> tuple[bytes, str | None]:
-    """The list of pins."""
-    from workhold.files.result.fixture_text import pin_list
-    from workhold.model.dowels import fit_words
-    from workhold.units import unit_named
-
-    toolkit, fit = order.result.toolkit, order.result.query.tolerance.fit
-    known = None if fit is None else fit_words(fit, 2 * toolkit.plates[0].peg_radius)
-    wishes = order.wishes
-    text = pin_list(
-        order.fixture, toolkit, unit_named(order.unit), wishes["dowel"] or known, wishes["peg_length"]
-    )
-    return text.encode("utf-8"), None
-
-
 MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {
     "sheet.pdf": sheet,
     "sheet.svg": sheet,
-    "setup.dxf": setup_drawing,
-    "setup.step": setup_solid,
+    "setup.dxf": set_up,
+    "setup.step": set_up,
     "picture.svg": picture,
-    "pins.csv": pins,
+    "pins.csv": set_up,
 }
 
 
@@ -208,8 +176,11 @@ Held = tuple[Fixture, Workpiece, Toolkit]
 
 
 class ClosingForm(Form):
-    """Where the part was put, turned over (x to -x in its own frame) where that is said, and how far the jaws are open
-    beyond where they hold the part, or a clamp is drawn back; in mm and degrees. The unit is of lengths in sentences."""
+    """Where the part was put, and how far the jaws are open; in mm and degrees.
+
+    The part is turned over (x to -x in its own frame) where that is said. The opening is counted from where
+    the jaws hold the part; it is how far a clamp is drawn back. The unit is of lengths in sentences.
+    """
 
     theta_deg: Number
     x: Number
@@ -226,58 +197,58 @@ class ClosingOrder:
     Parameters
     ----------
     held : the fixture.
-    told : its seating.
+    seating : its seating.
     form : where the part was put.
     """
 
     held: Held
-    told: Seating
+    seating: Seating
     form: ClosingForm
 
 
-def words_of(held: Held, told: Seating, unit: str) -> SeatingWords:
-    """What a seating means in words."""
-    return SeatingWords(told, held[0], held[2], lengths_of(held, unit))
+def words_of(held: Held, seating: Seating, unit: str) -> SeatingSentences:
+    """Makes the words for a seating."""
+    return SeatingSentences(seating, held[0], held[2], lengths_of(held, unit))
 
 
 def lengths_of(held: Held, unit: str) -> LengthUnit:
-    """How lengths are written in a unit."""
+    """Returns the lengths of a unit as they are written for a fixture."""
     return LengthUnit.suiting(unit_named(unit), min(min(carrier.pitch) for carrier in held[2].carriers))
 
 
 def find_seating(held: Held, order: Order) -> Seating | ByHand:
-    """The seating of a fixture, worked out where the result has none; with two clamps how the part is put in."""
+    """Finds the seating of a fixture where the result has none; with two clamps how the part is put in."""
     from workhold.seating.solver import Solver
 
     fixture, workpiece, toolkit = held
     if not toolkit.closes_at_once:
         return by_hand(fixture, workpiece, toolkit)
-    told: Seating = fixture.seating or Solver(workpiece, toolkit).of(fixture)
-    return told
+    seating: Seating = fixture.seating or Solver(workpiece, toolkit).of(fixture)
+    return seating
 
 
-def seating_answer(held: Held, told: Seating | ByHand, unit: str) -> dict[str, Any]:
-    """The fields of a seating as a result file has them, with what they mean in words; with two clamps, what to do in
-    ``by_hand``.
+def seating_answer(held: Held, seating: Seating | ByHand, unit: str) -> dict[str, Any]:
+    """Describes a seating by the fields of a result file and their meaning; with two clamps by ``by_hand``
+    alone.
 
-    ``own`` is the place of the fixture's own seat in ``seats``, ``nearest`` are the places of the wrong ones that the jaws
-    open to, those that read most like it first; ``clamping`` is 1 where ``jaw_separation`` falls while the part is clamped,
-    -1 where it rises; ``widest`` is how far in mm it can be opened beyond where it holds the part, and ``done`` that it is
-    opened, in a word; ``captions`` are lines for each seat.
+    ``own`` is the place of the fixture's own seat in ``seats``. ``nearest`` are the places of the wrong ones
+    that the jaws open to, by how close they read to it. ``clamping`` is 1 where ``jaw_separation`` falls
+    while the part is clamped, -1 where it rises. ``widest`` is how far in mm the jaws open beyond where they
+    hold the part, and ``done`` is a word for opened. ``captions`` are lines for each seat.
     """
-    if isinstance(told, ByHand):
-        return {"by_hand": told.as_fields(lengths_of(held, unit).words)}
-    words, seats = words_of(held, told, unit), list(told.seats)
+    if isinstance(seating, ByHand):
+        return {"by_hand": seating.as_fields(lengths_of(held, unit).words)}
+    words, seats = words_of(held, seating, unit), list(seating.seats)
     travel = words.gauge.carrier.travel
     assert travel is not None
     # Of what clamps by opening, pegs that meet are the end.
-    end = travel.most if told.clamping > 0 and travel.most is not None else inf
-    widest = min(Pattern.of(held[0], held[2]).widest, end) - told.clamping * held[0].jaw_separation
+    end = travel.most if seating.clamping > 0 and travel.most is not None else inf
+    widest = min(Pattern.of(held[0], held[2]).widest, end) - seating.clamping * held[0].jaw_separation
     return {
-        **told.as_fields(),
+        **seating.as_fields(),
         "own": seats.index(words.own),
         "nearest": [seats.index(seat) for seat in words.wrong],
-        "clamping": told.clamping,
+        "clamping": seating.clamping,
         "widest": finite(widest),
         "done": words.gauge.ways.done,
         "captions": [caption(words, seat) for seat in seats],
@@ -287,17 +258,17 @@ def seating_answer(held: Held, told: Seating | ByHand, unit: str) -> dict[str, A
 
 
 def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
-    """The way of a closing, what it ends in and what is read then; None once nobody wants to know any more."""
+    """Simulates a closing: its way, its ending and what is read then; None once it was cancelled."""
     from workhold.seating.closing_simulation import simulate_closing
     from workhold.seating.solver import Solver
 
-    form, told = payload.form, payload.told
+    form, seating = payload.form, payload.seating
     fixture, workpiece, toolkit = payload.held
     pose = Pose(form.theta_deg, form.x, form.y)
     closed = simulate_closing(
         Solver(workpiece, toolkit),
         fixture,
-        told.seats,
+        seating.seats,
         pose,
         form.opening,
         form.turned_over,
@@ -305,12 +276,12 @@ def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
     )
     if order.cancel.is_set():
         return None
-    opened = [told.clamping * (travelled - fixture.jaw_separation) for travelled in closed.travels]
+    opened = [seating.clamping * (travelled - fixture.jaw_separation) for travelled in closed.travels]
     return {
         "way": [[one.theta_deg, one.x, one.y, more] for one, more in zip(closed.poses, opened, strict=True)],
         "ending": closed.ending,
-        "seat": None if closed.seat is None else told.seats.index(closed.seat),
-        "words": words_of(payload.held, told, form.unit).ended(
+        "seat": None if closed.seat is None else seating.seats.index(closed.seat),
+        "words": words_of(payload.held, seating, form.unit).ended(
             closed.ending, closed.seat, closed.travels[-1]
         ),
     }

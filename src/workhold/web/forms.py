@@ -1,4 +1,6 @@
-"""The shapes of requests, checked by pydantic: those of a result file within limits, and with no key that is not known."""
+"""The shapes of requests, checked by pydantic: those of a result file within limits, and with no key that is
+not known.
+"""
 
 from __future__ import annotations
 
@@ -72,8 +74,8 @@ def checked_part(
     count = sum(map(len, loops))
     if count > most_segments:
         raise InputError(
-            f"The part has {count} segments, more than the {most_segments} this server takes: draw its outline with lines "
-            "and arcs instead of many short pieces."
+            f"The part has {count} segments, more than the {most_segments} this server takes: draw its "
+            "outline with lines and arcs instead of many short pieces."
         )
     try:
         return Workpiece.from_loops(name, loops, departure=departure)

@@ -19,14 +19,15 @@ from urllib.parse import parse_qs
 from attrs import define, field, frozen
 from starlette.exceptions import HTTPException
 
-__all__ = ["Guard", "Hosts", "Limits", "usual_memory"]
+__all__ = ["Guard", "Hosts", "ServerLimits", "usual_memory"]
 
-# Memory of a search in bytes; the least with which one can work; and the share of the machine's that all searches may take.
+# Memory of a search in bytes; the least with which one can work; and the share of the machine's that all
+# searches may take.
 MEMORY, LEAST_MEMORY, SHARE = 4 << 30, 1 << 30, 0.7
 
 
 @frozen
-class Limits:
+class ServerLimits:
     """Limits of a server.
 
     Parameters
@@ -74,7 +75,10 @@ class Limits:
 
 
 def usual_memory(searches: int) -> int:
-    """Bytes of address space for each of so many searches at the same time: 4 GiB, or less where the machine has less."""
+    """Returns the bytes of address space for each of so many searches at the same time.
+
+    It is 4 GiB, or less where the machine has less.
+    """
     try:
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
@@ -90,7 +94,8 @@ App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 HEADERS = {
     b"content-security-policy": (
-        b"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+        b"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+        b"connect-src 'self'; "
         b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
     ),
     b"x-content-type-options": b"nosniff",
@@ -106,7 +111,7 @@ COOKIE = "workhold-token"
 
 @define
 class Hosts:
-    """The names by which the server may be called; other names are a sign of another page that leads here.
+    """The names by which the server may be called; another name suggests that a foreign page leads here.
 
     Parameters
     ----------
@@ -134,7 +139,7 @@ class Hosts:
 
 
 def host_name(host: str) -> str:
-    """A host without its port, in small letters."""
+    """Returns a host without its port, in small letters."""
     if host.startswith("["):
         return host[1:].partition("]")[0].lower()
     return host.partition(":")[0].lower()
@@ -154,12 +159,12 @@ class Guard:
 
     app: App
     hosts: Hosts
-    limits: Limits
+    limits: ServerLimits
     token: str | None = None
     arriving: Counter[str] = field(factory=Counter, init=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request."""
+        """Answers a request, or passes it on to the application."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -203,7 +208,7 @@ class Guard:
             self.arriving += Counter()
 
     def refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
-        """Status and sentence for a request that is not let through."""
+        """Returns status and sentence for a request that is not let through."""
         host = headers.get("host", "")
         if not self.hosts.knows(host):
             return 400, "This server is not known by that name: use the address that it printed."
@@ -227,7 +232,7 @@ class Guard:
 
 
 def brings(token: str, headers: dict[str, str]) -> bool:
-    """Whether a request's headers hold the secret, as a cookie or as a bearer's token."""
+    """Whether the headers of a request hold the secret, as a cookie or as a bearer's token."""
     cookies = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
     offered = [value for name, _, value in cookies if name == COOKIE]
     kind, _, value = headers.get("authorization", "").partition(" ")
@@ -237,7 +242,7 @@ def brings(token: str, headers: dict[str, str]) -> bool:
 
 
 async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
-    """Answer a request without the secret: one whose address holds it gets a cookie and is led to the page."""
+    """Answers a request without the secret; if its address holds it, with a cookie and a redirect."""
     query = parse_qs((scope.get("query_string") or b"").decode("latin-1"))
     offered = query.get("token", [""])[0]
     if scope["method"] not in ("GET", "HEAD") or not compare_digest(offered.encode(), token.encode()):
@@ -245,7 +250,8 @@ async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
             send, 401, "This server asks for a token: open the page with the address that it printed."
         )
         return
-    # Without a path the cookie is for the page's own folder, also behind a proxy that serves the page under a path.
+    # Without a path the cookie is for the page's own folder, also behind a proxy that serves the page under a
+    # path.
     cookie = f"{COOKIE}={token}; HttpOnly; SameSite=Strict"
     headers = [(b"location", b"./"), (b"set-cookie", cookie.encode()), (b"content-length", b"0")]
     await send({"type": "http.response.start", "status": 303, "headers": headers})
@@ -271,7 +277,7 @@ class Body:
     end: float | None = None
 
     async def __call__(self) -> Message:
-        """The next piece; once all is there, what comes after it.
+        """Returns the next piece; once all is there, what comes after it.
 
         Raises
         ------
@@ -295,13 +301,13 @@ class Body:
 
 
 def too_large(most: int) -> str:
-    """The sentence for a request that is too large."""
+    """Says that a request is too large."""
     size = f"{most / 1e6:g} MB" if most >= 100_000 else f"{most} bytes"
     return f"The request is larger than {size}: send a drawing of the part's outline only."
 
 
 async def answer(send: Send, status: int, sentence: str) -> None:
-    """Send an error as the server's others are."""
+    """Sends an error in the form of the server's other errors."""
     body = json.dumps({"error": sentence, "place": None}).encode()
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
     if status in (408, 413):

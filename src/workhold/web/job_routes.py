@@ -18,11 +18,11 @@ from workhold.statics.judging import unfit as unfit_of
 from workhold.web.answers import explanation_answer, rows_answer
 from workhold.web.families import PAPERS, FamilyForm, FamilyFound, FamilyPaper
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
-from workhold.web.jobs import Job
+from workhold.web.jobs import ServerJob
 from workhold.web.selection import Selection, angle_range
 from workhold.web.state import ServerState, address_of, at_desk, state_of
 
-__all__ = ["attachment", "begin", "found_job", "result_of_job", "router"]
+__all__ = ["attachment", "found_job", "result_of_job", "router"]
 
 router = APIRouter(prefix="/api")
 
@@ -32,8 +32,8 @@ MOST_ROWS = 1_000
 EMPTY = FixtureTable.empty()
 
 
-def found_job(request: Request, name: str) -> Job:
-    """The job of a name.
+def found_job(request: Request, name: str) -> ServerJob:
+    """Finds the job of a name.
 
     Raises
     ------
@@ -46,8 +46,8 @@ def found_job(request: Request, name: str) -> Job:
     return job
 
 
-def result_of_job(job: Job, revision: int | None = None, when_over: bool = False) -> Result:
-    """What a job has found.
+def result_of_job(job: ServerJob, revision: int | None = None, when_over: bool = False) -> Result:
+    """Returns the result of a job.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def result_of_job(job: Job, revision: int | None = None, when_over: bool = False
 
 
 async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm) -> JSONResponse:
-    """Check what is asked for and begin with it."""
+    """Checks a request and begins its job."""
     state = state_of(request)
     address = address_of(request)
     state.jobs.refuse_more(address)
@@ -97,21 +97,21 @@ async def explore(request: Request, form: ExploreForm) -> Response:
 
 @router.get("/jobs/{name}", summary="State of a job")
 async def state(request: Request, name: str) -> dict[str, Any]:
-    """How far it is, what it found, and what was asked for."""
+    """How far the job is, what it found, and what was asked for."""
     job = found_job(request, name)
     return {**job.answer(), "request": job.request}
 
 
 @router.delete("/jobs/{name}", status_code=204, summary="Stop and forget a job")
 async def delete(request: Request, name: str) -> Response:
-    """Nothing of it is kept; a job that is not there is as good as forgotten."""
+    """Stops and forgets a job; one that does not exist is no error."""
     state_of(request).jobs.delete(name)
     return Response(status_code=204)
 
 
 @router.post("/jobs/{name}/cancel", status_code=202, summary="Stop a job and keep what it found")
 async def cancel(request: Request, name: str) -> dict[str, Any]:
-    """Its state becomes ``cancelled`` within two seconds or so."""
+    """Stops the job, whose state becomes ``cancelled`` within two seconds or so."""
     job = found_job(request, name)
     state_of(request).jobs.cancel(job)
     return job.answer()
@@ -123,7 +123,7 @@ async def cancel(request: Request, name: str) -> dict[str, Any]:
     responses={200: {"content": {"text/event-stream": {"schema": {"type": "string"}}}}},
 )
 async def events(request: Request, name: str) -> Response:
-    """Server-sent events named ``state``; the data is the state without the request. The stream ends with the job."""
+    """Server-sent events named ``state``, whose data is the state without the request, until the job ends."""
     server, job = state_of(request), found_job(request, name)
     if server.streams >= server.limits.streams:
         raise HTTPException(
@@ -132,8 +132,8 @@ async def events(request: Request, name: str) -> Response:
     return StreamingResponse(stream(server, job), media_type="text/event-stream")
 
 
-async def stream(server: ServerState, job: Job) -> AsyncIterator[str]:
-    """The events of a job."""
+async def stream(server: ServerState, job: ServerJob) -> AsyncIterator[str]:
+    """Yields the events of a job."""
     watcher = asyncio.Event()
     job.watchers.add(watcher)
     server.streams += 1
@@ -173,14 +173,14 @@ async def fixtures(
     together: Annotated[bool, Query(description="of fixtures that are alike only the first")] = False,
     unfit: Annotated[bool, Query(description="also what is no fixture for a workshop")] = True,
 ) -> dict[str, Any]:
-    """A page of them, also of those known so far while the search runs; ranks count all, best first, from 1."""
+    """A page of the fixtures, even while the search runs; ranks count all, best first, from 1."""
     job = found_job(request, name)
     selection = Selection(
         sort, descending, type, face, None if angle is None else angle_range(angle), together, unfit
     )
     revision, result = job.revision, job.result
     if result is None:
-        # So that what cannot be sorted by is told even then.
+        # So that what cannot be sorted by is refused even then.
         selection.indices(EMPTY, job.queries[0][1].toolkit)
         return {"total": 0, "unfit": 0, "revision": revision, "rows": []}
     found = await asyncio.to_thread(job.chosen, selection, result)
@@ -188,15 +188,18 @@ async def fixtures(
     table, like = result.table.take(page), found.like[offset : offset + limit].tolist()
     rows = await asyncio.to_thread(rows_answer, table, result.workpiece, result.toolkit, (page + 1).tolist())
     bad = unfit_of(table.quality, result.query.tolerance).tolist()
-    told = [
+    rows = [
         row | {"like": more, "unfit": none, "caught": caught_in(result, row["rank"])}
         for row, more, none in zip(rows, like, bad, strict=True)
     ]
-    return {"total": len(found.index), "unfit": found.unfit, "revision": revision, "rows": told}
+    return {"total": len(found.index), "unfit": found.unfit, "revision": revision, "rows": rows}
 
 
 def caught_in(result: Result, rank: int) -> dict[str, float | None] | None:
-    """From how far open in mm a fixture catches the part, null where it never gets away; None where that is not told."""
+    """Returns from how far open in mm a fixture catches the part; None where that is not known.
+
+    The opening is null where the part never gets away.
+    """
     if rank > len(result.seating):
         return None
     return {"opening": length(result.seating[rank - 1].capture_opening)}
@@ -204,7 +207,7 @@ def caught_in(result: Result, rank: int) -> dict[str, float | None] | None:
 
 @router.get("/jobs/{name}/explanation", summary="Why there is no fixture")
 async def explanation(request: Request, name: str) -> dict[str, Any]:
-    """Of a search that is over and found none; it takes about as long as the search and is worked out once."""
+    """Why a search that is over found no fixture; this takes about as long as the search, and only once."""
     job = found_job(request, name)
     result = result_of_job(job, when_over=True)
     if len(result) or not result.complete:
@@ -216,7 +219,7 @@ async def explanation(request: Request, name: str) -> dict[str, Any]:
 
 @router.post("/jobs/{name}/resist", summary="Which fixtures resist loads best")
 async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]:
-    """The ten with the least load reaction, in N."""
+    """The ten fixtures with the least load reaction, in N."""
     job = found_job(request, name)
     result, revision = result_of_job(job), job.revision
     best = await at_desk(request, "resist", (result, form))
@@ -226,7 +229,7 @@ async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]
 
 @router.get("/jobs/{name}/result.json", summary="The result file", response_class=Response)
 async def result_json(request: Request, name: str) -> Response:
-    """As ``workhold design --out`` writes it."""
+    """The file that ``workhold design --out`` would write."""
     from workhold.files.result.writer import result_text
 
     return download(found_job(request, name), result_text, "json", "application/json")
@@ -240,15 +243,17 @@ async def result_csv(request: Request, name: str) -> Response:
     return download(found_job(request, name), result_csv_text, "csv", "text/csv; charset=utf-8")
 
 
-def download(job: Job, text: Callable[[Result], Iterator[str]], ending: str, content_type: str) -> Response:
-    """A file that is written while it is sent."""
+def download(
+    job: ServerJob, text: Callable[[Result], Iterator[str]], ending: str, content_type: str
+) -> Response:
+    """Sends a file while it is written."""
     result = result_of_job(job, when_over=True)
     headers = {"Content-Disposition": attachment(result.workpiece.name, ending)}
     return StreamingResponse(text(result), media_type=content_type, headers=headers)
 
 
 def attachment(name: str, ending: str) -> str:
-    """The header that names a file to save."""
+    """Makes the header that names a file to save."""
     plain = (
         "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in name)[:80].strip(".")
         or "part"
@@ -262,7 +267,7 @@ Setups = Annotated[
 
 
 def family_of_job(request: Request, name: str) -> FamilyFound:
-    """What a job has found of a family.
+    """Returns the family that a job has found.
 
     Raises
     ------

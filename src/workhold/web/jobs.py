@@ -1,4 +1,4 @@
-"""Searches that were asked for, while they run and as long after as they are used.
+"""Jobs of the server, while they run and for some time after their last use.
 
 Glossary
 --------
@@ -24,12 +24,12 @@ from workhold.model.seating import Seating
 from workhold.seating.clamping import ByHand
 from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.families import FamilyFound
-from workhold.web.guard import Limits
-from workhold.web.pool import BusyError, FailedError, Pool, StoppedError, Task
+from workhold.web.guard import ServerLimits
+from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
 from workhold.web.selection import Selection
 from workhold.web.tasks import Found, NamedQuery
 
-__all__ = ["OVER", "Job", "Jobs", "TooManyError"]
+__all__ = ["ServerJob", "Jobs", "TooManyError"]
 
 # Bytes of a random name; nobody can guess 128 bits.
 NAME_BYTES = 16
@@ -44,8 +44,8 @@ class TooManyError(BusyError):
 
 
 @define(eq=False)
-class Job:
-    """A job.
+class ServerJob:
+    """A job, with its state and what it has found.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Job:
     notes: tuple[str, ...] = ()
     error: str | None = None
     table: list[dict[str, Any]] = field(factory=list)
-    task: Task | None = None
+    task: PoolTask | None = None
     runner: asyncio.Task[None] | None = None
     explaining: asyncio.Task[Explanation] | None = None
     used: float = field(factory=monotonic)
@@ -84,30 +84,30 @@ class Job:
 
     @property
     def compares(self) -> bool:
-        """Whether it is a comparison of toolkits."""
+        """Whether the job is a comparison of toolkits."""
         return self.kind == "explore"
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more will happen to it."""
+        """Whether the job has ended, well or badly."""
         return self.state in OVER
 
     @property
     def size(self) -> int:
-        """About how many bytes it keeps."""
+        """About how many bytes the job keeps."""
         if self.result is None:
             return 0
         table = self.result.table
         return sum(getattr(table, a.name).nbytes for a in table.__attrs_attrs__)
 
     def changed(self) -> None:
-        """Tell those who watch."""
+        """Wakes those who watch the job."""
         self.version += 1
         for watcher in self.watchers:
             watcher.set()
 
     def answer(self) -> dict[str, Any]:
-        """What is known of it, but for the request."""
+        """Describes the job, without its request."""
         result, over = self.result, self.is_over
         end = self.ended if self.ended is not None else monotonic()
         complete = self.state == "done" and (
@@ -134,14 +134,14 @@ class Job:
             "table": list(self.table) if self.compares else None,
         }
 
-    def keep_seating(self, key: tuple[int, int], told: Seating | ByHand) -> None:
-        """Keep the seating of a fixture, by revision and rank, instead of the oldest one kept."""
+    def keep_seating(self, key: tuple[int, int], seating: Seating | ByHand) -> None:
+        """Keeps the seating of a fixture, by revision and rank, and forgets the oldest of too many."""
         while len(self.seatings) >= SEATINGS_KEPT:
             self.seatings.pop(next(iter(self.seatings)))
-        self.seatings[key] = told
+        self.seatings[key] = seating
 
     def chosen(self, selection: Selection, result: Result) -> Entries:
-        """What a selection chooses of the result; the last few selections are remembered."""
+        """Returns the entries of the result that a selection chooses; the last few selections are kept."""
         key = (self.revision, selection)
         if key not in self.orders:
             found = selection.entries(result)
@@ -162,18 +162,18 @@ class Jobs:
     """
 
     pool: Pool
-    limits: Limits
-    by_name: dict[str, Job] = field(factory=dict, init=False)
+    limits: ServerLimits
+    by_name: dict[str, ServerJob] = field(factory=dict, init=False)
 
-    def get(self, name: str) -> Job | None:
-        """A job by its name, or None when there is none (any more); it counts as used."""
+    def get(self, name: str) -> ServerJob | None:
+        """Finds a job by its name and notes its use; None when there is none (any more)."""
         job = self.by_name.get(name)
         if job is not None:
             job.used = monotonic()
         return job
 
     def refuse_more(self, address: str) -> None:
-        """Refuse a further job.
+        """Refuses a further job.
 
         Raises
         ------
@@ -191,8 +191,8 @@ class Jobs:
 
     def submit(
         self, request: Mapping[str, Any], queries: tuple[NamedQuery, ...], address: str, kind: str
-    ) -> Job:
-        """Begin a job.
+    ) -> ServerJob:
+        """Begins a job.
 
         Raises
         ------
@@ -200,23 +200,23 @@ class Jobs:
             See :meth:`refuse_more`.
         """
         self.refuse_more(address)
-        job = Job(token_urlsafe(NAME_BYTES), request, queries, address, kind)
+        job = ServerJob(token_urlsafe(NAME_BYTES), request, queries, address, kind)
         self.by_name[job.name] = job
         job.runner = asyncio.create_task(self.run(job))
         self.make_room()
         return job
 
-    def begin(self, job: Job) -> None:
-        """Note that a worker has begun with it."""
+    def begin(self, job: ServerJob) -> None:
+        """Notes that a worker has begun with a job."""
         job.began = monotonic()
         job.state = "running"
         job.changed()
 
-    async def run(self, job: Job) -> None:
-        """See a job through."""
+    async def run(self, job: ServerJob) -> None:
+        """Runs a job to its end."""
         payload: Any = job.queries if job.kind != "design" else (job.queries[0][1], self.limits.fixtures)
         name = "search" if job.kind == "design" else job.kind
-        job.task = Task(
+        job.task = PoolTask(
             name,
             payload,
             self.limits.seconds,
@@ -245,8 +245,8 @@ class Jobs:
         job.changed()
         self.make_room()
 
-    def keep(self, job: Job, found: Found) -> None:
-        """Keep the outcome of a search."""
+    def keep(self, job: ServerJob, found: Found) -> None:
+        """Keeps the outcome of a search."""
         result, notes = found.result, list(found.result.notes)
         if found.left_out:
             every, put_in_order = sum(result.found.values()), len(result) + found.left_out
@@ -260,8 +260,8 @@ class Jobs:
         job.revision += 1
         job.orders.clear()
 
-    def heard(self, job: Job, value: tuple[Any, ...]) -> None:
-        """Take what a worker reports."""
+    def heard(self, job: ServerJob, value: tuple[Any, ...]) -> None:
+        """Applies a report of a worker."""
         match value:
             case ("progress", fraction, found):
                 job.fraction, job.found = max(float(fraction), job.fraction), int(found)
@@ -276,8 +276,8 @@ class Jobs:
                 job.revision += 1
         job.changed()
 
-    async def explain(self, job: Job) -> Explanation:
-        """Why a job found no fixture; worked out once.
+    async def explain(self, job: ServerJob) -> Explanation:
+        """Explains why a job found no fixture; this is worked out once.
 
         Raises
         ------
@@ -285,17 +285,17 @@ class Jobs:
             When it could not be; it may be asked again.
         """
         if job.explaining is None or (job.explaining.done() and not explained(job.explaining)):
-            task = Task("explanation", job.queries[0][1], self.limits.seconds, job.address)
+            task = PoolTask("explanation", job.queries[0][1], self.limits.seconds, job.address)
             job.explaining = asyncio.create_task(self.pool.run(task))
         return await asyncio.shield(job.explaining)
 
-    def cancel(self, job: Job) -> None:
-        """Tell a job to stop; what it has found is kept."""
+    def cancel(self, job: ServerJob) -> None:
+        """Asks a job to stop; what it has found is kept."""
         if job.task is not None and not job.is_over:
             self.pool.cancel(job.task)
 
     def delete(self, name: str) -> None:
-        """Stop a job and forget it."""
+        """Stops a job and forgets it."""
         job = self.by_name.pop(name, None)
         if job is None:
             return
@@ -307,7 +307,7 @@ class Jobs:
         job.changed()
 
     def make_room(self) -> None:
-        """Forget jobs whose life is over, and the longest unused ones when too much is kept."""
+        """Forgets jobs whose life is over, and the longest unused ones when too much is kept."""
         now = monotonic()
         for job in [job for job in self.by_name.values() if now - job.used > self.limits.life_seconds]:
             self.delete(job.name)
@@ -321,12 +321,12 @@ class Jobs:
             self.delete(job.name)
 
     async def sweep(self) -> None:
-        """Make room again and again."""
+        """Forgets jobs at intervals, for ever."""
         while True:
             await asyncio.sleep(min(max(self.limits.life_seconds / 10, 0.1), 30.0))
             self.make_room()
 
 
 def explained(task: asyncio.Task[Explanation]) -> bool:
-    """Whether an explanation that was worked out came to a good end."""
+    """Whether an explanation has ended without an error."""
     return not task.cancelled() and task.exception() is None

@@ -23,7 +23,7 @@ LONGEST_NAME = 120
 
 @router.get("/about", summary="Version and limits")
 async def about(request: Request) -> dict[str, Any]:
-    """What this server is and how much it takes."""
+    """The version of this server and its limits."""
     limits = state_of(request).limits
     return {
         "version": __version__,
@@ -43,7 +43,7 @@ async def about(request: Request) -> dict[str, Any]:
 
 @router.get("/parts", summary="The parts that come with the program")
 async def parts() -> list[dict[str, str]]:
-    """Their names and what they are."""
+    """Names and descriptions of the built-in parts."""
     from workhold.files.part.finding import builtin_parts
 
     return [{"name": part.name, "title": part.description} for part in builtin_parts()]
@@ -51,7 +51,7 @@ async def parts() -> list[dict[str, str]]:
 
 @router.get("/parts/{name}", summary="A part that comes with the program")
 async def part(request: Request, name: str) -> dict[str, Any]:
-    """Its loops, segments and faces."""
+    """Loops, segments and faces of a built-in part."""
     from workhold.files.part.finding import builtin_parts
 
     state = state_of(request)
@@ -90,7 +90,7 @@ async def sent(
     fit: FitGiven = None,
     axis: AxisGiven = None,
 ) -> Upload:
-    """A file that is sent, and what is said about how to read it."""
+    """Collects a file that is sent, and the options of how to read it."""
     content = await request.body()
     given: dict[str, Any] = {"unit": unit, "part_number": part, "layers": layer, "join_tolerance": join}
     name = shown_name(request.headers.get("x-filename", ""))
@@ -107,20 +107,26 @@ Sent = Annotated[Upload, Depends(sent)]
 
 @router.post("/parts", summary="Read a part from a file", openapi_extra=FILE)
 async def read_part(request: Request, upload: Sent) -> dict[str, Any]:
-    """The body is the file as it is: DXF, SVG, JSON, or STEP where installed; its name is in the header X-Filename."""
+    """Reads the body, a file as it is: DXF, SVG, JSON, or STEP where installed.
+
+    Its name is in the header X-Filename.
+    """
     answer: dict[str, Any] = await at_desk(request, "read_part", upload)
     return answer
 
 
 @router.post("/parts/survey", summary="See what a file holds and leaves open", openapi_extra=FILE)
 async def survey_part(request: Request, upload: Sent) -> dict[str, Any]:
-    """Sent as to read a part: the part if it can be read, else why not and what is asked; and all that is drawn."""
+    """The part if it can be read, else why not and what is asked; and all that is drawn.
+
+    The file is sent as to read a part.
+    """
     answer: dict[str, Any] = await at_desk(request, "survey_part", upload)
     return answer
 
 
 def shown_name(header: str) -> str:
-    """A file's name as a user may see it again, without folders and what cannot be printed."""
+    """Cleans a file's name for display: without folders and what cannot be printed."""
     name = unquote(header, errors="replace").replace("\\", "/").rpartition("/")[2]
     return "".join(letter for letter in name if letter.isprintable())[-LONGEST_NAME:].strip()
 
@@ -135,7 +141,7 @@ async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
 
 @router.get("/toolkits", summary="The kinds of toolkits")
 async def toolkits() -> list[dict[str, Any]]:
-    """What each is called, its fields, and what to begin with; lengths in mm."""
+    """The name of each kind, its fields, and usual values to begin with; lengths in mm."""
     from workhold.web.toolkits import kinds_answer
 
     return kinds_answer()
@@ -143,7 +149,7 @@ async def toolkits() -> list[dict[str, Any]]:
 
 @router.get("/presets", summary="The toolkits that come with the program")
 async def presets() -> list[dict[str, Any]]:
-    """What people own, by name; lengths in mm."""
+    """Toolkits that people own, by name; lengths in mm."""
     from workhold.files.toolkit_file import preset, preset_names
 
     return [toolkit_answer(one) for one in map(preset, preset_names())]
@@ -151,5 +157,5 @@ async def presets() -> list[dict[str, Any]]:
 
 @router.get("/figures", summary="The figures of quality")
 async def figures() -> list[dict[str, Any]]:
-    """What each is called, its unit, and which way is better."""
+    """The name of each figure, its unit, and which way is better."""
     return figures_answer()

@@ -26,12 +26,13 @@ from workhold.errors import InputError, WorkholdError
 from workhold.web.tasks import work
 from workhold.web.worker import CANCEL
 
-__all__ = ["BusyError", "FailedError", "Pool", "StoppedError", "Task"]
+__all__ = ["BusyError", "FailedError", "Pool", "StoppedError", "PoolTask"]
 
-# Seconds a task that was told to stop by its user has before its worker is ended, and one that ran out of time.
+# Seconds before the worker of a task is ended: after its user asked it to stop, and after it ran out of time.
 STOP_GRACE = 2.0
 TIME_GRACE = 10.0
-# Workers that end before they are ready, one after the other, before waiting tasks are given up; and the pause between.
+# Workers that end before they are ready, one after the other, before waiting tasks are given up; and the
+# pause between.
 MOST_FAILED_STARTS = 3
 START_PAUSE = 1.0
 # Clients whose last turn is remembered.
@@ -41,20 +42,20 @@ Message = tuple[str, int, Any]
 
 
 class BusyError(WorkholdError):
-    """Too many tasks wait already."""
+    """A task that was refused because too many wait already."""
 
 
 class FailedError(WorkholdError):
-    """A task came to a bad end; the message is a sentence for the user."""
+    """A task that failed; the message is a sentence for the user."""
 
 
 class StoppedError(WorkholdError):
-    """A task was told to stop and did not come to its end."""
+    """A task that was asked to stop and has no outcome."""
 
 
 @define(eq=False)
-class Task:
-    """Something for a worker to do.
+class PoolTask:
+    """A task for a worker.
 
     Parameters
     ----------
@@ -62,7 +63,7 @@ class Task:
     payload : what it needs; must be picklable.
     seconds : how long it may take once it has begun.
     client : who asked for it.
-    stops_well : whether it gives what it has when told to stop; its worker is ended at once otherwise.
+    stops_well : whether it gives what it has when asked to stop; its worker is ended at once otherwise.
     report : called with what the worker sends before it is done.
     begun : called when a worker begins.
     """
@@ -81,7 +82,7 @@ class Task:
         self.outcome = asyncio.get_running_loop().create_future()
 
     def settle(self, value: Any = None, error: Exception | None = None) -> None:
-        """Hand over the outcome, unless nobody waits for it any more."""
+        """Sets the outcome, unless the task has one or was cancelled."""
         if self.outcome.done():
             return
         if error is None:
@@ -91,8 +92,8 @@ class Task:
 
 
 @define(eq=False)
-class Worker:
-    """A worker process and its end of the pipe."""
+class PoolWorker:
+    """A worker process and the server's end of its pipe."""
 
     process: Any
     connection: Connection
@@ -100,8 +101,8 @@ class Worker:
     gone: asyncio.Event = field(factory=asyncio.Event)
 
     @classmethod
-    def started(cls, kind: str, memory_bytes: int) -> Worker:
-        """Start a process; a thread of the server hears what it says."""
+    def started(cls, kind: str, memory_bytes: int) -> PoolWorker:
+        """Starts a process, and a thread of the server that receives its messages."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=work, args=(theirs, kind, memory_bytes), daemon=True)
@@ -114,7 +115,7 @@ class Worker:
         return worker
 
     def listen(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Take messages until the pipe ends; runs in a thread of its own."""
+        """Receives messages until the pipe ends; runs in a thread of its own."""
         try:
             while True:
                 message = self.connection.recv()
@@ -125,12 +126,12 @@ class Worker:
                 loop.call_soon_threadsafe(self.gone.set)
 
     async def send(self, message: Any) -> None:
-        """Send a message; one to a worker that is gone is lost."""
+        """Sends a message; one to a worker that has ended is lost."""
         with suppress(OSError, ValueError):
             await asyncio.to_thread(self.connection.send, message)
 
     async def end(self) -> None:
-        """End the process at once and let go of it."""
+        """Ends the process at once and closes its pipe."""
         self.process.kill()
         await asyncio.to_thread(self.process.join, 5.0)
         with suppress(OSError):
@@ -139,7 +140,7 @@ class Worker:
 
 @contextmanager
 def deaf_to_interrupts() -> Iterator[None]:
-    """Let a process that is started meanwhile not hear Ctrl-C, which is for the server."""
+    """Makes processes that are started within the block ignore Ctrl-C, which is for the server."""
     try:
         before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     except ValueError:
@@ -168,22 +169,22 @@ class Pool:
     size: int
     memory_bytes: int
     most_waiting: int
-    waiting: list[Task] = field(factory=list, init=False)
+    waiting: list[PoolTask] = field(factory=list, init=False)
     running: Counter[str] = field(factory=Counter, init=False)
     turns: dict[str, int] = field(factory=dict, init=False)
     bell: asyncio.Event = field(factory=asyncio.Event, init=False)
     slots: list[asyncio.Task[None]] = field(factory=list, init=False)
-    workers: dict[int, Worker] = field(factory=dict, init=False)
+    workers: dict[int, PoolWorker] = field(factory=dict, init=False)
     numbers: Iterator[int] = field(factory=lambda: count(1), init=False)
     ready: asyncio.Event = field(factory=asyncio.Event, init=False)
     busy: int = field(default=0, init=False)
 
     def open(self) -> None:
-        """Start the workers."""
+        """Starts the workers."""
         self.slots = [asyncio.create_task(self.keep(slot)) for slot in range(self.size)]
 
     async def close(self) -> None:
-        """End the workers and give up what waits."""
+        """Ends the workers and gives up the tasks that wait."""
         for slot in self.slots:
             slot.cancel()
         await asyncio.gather(*self.slots, return_exceptions=True)
@@ -192,7 +193,7 @@ class Pool:
         self.give_up("The server was stopped.")
 
     def refuse_more(self, client: str) -> None:
-        """Refuse a further task of a client.
+        """Refuses a further task of a client.
 
         Raises
         ------
@@ -204,12 +205,12 @@ class Pool:
             raise BusyError("The server is busy: try again in a moment.")
 
     def give_up(self, sentence: str) -> None:
-        """Fail all tasks that wait."""
+        """Fails all tasks that wait."""
         while self.waiting:
             self.waiting.pop().settle(error=FailedError(sentence))
 
-    async def run(self, task: Task) -> Any:
-        """Do a task when its client has its turn; a caller that is cancelled cancels the task.
+    async def run(self, task: PoolTask) -> Any:
+        """Runs a task when its client has its turn; a caller that is cancelled cancels the task.
 
         Raises
         ------
@@ -218,7 +219,7 @@ class Pool:
         InputError
             When the worker refuses what it was given.
         StoppedError
-            When it was told to stop and had nothing to show.
+            When it was asked to stop and had nothing to show.
         FailedError
             When it came to a bad end.
         """
@@ -231,24 +232,28 @@ class Pool:
             self.cancel(task)
             raise
 
-    def cancel(self, task: Task) -> None:
-        """Tell a task to stop; one that waits is over at once."""
+    def cancel(self, task: PoolTask) -> None:
+        """Asks a task to stop; one that waits is over at once."""
         task.stop.set()
         if task in self.waiting:
             self.waiting.remove(task)
             task.settle(error=StoppedError())
 
-    def turn(self) -> Task | None:
-        """The task whose turn it is: of the client that has the fewest workers, of these the one whose last turn is longest
-        ago. One worker of several is kept from any single client, so that the next one need not wait for its searches."""
+    def turn(self) -> PoolTask | None:
+        """Chooses the next task: of the client with the fewest workers, then of the one whose last turn is
+        oldest.
+
+        One worker of several is kept from any single client, so that the next one need not wait for its
+        searches.
+        """
         most = max(self.size - 1, 1)
         may = [task for task in self.waiting if self.running[task.client] < most]
         return min(
             may, key=lambda task: (self.running[task.client], self.turns.get(task.client, 0)), default=None
         )
 
-    async def next_task(self) -> Task:
-        """The task whose turn it is, when there is one; its client has a worker from then on."""
+    async def next_task(self) -> PoolTask:
+        """Waits for the next task, and counts a worker as its client's from then on."""
         while (task := self.turn()) is None:
             self.bell.clear()
             await self.bell.wait()
@@ -260,17 +265,17 @@ class Pool:
             self.turns.pop(next(iter(self.turns)))
         return task
 
-    def free(self, task: Task) -> None:
-        """Note that a worker is no longer its client's."""
+    def free(self, task: PoolTask) -> None:
+        """Notes that a worker is no longer its client's."""
         self.running[task.client] -= 1
         self.running += Counter()
         self.bell.set()
 
     async def keep(self, slot: int) -> None:
-        """Keep a worker in a slot and give it tasks."""
+        """Keeps a worker in a slot and gives it tasks."""
         failed = 0
         while True:
-            worker = self.workers[slot] = Worker.started(self.kind, self.memory_bytes)
+            worker = self.workers[slot] = PoolWorker.started(self.kind, self.memory_bytes)
             if await first(worker.inbox.get(), worker.gone.wait()) is None:
                 await worker.end()
                 failed += 1
@@ -285,8 +290,8 @@ class Pool:
             finally:
                 await asyncio.shield(worker.end())
 
-    async def serve(self, worker: Worker) -> None:
-        """Give tasks to a worker until it is gone."""
+    async def serve(self, worker: PoolWorker) -> None:
+        """Gives tasks to a worker until it has ended."""
         while not worker.gone.is_set():
             task = await first(self.next_task(), worker.gone.wait())
             if task is None:
@@ -305,9 +310,9 @@ class Pool:
                 self.busy -= 1
                 self.free(task)
 
-    async def work(self, worker: Worker, task: Task) -> None:
-        """Let a worker do a task; afterwards the worker is gone if it had to be ended."""
-        clock, number, told = asyncio.get_running_loop().time, next(self.numbers), False
+    async def work(self, worker: PoolWorker, task: PoolTask) -> None:
+        """Has a worker do a task; a worker that had to be ended is marked as gone."""
+        clock, number, is_asked = asyncio.get_running_loop().time, next(self.numbers), False
         if task.begun is not None:
             task.begun()
         await worker.send((number, task.name, task.seconds, task.payload))
@@ -316,7 +321,7 @@ class Pool:
             FailedError(f"This took longer than {task.seconds:g} s and was stopped."),
         )
         while True:
-            waits = [worker.inbox.get(), worker.gone.wait()] + ([] if told else [task.stop.wait()])
+            waits = [worker.inbox.get(), worker.gone.wait()] + ([] if is_asked else [task.stop.wait()])
             message = await first(*waits, timeout=max(end - clock(), 0.0))
             if message is not None:
                 kind, of, value = message
@@ -334,18 +339,18 @@ class Pool:
                     )
                 )
                 return
-            elif told or not task.stops_well:
+            elif is_asked or not task.stops_well:
                 task.settle(error=StoppedError() if task.stop.is_set() else error)
                 worker.gone.set()
                 return
             else:
-                told = True
+                is_asked = True
                 end = clock() + (STOP_GRACE if task.stop.is_set() else TIME_GRACE)
                 await worker.send((number, CANCEL))
 
 
-def finish(task: Task, kind: str, value: Any) -> None:
-    """Hand over what a worker answered."""
+def finish(task: PoolTask, kind: str, value: Any) -> None:
+    """Settles a task with the answer of its worker."""
     if kind == "done":
         task.settle(value)
     elif kind == "refused":
@@ -355,7 +360,7 @@ def finish(task: Task, kind: str, value: Any) -> None:
 
 
 async def first(*waits: Any, timeout: float | None = None) -> Any:
-    """What the first of some coroutines returns if it is done when any of them is, or the time is up; else None."""
+    """Waits until one of some coroutines is done or the time is up; returns the first's value, else None."""
     tasks = [asyncio.ensure_future(wait) for wait in waits]
     try:
         await asyncio.wait(tasks, timeout=timeout, return_when=asyncio.FIRST_COMPLETED)

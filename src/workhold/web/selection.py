@@ -26,7 +26,8 @@ class Selection:
     descending : largest first; fixtures without the figure are last either way.
     type : name of arrangements or the title of one, or None for all.
     face : only fixtures that touch this face.
-    angle : only those whose part lies at an angle in this range, in degrees, counter-clockwise from the first.
+    angle : only those whose part lies at an angle in this range, in degrees, counter-clockwise from the
+        first.
     together : of fixtures that are alike (``listing.identity``) only the first.
     unfit : also those that are none for a workshop; where there are no others they are chosen all the same.
     """
@@ -40,7 +41,7 @@ class Selection:
     unfit: bool = True
 
     def entries(self, result: Result) -> Entries:
-        """The chosen fixtures of a result, in order, each with how many that are like it are left out.
+        """Chooses fixtures of a result, in order, each with how many that are like it are left out.
 
         Raises
         ------
@@ -60,7 +61,7 @@ class Selection:
         return Entries(chosen, like, int(bad[found].sum()) if not (self.unfit or bad.all()) else 0)
 
     def indices(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.intp]:
-        """Indices of the chosen fixtures of a table, in order.
+        """Returns the indices of the chosen fixtures of a table, in order.
 
         Raises
         ------
@@ -94,7 +95,7 @@ class Selection:
 
 
 def angle_range(text: str) -> tuple[float, float]:
-    """A range of angles in degrees such as ``-10..10``.
+    """Reads a range of angles in degrees such as ``-10..10``.
 
     Raises
     ------

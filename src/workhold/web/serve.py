@@ -1,4 +1,4 @@
-"""Running the server until it is told to stop."""
+"""The server's process: its socket, its connections, and its end."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from workhold.errors import InputError
 from workhold.web.app import create_app
-from workhold.web.guard import Hosts, Limits
+from workhold.web.guard import Hosts, ServerLimits
 
 __all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
 
@@ -28,9 +28,9 @@ TERMINATED = 143
 
 
 class PatientProtocol(H11Protocol):
-    """HTTP that lets go of clients who do not come to the point, or who take all connections: others would find none.
+    """HTTP that drops clients who send no request in time, or who take too many connections.
 
-    A server makes a class of its own of it, with these:
+    A server makes a subclass of its own with these:
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class PatientProtocol(H11Protocol):
     peer: str = ""
 
     def connection_made(self, transport: Any) -> None:
-        """A client is there: its request should follow."""
+        """Counts a connection, and closes one too many."""
         super().connection_made(transport)
         self.peer = self.client[0] if self.client else ""
         self.open_connections[self.peer] += 1
@@ -56,12 +56,12 @@ class PatientProtocol(H11Protocol):
         self.watch()
 
     def data_received(self, data: bytes) -> None:
-        """Some of a request is there."""
+        """Passes data on, and starts or stops the timer."""
         super().data_received(data)
         self.watch()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """The client is gone."""
+        """Counts a connection no longer."""
         if self.header_timer is not None:
             self.header_timer.cancel()
         self.open_connections[self.peer] -= 1
@@ -70,7 +70,7 @@ class PatientProtocol(H11Protocol):
         super().connection_lost(exc)
 
     def watch(self) -> None:
-        """Run the timer while a request has begun and its first lines are not complete."""
+        """Runs the timer while a request has begun and its first lines are not complete."""
         awaited = self.cycle is None or self.cycle.response_complete
         if awaited and self.header_timer is None:
             self.header_timer = self.loop.call_later(HEADER_SECONDS, self.give_up)
@@ -79,14 +79,17 @@ class PatientProtocol(H11Protocol):
             self.header_timer = None
 
     def give_up(self) -> None:
-        """Close a connection without a request."""
+        """Closes a connection without a request."""
         self.header_timer = None
         if self.cycle is None or self.cycle.response_complete:
             self.transport.close()
 
 
 class Server(uvicorn.Server):
-    """Tells when it listens, and by which signal it was stopped; uvicorn would raise that again."""
+    """A server that reports when it listens, and notes by which signal it was stopped.
+
+    uvicorn would raise that signal again.
+    """
 
     def __init__(self, config: uvicorn.Config, listening: Callable[[], None]) -> None:
         super().__init__(config)
@@ -94,13 +97,13 @@ class Server(uvicorn.Server):
         self.stopped_by: int | None = None
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        """Stop, in order at first, and without a wait when told again."""
+        """Stops in order on the first signal, and without a wait on the second."""
         self.force_exit = self.should_exit
         self.should_exit = True
         self.stopped_by = sig
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, and tell."""
+        """Starts, and reports that the server listens."""
         await super().startup(sockets)
         if self.started and not self.should_exit:
             self.listening()
@@ -109,14 +112,14 @@ class Server(uvicorn.Server):
 def run_server(
     host: str,
     port: int,
-    limits: Limits,
+    limits: ServerLimits,
     more_hosts: Collection[str] = (),
     proxies: Collection[str] = (),
     token: str | None = None,
     listening: Callable[[str], None] | None = None,
     prepare: Callable[[], None] | None = None,
 ) -> None:
-    """Serve until interrupted.
+    """Serves until interrupted.
 
     Parameters
     ----------
@@ -152,13 +155,16 @@ def run_server(
 
 
 def make_server(
-    limits: Limits,
+    limits: ServerLimits,
     hosts: Hosts,
     listening: Callable[[], None],
     proxies: Collection[str] = (),
     token: str | None = None,
 ) -> Server:
-    """A server that is not running yet; ``listening`` is called once it takes requests, the rest see :func:`run_server`."""
+    """Makes a server that does not run yet; parameters as for :func:`run_server`.
+
+    ``listening`` is called once the server takes requests.
+    """
     own = {"most": limits.client_connections, "trusted": frozenset(proxies), "open_connections": Counter()}
     config = uvicorn.Config(
         create_app(limits, hosts, token),
@@ -177,7 +183,7 @@ def make_server(
 
 
 def bound_socket(host: str, port: int) -> socket.socket:
-    """A socket that listens at an address.
+    """Opens a socket that listens at an address.
 
     Raises
     ------
@@ -227,7 +233,7 @@ def is_for_others(host: str) -> bool:
 
 
 def hosts_of(host: str, more: Collection[str]) -> Hosts:
-    """The names of a server that listens at a host."""
+    """Lists the names of a server that listens at a host."""
     everywhere = is_everywhere(host)
     names = {*LOCAL, *(name.lower() for name in more)}
     names.add(socket.gethostname().lower() if everywhere else host.lower())
@@ -235,7 +241,7 @@ def hosts_of(host: str, more: Collection[str]) -> Hosts:
 
 
 def address_words(host: str) -> str:
-    """A host as it stands in an address that can be opened."""
+    """Writes a host as it stands in an address that can be opened."""
     if is_everywhere(host):
         return "127.0.0.1"
     return f"[{host}]" if ":" in host else host

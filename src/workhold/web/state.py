@@ -16,19 +16,11 @@ from typing import Any
 from attrs import define, field, frozen
 from starlette.requests import Request
 
-from workhold.web.guard import Limits
-from workhold.web.jobs import Job, Jobs
-from workhold.web.pool import Pool, StoppedError, Task
+from workhold.web.guard import ServerLimits
+from workhold.web.jobs import Jobs, ServerJob
+from workhold.web.pool import Pool, PoolTask, StoppedError
 
-__all__ = [
-    "ServerState",
-    "StaticFile",
-    "address_of",
-    "at_desk",
-    "at_desk_while_heard",
-    "state_of",
-    "static_files",
-]
+__all__ = ["ServerState", "address_of", "at_desk", "at_desk_while_heard", "state_of"]
 
 TYPES = {
     "html": "text/html; charset=utf-8",
@@ -61,12 +53,12 @@ class StaticFile:
 
 
 def static_files() -> dict[str, StaticFile]:
-    """The files of the page by their paths below ``static``, such as ``js/list.js``."""
+    """Reads the files of the page, by their paths below ``static``, such as ``js/list.js``."""
     return dict(found(files("workhold.web") / "static", ""))
 
 
 def found(folder: Traversable, prefix: str) -> list[tuple[str, StaticFile]]:
-    """The files of a known kind in a folder and those below it."""
+    """Reads the files of a known type in a folder and those below it."""
     out: list[tuple[str, StaticFile]] = []
     if not folder.is_dir():
         return out
@@ -93,7 +85,7 @@ class ServerState:
     searchers, desks : workers that search, and those that do what is quick.
     """
 
-    limits: Limits
+    limits: ServerLimits
     searchers: Pool = field(init=False)
     desks: Pool = field(init=False)
     jobs: Jobs = field(init=False)
@@ -110,7 +102,7 @@ class ServerState:
 
     @asynccontextmanager
     async def open(self) -> AsyncIterator[None]:
-        """Workers run while the block does."""
+        """Runs the workers while the block does."""
         self.searchers.open()
         self.desks.open()
         sweeper = asyncio.create_task(self.jobs.sweep())
@@ -123,24 +115,24 @@ class ServerState:
                 await sweeper
             await asyncio.gather(self.searchers.close(), self.desks.close())
 
-    def job(self, name: str) -> Job | None:
+    def job(self, name: str) -> ServerJob | None:
         """A job by its name."""
         return self.jobs.get(name)
 
 
 def state_of(request: Request) -> ServerState:
-    """The state of the server that a request came to."""
+    """Returns the state of the server that received a request."""
     state: ServerState = request.app.state.server
     return state
 
 
 def address_of(request: Request) -> str:
-    """Where a request comes from."""
+    """Returns the address of a request's client."""
     return "" if request.client is None else request.client.host
 
 
 async def at_desk(request: Request, name: str, payload: Any, seconds: float | None = None) -> Any:
-    """Let a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises.
+    """Has a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises.
 
     Parameters
     ----------
@@ -148,20 +140,22 @@ async def at_desk(request: Request, name: str, payload: Any, seconds: float | No
     """
     state = state_of(request)
     return await state.desks.run(
-        Task(name, payload, seconds or state.limits.desk_seconds, address_of(request))
+        PoolTask(name, payload, seconds or state.limits.desk_seconds, address_of(request))
     )
 
 
 async def at_desk_while_heard(request: Request, name: str, payload: Any) -> Any:
-    """As :func:`at_desk`, stopped when the client hangs up; for what comes to its end by itself when told to stop.
+    """Has a worker do something quick, and asks it to stop when the client hangs up.
+
+    The task must end by itself when asked to stop.
 
     Raises
     ------
     StoppedError
-        When the client is gone; nobody hears it.
+        When the client is gone; nobody receives it.
     """
     state = state_of(request)
-    task = Task(name, payload, state.limits.desk_seconds, address_of(request), stops_well=True)
+    task = PoolTask(name, payload, state.limits.desk_seconds, address_of(request), stops_well=True)
     running, gone = asyncio.create_task(state.desks.run(task)), asyncio.create_task(hung_up(request))
     try:
         await asyncio.wait((running, gone), return_when=asyncio.FIRST_COMPLETED)
@@ -175,6 +169,6 @@ async def at_desk_while_heard(request: Request, name: str, payload: Any) -> Any:
 
 
 async def hung_up(request: Request) -> None:
-    """Wait until a client whose request has come whole is gone."""
+    """Waits until a client whose request has come whole is gone."""
     while (await request.receive())["type"] != "http.disconnect":
         pass

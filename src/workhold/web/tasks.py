@@ -1,7 +1,8 @@
-"""What workers do. Every task takes its payload and an :class:`workhold.web.worker.Order`, and returns plain data or
-objects of the model.
+"""Tasks of the workers.
 
-Heavy modules are imported by the tasks that need them, or by :func:`warm_up`; what is returned needs none of them.
+Every task takes its payload and an :class:`workhold.web.worker.Order`, and returns plain data or objects of
+the model. Heavy modules are imported by the tasks that need them, or by :func:`warm_up`; what is returned
+needs none of them.
 """
 
 from __future__ import annotations
@@ -83,7 +84,7 @@ class Found:
 
 
 def warm_up(kind: str) -> None:
-    """Load, and on a first run compile, what workers of a kind need: "search" or "desk"."""
+    """Loads, and on a first run compiles, what workers of a kind need: "search" or "desk"."""
     from workhold.search.design import design
 
     if kind == "search":
@@ -100,7 +101,7 @@ def warm_up(kind: str) -> None:
 
 
 def search(payload: tuple[Query, int], order: Order) -> Found:
-    """Search; reports are ("progress", fraction, found) and ("preview", result)."""
+    """Searches; reports are ("progress", fraction, found) and ("preview", result)."""
     from workhold.search.design import answer
 
     query, most = payload
@@ -126,7 +127,7 @@ def search(payload: tuple[Query, int], order: Order) -> Found:
 
 
 def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
-    """Answer one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
+    """Answers one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
     from workhold.files.result.writer import toolkit_fields
     from workhold.search.exploring import explore
 
@@ -146,7 +147,7 @@ def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
 
 
 def explanation(query: Query, order: Order) -> Explanation:
-    """Why there is no fixture."""
+    """Explains why there is no fixture."""
     from workhold.search.explaining import explain
 
     return explain(query)
@@ -155,7 +156,7 @@ def explanation(query: Query, order: Order) -> Explanation:
 def check_job(
     payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order
 ) -> tuple[NamedQuery, ...]:
-    """The queries of a request, after everything that can be known to be wrong with them is asked for."""
+    """Makes the queries of a request, and checks what can be checked before the search."""
     from workhold.contact.problem import Problem
     from workhold.search.seated import refuse_unasked
 
@@ -169,7 +170,7 @@ def check_job(
 
 
 def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
-    """A part drawn by hand, as the page shows it."""
+    """Checks a part drawn by hand, and describes it for the page."""
     from workhold.web.answers import part_answer
 
     form, most_segments = payload
@@ -177,7 +178,7 @@ def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, An
 
 
 def builtin_part(name: str, order: Order) -> dict[str, Any]:
-    """A part that comes with the program; the name is known to exist."""
+    """Describes a built-in part; the name is known to exist."""
     from workhold.files.part.finding import builtin_path
     from workhold.files.part.load import read_workpiece
     from workhold.web.answers import part_answer
@@ -188,7 +189,7 @@ def builtin_part(name: str, order: Order) -> dict[str, Any]:
 
 
 def read_part(upload: Upload, order: Order) -> dict[str, Any]:
-    """The part of a file that was sent."""
+    """Reads the part of a file that was sent."""
     from workhold.files.part.load import read_workpiece
 
     with sent_file(upload) as path:
@@ -197,7 +198,7 @@ def read_part(upload: Upload, order: Order) -> dict[str, Any]:
 
 
 def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
-    """What a file that was sent holds and leaves open, with the part if it can be read."""
+    """Describes what a file that was sent holds and leaves open, with the part if it can be read."""
     from workhold.files.part.survey import survey
     from workhold.web.answers import survey_answer
 
@@ -209,7 +210,7 @@ def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
 
 @contextmanager
 def sent_file(upload: Upload) -> Iterator[Path]:
-    """A file that was sent, as long as the block runs; what goes wrong there is told without its path.
+    """Writes a file that was sent for the duration of the block; errors are raised without its path.
 
     Raises
     ------
@@ -231,12 +232,12 @@ def sent_file(upload: Upload) -> Iterator[Path]:
 
 
 def without_path(sentence: str, path: Path) -> str:
-    """A sentence about a file whose user knows it by another name."""
+    """Removes the path of a file from a sentence, for its user knows it by another name."""
     return sentence.replace(f"{path.name}: ", "", 1)
 
 
 def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
-    """A part as the page shows it, with the name of the file that was sent where it has none of its own.
+    """Describes a part for the page; where it has no name it gets that of the file that was sent.
 
     Raises
     ------
@@ -247,13 +248,18 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
     from workhold.web.forms import checked_part
 
     part, stem = loaded.workpiece, upload.name.rpartition(".")[0]
-    checked_size = checked_part(part.name, part.loops, upload.most_segments, part.departure)  # type: ignore[arg-type]
+    checked_size = checked_part(
+        part.name,
+        part.loops,  # type: ignore[arg-type]
+        upload.most_segments,
+        part.departure,
+    )
     name = stem or upload.name if part.name == path.stem else part.name
     return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)
 
 
 def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) -> list[dict[str, Any]]:
-    """What loads do to a fixture."""
+    """Describes what loads do to a fixture."""
     from workhold.presenting.data import load_case_data
     from workhold.statics.loads import load_cases
 
@@ -264,7 +270,7 @@ def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) 
 
 
 def warnings(payload: tuple[Result, dict[str, Any]], order: Order) -> list[dict[str, str]]:
-    """What to beware of with the only fixture of a result."""
+    """Lists the cautions of the only fixture of a result."""
     from workhold.drawing.result_sheet import result_cautions
 
     result, asked = payload
@@ -275,7 +281,7 @@ def warnings(payload: tuple[Result, dict[str, Any]], order: Order) -> list[dict[
 
 
 def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:
-    """Ranks and load reactions of the fixtures that resist loads best."""
+    """Returns ranks and load reactions of the fixtures that resist loads best."""
     import numpy as np
 
     from workhold.model.quality import LOAD_REACTION
@@ -311,5 +317,5 @@ TASKS: Tasks = {
 
 
 def work(connection: Connection, kind: str, memory_bytes: int) -> None:
-    """The main function of a worker of a kind, see :func:`warm_up` and :func:`workhold.web.worker.worker_main`."""
+    """Runs a worker of a kind, see :func:`warm_up` and :func:`workhold.web.worker.worker_main`."""
     worker_main(connection, memory_bytes, TASKS, partial(warm_up, kind))

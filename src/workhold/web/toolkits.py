@@ -1,4 +1,4 @@
-"""What the page knows of each kind of toolkit: what it is called, and a field of the page for each of its fields.
+"""The kinds of toolkits as the page shows them: their names, and the fields of their forms.
 
 The page draws its fields from this alone, which comes from the data of the kinds.
 
@@ -23,13 +23,14 @@ from workhold.fixels.table import Choice, ToolkitField
 __all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind"]
 
 
-# How the page reads a form of field where it has no form of its own for it; choices are taken by "one" or "several".
+# How the page reads a form of field where it has no form of its own for it; choices are taken by "one" or
+# "several".
 PAGE_FORMS: Mapping[str, str] = {"flat": "length"}
 
 
 @frozen
 class PageField:
-    """A field of the page; see :class:`workhold.fixels.table.Label` for what is not of the toolkit's field."""
+    """A field of the page; :class:`workhold.fixels.table.PageLabel` explains what the toolkit's field lacks."""
 
     name: str
     label: str
@@ -42,7 +43,7 @@ class PageField:
 
 
 def page_fields(row: ToolkitField) -> Iterator[PageField]:
-    """Yield the fields of the page for one of a toolkit."""
+    """Yields the fields of the page for a field of a toolkit."""
     for one in row.labels:
         choosing = "several" if one.several else "one"
         form = choosing if one.choices else PAGE_FORMS.get(row.form, row.form)
@@ -68,17 +69,17 @@ class Described:
 
     @property
     def said(self) -> Mapping[str, Any]:
-        """See the glossary."""
+        """Fields that the kind's name says by itself."""
         return kind_of(self.name)[1]
 
     @property
     def fields(self) -> tuple[PageField, ...]:
-        """Fields of the page: those of the kind but for those that its name says."""
+        """Fields of the page: those of the kind without those that its name says."""
         rows = (row for row in table_of(kind_of(self.name)[0]).fields if row.name not in self.said)
         return tuple(one for row in rows for one in page_fields(row))
 
     def answer(self) -> dict[str, Any]:
-        """As the page is told."""
+        """Describes the kind for the page."""
         toolkit = toolkit_of(self.name, self.start)
         types = {one.name: arrangement_words(one, toolkit) for one in toolkit.arrangements}
         return {
@@ -100,12 +101,12 @@ DESCRIBED = tuple(Described(name, words.title, words.closes, words.start) for na
 
 
 def kinds_answer() -> list[dict[str, Any]]:
-    """All kinds, as the page is told."""
+    """Describes all kinds for the page."""
     return [one.answer() for one in DESCRIBED]
 
 
 def page_kind(loaded: LoadedToolkit) -> str:
-    """The name under which the page shows a toolkit: of those that say some of its fields, the one that says most."""
+    """Names the kind under which the page shows a toolkit: the one whose name says most of its fields."""
     fits = [
         one
         for one in DESCRIBED

@@ -1,7 +1,7 @@
-"""A worker process: does one task after the other that it gets through a pipe, within limits of memory and time.
+"""A worker process: runs the tasks that come through a pipe, within limits of memory and time.
 
-It is started anew, not forked, so that it shares nothing with the server. Its kernels are loaded before it says that it is
-ready. When the server goes, the pipe ends and so does the worker.
+It is started anew, not forked, so that it shares nothing with the server. Its kernels are loaded before it
+reports that it is ready. When the server ends, the pipe ends and so does the worker.
 """
 
 from __future__ import annotations
@@ -18,9 +18,8 @@ from typing import Any
 
 from attrs import frozen
 
-from workhold.errors import InputError
+from workhold.errors import InputError, lacks_memory
 from workhold.files.apart import limit_memory, limit_processor
-from workhold.limits import lacks_memory
 
 __all__ = ["CANCEL", "Order", "Tasks", "worker_main"]
 
@@ -52,13 +51,13 @@ Tasks = Mapping[str, Callable[[Any, Order], Any]]
 def worker_main(
     connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: Callable[[], object]
 ) -> None:
-    """Work until the pipe ends; the process's main function.
+    """Runs tasks until the pipe ends; the process's main function.
 
     Parameters
     ----------
-    connection : messages in are (number, name of the task, seconds, payload); out are ("ready", 0, None), and for a task
-        ("report", number, value) any number of times, then one of ("done", number, value),
-        ("refused", number, sentence) and ("failed", number, sentence).
+    connection : messages in are (number, name of the task, seconds, payload). The first message out is
+        ("ready", 0, None). Each task sends ("report", number, value) any number of times, then one of
+        ("done", number, value), ("refused", number, sentence) and ("failed", number, sentence).
     memory_bytes : the most address space the process may take.
     tasks : what it can do, by name.
     warm_up : called first, within the limits.
@@ -89,18 +88,18 @@ def worker_main(
 
 
 def said_of(error: Exception, memory_bytes: int) -> str:
-    """What a client is told of a task that failed; what its operator has to know goes to standard error."""
+    """Returns a sentence for the client of a task that failed; standard error gets the traceback."""
     if lacks_memory(error):
         return f"This needs more than the {memory_bytes >> 20} MiB of memory the server gives."
     traceback.print_exception(error, file=sys.stderr)
     if isinstance(error, OSError):
-        # The server is gone, or the disk is full; neither can be told from here.
+        # The server is gone, or the disk is full; neither can be distinguished here.
         return "The system refused something the work needs."
     return "The program has a mistake that this request brought out; please report it."
 
 
 def listen(connection: Connection, orders: SimpleQueue[tuple[int, str, float, Any, Event]]) -> None:
-    """Take messages from the server; ends the process when there is no server any more."""
+    """Receives messages from the server; ends the process when the server has ended."""
     newest, cancel = 0, Event()
     while True:
         try:

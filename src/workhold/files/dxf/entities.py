@@ -1,10 +1,10 @@
-"""What each DXF entity is as a chain: its points, bulges and curves in the coordinates of the layout or block it stands in.
+"""Chains of DXF entities: points, bulges and curves in the coordinates of their layout or block.
 
 Glossary
 --------
-OCS : object coordinate system. Flat entities carry an extrusion direction (DXF reference, "arbitrary axis algorithm").
-    (0, 0, 1) is the drawing plane seen from above, (0, 0, -1) the same plane seen from below, whose x runs the other way.
-    Any other direction is tilted and refused.
+OCS : object coordinate system. Flat entities carry an extrusion direction (DXF reference, "arbitrary axis
+    algorithm"). (0, 0, 1) is the drawing plane seen from above, (0, 0, -1) the same plane seen from below,
+    whose x runs the other way. Any other direction is tilted and refused.
 raw chain : points (x, y, z) and bulges before units and block placements.
 """
 
@@ -48,7 +48,8 @@ REFUSED = {
 class RawChain:
     """N + 1 points (x, y, z) and N bulges, in drawing units.
 
-    ``curved`` has the segments that are curves, by their numbers, and ``heights`` the z of what else makes these.
+    ``curved`` has the segments that are curves, by their numbers, and ``heights`` the z of what else makes
+    these.
     """
 
     points: Sequence[Point3]
@@ -194,8 +195,8 @@ def spline(entity: Any) -> RawChain:
 def through_fit_points(entity: Any) -> RawChain:
     """A SPLINE of fit points alone, as CAD programs draw it.
 
-    It is the cubic of continuous curvature through them whose parameter grows as the chords are long. At its ends it has the
-    tangents given, or else no curvature; where it is closed, it is periodic.
+    It is the cubic of continuous curvature through them whose parameter grows as the chords are long. At its
+    ends it has the tangents given, or else no curvature; where it is closed, it is periodic.
 
     Raises
     ------

@@ -1,9 +1,12 @@
-"""DXF drawings: from bytes to chains in mm (ezdxf reads the file; the geometry is ours, exact and without Béziers).
+"""DXF drawings, from bytes to chains in mm.
+
+The library ezdxf reads the file; the geometry is ours, exact and without Béziers.
 
 Glossary
 --------
 hidden layer : frozen, switched off, or Defpoints, which is never printed. Read only when named.
-label : entity kind and handle (the hexadecimal name every CAD program shows), then the INSERTs it was placed by.
+label : entity kind and handle (the hexadecimal name every CAD program shows), then the INSERTs it was placed
+    by.
 """
 
 from __future__ import annotations
@@ -58,7 +61,8 @@ def read_dxf(
     unit : overrides the file's unit.
     usual_unit : the unit of a file that does not say.
     layers : layers to read; all visible ones when None.
-    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see ``Drawing``.
+    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
+        ``Drawing``.
 
     Raises
     ------
@@ -81,7 +85,7 @@ def read_document(
     layers: Sequence[str] | None,
     fit: float | None = None,
 ) -> Drawing:
-    """Reads the outline entities of the model space of a document of ezdxf, whose $INSUNITS is given; see :func:`read_dxf`.
+    """Reads the outline entities of the model space of a document of ezdxf; see :func:`read_dxf`.
 
     Raises
     ------
@@ -160,7 +164,7 @@ def unit_code(document: Any, content: bytes) -> int:
 
 
 def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:
-    """Millimetres per drawing unit, and a remark when the user's unit is not the file's ($INSUNITS, 0 for none).
+    """Millimetres per drawing unit, and a remark when the user's unit is not the file's $INSUNITS.
 
     None when neither the file nor the user gives a unit.
     """

@@ -25,7 +25,8 @@ __all__ = ["BlockNesting", "DxfWalk"]
 
 T = TypeVar("T")
 
-# More entities than this, blocks written out, is no drawing of a part (or a file made to exhaust the machine).
+# More entities than this, blocks written out, is no drawing of a part (or a file made to exhaust the
+# machine).
 MOST_ENTITIES = 500_000
 DEEPEST_NEST = 50
 
@@ -89,8 +90,8 @@ class DxfWalk:
         self.count += 1
         if self.count > MOST_ENTITIES:
             raise InputError(
-                f"the drawing has more than {MOST_ENTITIES} entities once its blocks are written out: export the "
-                "part's outline only."
+                f"the drawing has more than {MOST_ENTITIES} entities once its blocks are written out: "
+                "export the part's outline only."
             )
         kind = entity.dxftype()
         label = f"{kind} {entity.dxf.handle}{nest.suffix}"
@@ -137,8 +138,8 @@ class DxfWalk:
         if kind in REFUSED:
             x, y = placement(place_of(entity))
             raise InputError(
-                f"{label} at ({x:.6g}, {y:.6g}) is {REFUSED[kind]}, which is not made of lines and arcs: convert it to "
-                f"lines and arcs in the CAD program, or leave its layer out with {LAYERS}."
+                f"{label} at ({x:.6g}, {y:.6g}) is {REFUSED[kind]}, which is not made of lines and arcs: "
+                f"convert it to lines and arcs in the CAD program, or leave its layer out with {LAYERS}."
             )
         raw = said_of(label, SHAPES[kind], entity)
         self.interpolated += kind == "SPLINE" and not len(entity.control_points)
@@ -171,8 +172,8 @@ class DxfWalk:
             elif not abs(height - self.level[0]) <= LEVEL * max(1.0, abs(self.level[0])):
                 other = "itself" if label == self.level[1] else self.level[1]
                 raise InputError(
-                    f"{label} reaches the height z = {height:.6g} mm, but {other} lies at z = {self.level[0]:.6g} mm: "
-                    "draw the part flat, in the XY plane."
+                    f"{label} reaches the height z = {height:.6g} mm, but {other} lies at z = "
+                    f"{self.level[0]:.6g} mm: draw the part flat, in the XY plane."
                 )
 
     def visit_insert(self, insert: Any, nest: BlockNesting, layer: str, label: str) -> None:
@@ -237,20 +238,21 @@ class DxfWalk:
         if self.interpolated:
             splines = counted(self.interpolated, "spline", "splines")
             remarks.append(
-                f"Read {splines} of fit points alone as the cubic through them that CAD programs draw; some draw another "
-                "one, so check the outline."
+                f"Read {splines} of fit points alone as the cubic through them that CAD programs draw; some "
+                "draw another one, so check the outline."
             )
         if self.hidden:
             total = sum(self.hidden.values())
             places = ", ".join(f"{count} {where}" for where, count in sorted(self.hidden.items()))
             remarks.append(
-                f"Left out {counted(total, 'hidden entity', 'hidden entities')} ({places}); name a layer with {LAYERS} "
-                "to read it all the same."
+                f"Left out {counted(total, 'hidden entity', 'hidden entities')} ({places}); name a layer "
+                f"with {LAYERS} to read it all the same."
             )
         if self.missing_blocks:
             names = listed(sorted(self.missing_blocks))
             remarks.append(
-                f"Left out blocks that the file does not contain: {names}; bind external references to read them."
+                f"Left out blocks that the file does not contain: {names}; bind external references to read "
+                "them."
             )
         return remarks
 

@@ -22,7 +22,8 @@ from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 
 from workhold.files.atomic import write_bytes
-from workhold.fixels.carrier import Carrier, column_letters, peg_outline
+from workhold.fixels.carrier import Carrier, column_letters
+from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.dowels import JawPlate, plate_places
@@ -47,8 +48,8 @@ __all__ = [
     "write_setup_dxf",
 ]
 
-# Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT, PLATE or CLAMP, the pegs
-# have one, PEGS or LOCATORS, and so has what is set, OPENING or CLAMP_SETTING.
+# Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT, PLATE or
+# CLAMP, the pegs have one, PEGS or LOCATORS, and so has what is set, OPENING or CLAMP_SETTING.
 PART, HOLES, OTHERS = {"PART": 7}, {"KEEP_OUT": 30, "HOLES": 8, "HOLES_USED": 1}, {"PART_ZERO": 2, "TEXT": 7}
 PEGS, SETTING = 1, 6
 STILL, SLIDING = 5, 3
@@ -114,7 +115,7 @@ def setup_dxf(
 
 
 def content_of(document: Drawing) -> bytes:
-    """The bytes of a drawing, whose classes the library would add in an order that differs from process to process."""
+    """The bytes of a drawing, with its classes sorted: ezdxf would add them in a random order."""
     for name in sorted(document.entitydb.dxf_types_in_use()):
         document.classes.add_class(name)
     stream = StringIO()
@@ -148,8 +149,8 @@ def layers_of(toolkit: Toolkit) -> dict[str, int]:
     """The layers of a toolkit's set-ups, and their colours.
 
     >>> from workhold import Plate
-    >>> [*layers_of(Plate(pitch=20, peg_radius=5))]
-    ['PART', 'LOCATORS', 'CLAMP', 'KEEP_OUT', 'HOLES', 'HOLES_USED', 'CLAMP_SETTING', 'PART_ZERO', 'TEXT', 'PLATE']
+    >>> print(*layers_of(Plate(pitch=20, peg_radius=5)))
+    PART LOCATORS CLAMP KEEP_OUT HOLES HOLES_USED CLAMP_SETTING PART_ZERO TEXT PLATE
     """
     moving = [carrier for carrier in toolkit.carriers if carrier.travel is not None]
     return {
@@ -186,7 +187,7 @@ def add_part(space: Modelspace, part: Workpiece) -> None:
 
 
 def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
-    """Adds the pegs, as points if they have no size, the names of their holes, and where the cutter is not to go."""
+    """Adds the pegs, the names of their holes, and the zones where the cutter is not to go."""
     for each in seen.carriers:
         for peg in each.pegs:
             if each.carrier.peg_radius > 0:
@@ -264,7 +265,7 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
 
 
 def add_walls(space: Modelspace, seen: Shown) -> None:
-    """Add the walls that the part lies on as bars."""
+    """Adds the walls that the part lies on as bars."""
     for wall in seen.walls:
         bar = wall.bar
         corners = [(bar.x0, bar.y0), (bar.x1, bar.y0), (bar.x1, bar.y1), (bar.x0, bar.y1)]
@@ -272,8 +273,10 @@ def add_walls(space: Modelspace, seen: Shown) -> None:
 
 
 def add_travel(space: Modelspace, seen: Shown) -> None:
-    """Adds the axes that each length to set is measured between, and the length itself beyond the plates, of two along the
-    same way the second farther out."""
+    """Adds each length to set, with the axes that it is measured between.
+
+    A length is drawn outside the plates; of two along the same way the second is farther out.
+    """
     for number, measured in enumerate(seen.measured):
         setting, layer = measured.setting, {"layer": setting_layer(measured.setting.carrier)}
         farther = 1 + sum(one.is_upright == measured.is_upright for one in seen.measured[:number])

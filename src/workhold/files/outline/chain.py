@@ -29,7 +29,7 @@ __all__ = ["Chain", "CurveReading", "Drawing", "Placement", "arc_bulges", "clean
 
 @frozen
 class Placement:
-    """The map x' = a x + c y + e, y' = b x + d y + f, z' = height_scale z + height (the letters of an SVG matrix)."""
+    """The map x' = a x + c y + e, y' = b x + d y + f, z' = height_scale z + height (letters as in SVG)."""
 
     a: float = 1.0
     b: float = 0.0
@@ -172,15 +172,17 @@ def arc_bulges(sweep: float) -> list[float]:
 def rebulged(start: Point, end: Point, bulge: float, new_start: Point, new_end: Point) -> float:
     """Bulge of an arc whose ends have been moved a little, its centre staying as near its place as it can.
 
-    The new centre is the foot of the old one on the perpendicular bisector of the new chord. So centre and radius change
-    by no more than the order of the movement, times centre distance over chord, which no choice can avoid.
+    The new centre is the foot of the old one on the perpendicular bisector of the new chord. So centre and
+    radius change by no more than the order of the movement, times centre distance over chord, which no choice
+    can avoid.
     """
     if bulge == 0.0:
         return 0.0
     chord = hypot(end[0] - start[0], end[1] - start[1])
     size = abs(bulge)
     sign = 1.0 if bulge > 0 else -1.0
-    # Signed distance from the chord's middle to the centre, to the left of the chord for a short counter-clockwise arc.
+    # Signed distance from the chord's middle to the centre, to the left of the chord for a short
+    # counter-clockwise arc.
     apart = sign * chord * (1 - size * size) / (4 * size)
     ux, uy = (end[0] - start[0]) / chord, (end[1] - start[1]) / chord
     center = ((start[0] + end[0]) / 2 - apart * uy, (start[1] + end[1]) / 2 + apart * ux)
@@ -229,7 +231,8 @@ def cleaned(chains: Iterable[Chain]) -> Drawing:
         )
     if doubled:
         remarks.append(
-            f"Left out doubled vertices of {counted(len(doubled), 'polyline', 'polylines')}: {listed(doubled)}."
+            f"Left out doubled vertices of {counted(len(doubled), 'polyline', 'polylines')}: "
+            f"{listed(doubled)}."
         )
     return Drawing(tuple(kept), tuple(remarks))
 
@@ -265,7 +268,8 @@ def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.
         )
     if max(abs(x), abs(y)) > MOST_LENGTH:
         raise InputError(
-            f"{label} lies more than 1 km from the origin: check the drawing's unit, or move it to the origin."
+            f"{label} lies more than 1 km from the origin: check the drawing's unit, or move it to the "
+            "origin."
         )
     if abs(bulge) > MOST_LENGTH / SHORTEST:
         raise InputError(f"{label} is an arc that bulges by {bulge:.3g} times half its chord: correct it.")

@@ -3,8 +3,10 @@
 Glossary
 --------
 curve : a segment of a drawing that is drawn as a spline, an ellipse or a Bézier curve.
-disguise : a curve that is a line or an arc but for a hair, see ``geometry.curve_fit``; others are true curves.
-fit : how far lines and arcs may be from a true curve that they stand for, in mm; None where true curves are refused.
+disguise : a curve that is a line or an arc but for a hair, see ``geometry.curve_fit``; others are true
+    curves.
+fit : how far lines and arcs may be from a true curve that they stand for, in mm; None where true curves are
+    refused.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ __all__ = [
 
 # In mm: what a refusal proposes, finest first, and the finest that is worth anything.
 PROPOSED, LEAST_FIT = (0.01, 0.1, 1.0), 1e-4
-# Arcs and lines of one outline beyond which a coarser fit is proposed.
+# Number of arcs and lines of one outline above which a coarser fit is proposed.
 MANY_ARCS = 400
 # Pieces of curves in one drawing: more are a picture, and would take minutes.
 MOST_PIECES = 20_000
@@ -75,7 +77,8 @@ class CurveReader:
         Parameters
         ----------
         points, bulges, labels : of N segments, in the coordinates they are drawn in.
-        curved : the segments that are curves, by their numbers, in these coordinates; their bulges mean nothing.
+        curved : the segments that are curves, by their numbers, in these coordinates; their bulges mean
+            nothing.
         placement : the map to mm; arcs that it makes elliptical are curves.
 
         Raises
@@ -131,7 +134,8 @@ class CurveReader:
         self.count += len(pieces)
         if self.count > MOST_PIECES:
             raise InputError(
-                f"the curves of the drawing have more than {MOST_PIECES} pieces: export the part's outline only."
+                f"the curves of the drawing have more than {MOST_PIECES} pieces: export the part's outline "
+                "only."
             )
         fitted = fitted_curve(pieces, self.fit)
         if fitted is None:
@@ -182,7 +186,8 @@ def refuse_true_curves(
     )
     raise InputError(
         f"{names}{more} {one_of} not made of lines and arcs: give {FIT} {proposed:g} to put "
-        f"{counted(arcs, 'line or arc', 'lines and arcs')} in place of {it}, nowhere farther than {away:.2g} mm off{leave}."
+        f"{counted(arcs, 'line or arc', 'lines and arcs')} in place of {it}, nowhere farther than {away:.2g} "
+        f"mm off{leave}."
     )
 
 
@@ -195,7 +200,7 @@ def refitted(one: CurveReading, fit: float) -> tuple[int, float]:
 def with_chords_merged(
     loops: Sequence[Loop], found: Mapping[str, CurveReading], fit: float | None
 ) -> tuple[tuple[Loop, ...], float, list[str]]:
-    """Loops with one line or arc for each chain of short ones, their largest departure in mm, and what to say of it.
+    """Loops with one line or arc for each chain of short ones, the departure in mm, and remarks.
 
     The biarcs of true curves stay as they are.
     """
@@ -228,7 +233,8 @@ def curve_remarks(labels: Iterable[str], found: Mapping[str, CurveReading]) -> t
         curves, off = counted(len(some), "curve", "curves"), f"nowhere farther than {away:.2g} mm off"
         if is_disguise:
             remarks.append(
-                f"Read {curves} as the lines and arcs that they stand for{'' if away < READING else ', ' + off}."
+                f"Read {curves} as the lines and arcs that they stand "
+                f"for{'' if away < READING else ', ' + off}."
             )
         else:
             arcs = counted(sum(one.arcs for one in some), "line or arc", "lines and arcs")
@@ -241,6 +247,6 @@ def departure_remark(departure: float) -> list[str]:
     if departure < READING:
         return []
     return [
-        f"Fixtures are found for this outline, which is up to {departure:.2g} mm off the drawing; that counts in the "
-        "tolerance of its faces."
+        f"Fixtures are found for this outline, which is up to {departure:.2g} mm off the drawing; that "
+        "counts in the tolerance of its faces."
     ]

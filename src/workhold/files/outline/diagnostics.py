@@ -68,7 +68,8 @@ def unit_asked(lacking: str, chains: Sequence[Chain]) -> UnitAskedError:
 
 # A stray whose ends are nearer than this share of its size was meant to close.
 NEARLY_CLOSED = 0.2
-# Pieces that do not close are looked at together where they are so few, with gaps up to a share of their size.
+# Pieces that do not close are looked at together where they are so few, with gaps up to a share of their
+# size.
 MOST_JOINED, MOST_GAP, MOST_GAPS = 500, 0.02, 20
 # How many open ends an error names, and how many ends are searched for the nearest one.
 ENDS_NAMED = 4
@@ -104,19 +105,19 @@ def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
         size = dist((low_x, low_y), (high_x, high_y))
         if low_x < x0 and low_y < y0 and high_x > x1 and high_y > y1 and gap < NEARLY_CLOSED * size:
             raise InputError(
-                f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part all the same, "
-                f"give {PART_NUMBER} {part.number}."
+                f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part all "
+                f"the same, give {PART_NUMBER} {part.number}."
             )
     enough = gap_around(part, strays)
     if enough is not None:
         raise InputError(
-            f"the outline around {part} is not closed: {open_ends(strays, enough)} To use the inner part all the same, give "
-            f"{PART_NUMBER} {part.number}."
+            f"the outline around {part} is not closed: {open_ends(strays, enough)} To use the inner part "
+            f"all the same, give {PART_NUMBER} {part.number}."
         )
 
 
 def gap_around(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
-    """The smallest gap between ends with which pieces that do not close make an outline around a part; None without one."""
+    """The smallest gap with which open pieces make an outline around a part; None without one."""
     chains = [stray.chain for stray in strays]
     if not 1 < len(chains) <= MOST_JOINED:
         return None
@@ -149,7 +150,7 @@ def bounds(points: Sequence[Point], bulges: Sequence[float]) -> tuple[float, flo
 
 
 def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
-    """The open ends nearest to another one, how far apart they are, and the remedy; a gap that is enough, if known."""
+    """The nearest open ends, how far apart they are, and the remedy; a gap that is enough, if known."""
     ends: list[tuple[Point, str]] = []
     for stray in strays:
         ends += [(stray.chain.points[0], stray.first), (stray.chain.points[-1], stray.last)]
@@ -199,7 +200,7 @@ MOST_LAYERS = 12
 
 
 def with_layers_named(error: InputError, drawing: Drawing, usable: Callable[[Drawing], bool]) -> InputError:
-    """What is wrong with an outline, with the layers whose segments are named in it, and a choice of layers that is usable.
+    """What is wrong with an outline, the layers that are named in it, and a choice of layers that is usable.
 
     Parameters
     ----------
@@ -220,7 +221,8 @@ def with_layers_named(error: InputError, drawing: Drawing, usable: Callable[[Dra
     for chosen in choices:
         if usable(of_layers(drawing, chosen)):
             return InputError(
-                f"{said.rstrip('.')}. {where}: give {chosen_words(chosen)} to read an outline without the rest."
+                f"{said.rstrip('.')}. {where}: give {chosen_words(chosen)} to read an outline without the "
+                "rest."
             )
     return InputError(f"{said.rstrip('.')}. {where}.")
 

@@ -38,7 +38,8 @@ CROWD = 64
 def close_pairs(points: NDArray[np.float64], tolerance: float) -> NDArray[np.int64]:
     """Pairs of points at most a tolerance apart.
 
-    Points that are exactly equal are paired in a row, first to second, second to third; distinct points in all pairs.
+    Points that are exactly equal are paired in a row, first to second, second to third; distinct points in
+    all pairs.
 
     Parameters
     ----------
@@ -69,7 +70,8 @@ def close_pairs(points: NDArray[np.float64], tolerance: float) -> NDArray[np.int
 def pairs_in_strips(points: NDArray[np.float64], tolerance: float) -> list[NDArray[np.int64]]:
     """Index pairs of distinct points at most a tolerance apart; a pair may come twice.
 
-    Vertical strips two tolerances wide, laid twice with an offset of one, put every close pair in a common strip.
+    Vertical strips two tolerances wide, laid twice with an offset of one, put every close pair in a common
+    strip.
     """
     pairs = []
     for offset in (0.0, 0.5):
@@ -83,8 +85,8 @@ def pairs_in_strips(points: NDArray[np.float64], tolerance: float) -> list[NDArr
             if step > CROWD:
                 k = int(np.flatnonzero(near)[0])
                 raise InputError(
-                    f"More than {CROWD} ends lie within {tolerance:g} mm of each other near ({x[k]:.6g}, {y[k]:.6g}): "
-                    f"give a smaller {JOIN_TOLERANCE}."
+                    f"More than {CROWD} ends lie within {tolerance:g} mm of each other near ({x[k]:.6g}, "
+                    f"{y[k]:.6g}): give a smaller {JOIN_TOLERANCE}."
                 )
             near &= np.hypot(x[step:] - x[:-step], y[step:] - y[:-step]) <= tolerance
             first = np.flatnonzero(near)
@@ -93,7 +95,7 @@ def pairs_in_strips(points: NDArray[np.float64], tolerance: float) -> list[NDArr
 
 
 def groups(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
-    """(count,) group numbers of items of which pairs belong together; a group is named by its smallest item."""
+    """(count,) groups of items of which pairs belong together; each is named by its smallest item."""
     parent = list(range(count))
 
     def root(item: int) -> int:
@@ -202,7 +204,7 @@ def end_nodes(chains: Sequence[Chain]) -> NDArray[np.int64]:
 def without_repeats(
     chains: Sequence[Chain], node: NDArray[np.int64]
 ) -> tuple[list[Chain], NDArray[np.int64], list[str]]:
-    """Keeps one of chains that were drawn twice; also the nodes of those kept, and the names of those left out."""
+    """Keeps one of chains that were drawn twice; also the kept ones' nodes, and the others' names."""
     between: defaultdict[tuple[int, int, int], list[int]] = defaultdict(list)
     kept: list[int] = []
     repeated: list[str] = []
@@ -329,8 +331,8 @@ def junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> 
     """The error for three or more ends at one point."""
     names = listed([chains[end // 2].labels[-(end % 2)] for end in ends])
     return InputError(
-        f"{len(ends)} ends meet{within} at {at(end_point(chains, ends[0]))} ({names}), so the outline could go on in "
-        "more than one way: remove the extra entity, or put it on a layer that is not chosen."
+        f"{len(ends)} ends meet{within} at {at(end_point(chains, ends[0]))} ({names}), so the outline could "
+        "go on in more than one way: remove the extra entity, or put it on a layer that is not chosen."
     )
 
 

@@ -55,7 +55,8 @@ class DrawnPart:
         x0, y0, x1, y1 = self.bounds
         holes = len(self.loops) - 1
         with_holes = f"{holes} hole{'' if holes == 1 else 's'}" if holes else "no holes"
-        return f"part {self.number} is {x1 - x0:.6g} x {y1 - y0:.6g} mm at ({x0:.6g}, {y0:.6g}) with {with_holes}"
+        size = f"{x1 - x0:.6g} x {y1 - y0:.6g} mm"
+        return f"part {self.number} is {size} at ({x0:.6g}, {y0:.6g}) with {with_holes}"
 
 
 @frozen
@@ -113,7 +114,7 @@ def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
 
 
 def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart]) -> None:
-    """Refuses a part that loops of other parts cross or touch: they may be holes that were drawn half outside.
+    """Refuses a part that loops of other parts cross or touch: holes that were drawn half outside.
 
     Raises
     ------

@@ -5,8 +5,10 @@ too: its ``workpiece`` has the same form.
 
 Objects of shapely, ezdxf, build123d and CadQuery are known by what they can do; none of these is imported to
 find out. A shapely geometry has ``__geo_interface__`` and ``geom_type``, a document of ezdxf has
-``modelspace`` and ``header``. build123d and CadQuery wrap shapes of Open CASCADE as ``wrapped``, or hold what
-does: ``part`` or ``sketch`` of a builder, ``vals()`` of a work plane, ``_faces`` of CadQuery's sketch.
+``modelspace`` and ``header``.
+
+The libraries build123d and CadQuery wrap shapes of Open CASCADE as ``wrapped``, or hold what does. That is
+``part`` or ``sketch`` of a builder, ``vals()`` of a work plane, or ``_faces`` of CadQuery's sketch.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ __all__ = ["JsonWorkpiece", "ObjectPart", "drawing_of_object", "read_json"]
 
 @frozen
 class JsonWorkpiece:
-    """Name (None when the file gives none), loops as rows x, y (mm) and bulge, how far these depart from a drawing in mm."""
+    """A workpiece of a JSON file: its name, loops as rows x, y (mm) and bulge, and departure in mm."""
 
     name: str | None
     loops: list[list[tuple[float, float, float]]]
@@ -36,7 +38,7 @@ class JsonWorkpiece:
 
 
 def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
-    """Read a workpiece, or the workpiece of a result file.
+    """Reads a workpiece, or the workpiece of a result file.
 
     Parameters
     ----------
@@ -68,8 +70,8 @@ def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
 
 
 WANTED = (
-    "give the path of a file, a built-in name, or a polygon of shapely, a document of ezdxf, or a sketch, face or solid of "
-    "build123d or CadQuery"
+    "give the path of a file, a built-in name, or a polygon of shapely, a document of ezdxf, or a sketch, "
+    "face or solid of build123d or CadQuery"
 )
 # What an object of a library that wraps Open CASCADE may hold its shape under, and what a builder may.
 HELD = ("_obj", "part", "sketch", "_faces")
@@ -106,7 +108,8 @@ def drawing_of_object(
 ) -> ObjectPart:
     """What an object of another library holds.
 
-    The arguments are those of :func:`workhold.load`. A geometry of shapely has no unit and is in mm unless one is given.
+    The arguments are those of :func:`workhold.load`. A geometry of shapely has no unit and is in mm unless
+    one is given.
 
     Raises
     ------

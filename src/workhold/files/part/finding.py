@@ -112,7 +112,8 @@ def read_bytes(path: Path) -> bytes:
             raise InputError("this is not a regular file: give a .json, .dxf, .svg or .step file.")
         if path.stat().st_size > LARGEST_FILE:
             raise InputError(
-                f"the file is larger than {LARGEST_FILE // 1_000_000} MB: save a drawing of the part's outline only."
+                f"the file is larger than {LARGEST_FILE // 1_000_000} MB: save a drawing of the part's "
+                "outline only."
             )
         content = path.read_bytes()
     except OSError as error:

@@ -52,7 +52,7 @@ PART_LIST = 10
 
 @frozen
 class Loaded:
-    """A workpiece and what to tell the user about how it was read.
+    """A workpiece and remarks on how it was read.
 
     Parameters
     ----------
@@ -80,22 +80,25 @@ def load(
     axis: str | None = None,
     section: float | None = None,
 ) -> Workpiece:
-    """Load a part from a file, by the name of a built-in model, or from an object of another library.
+    """Loads a part from a file, by the name of a built-in model, or from an object of another library.
 
     Parameters
     ----------
-    part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins. Or a geometry of
-        shapely, a document of ezdxf, or a sketch, a face or a solid of build123d or CadQuery.
+    part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins. Or a
+        geometry of shapely, a document of ezdxf, or a sketch, a face or a solid of build123d or CadQuery.
     name : what to call the part; the file's name if None.
-    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. A geometry of shapely
-        is in mm if None.
+    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. A
+        geometry of shapely is in mm if None.
     layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
-    part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when None.
+    part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when
+        None.
     join_tolerance : largest gap between loose ends to close, in mm.
-    fit : how far lines and arcs may be from splines, ellipses and Bézier curves that they are put in place of, in mm; None
-        refuses those that are no lines or arcs. The workpiece's ``departure`` tells how far they are.
+    fit : how far lines and arcs may be from the curves that they replace, in mm; None refuses curves that
+        are no lines or arcs. The workpiece's ``departure`` says how far
+        they are.
     axis : "x", "y" or "z", the direction of a STEP file that the pegs are parallel to; z when None.
-    section : take the section of a STEP file's solid at this height in mm above its lowest point, not its silhouette.
+    section : take the section of a STEP file's solid at this height in mm above its lowest point, not its
+        silhouette.
 
     Raises
     ------
@@ -135,13 +138,14 @@ def read_workpiece(
     section: float | None = None,
     called: Mapping[str, str] | None = None,
 ) -> Loaded:
-    """Load a part as :func:`load` does, with remarks and the list of all parts in the file.
+    """Loads a part as :func:`load` does, with remarks and the list of all parts in the file.
 
     Parameters
     ----------
-    usual_unit : the unit of a drawing that does not say its own, when ``unit`` is None; the others are those of
-        :func:`load`.
-    called : what the questions of ``files.questions`` are called where the part is asked for; None is for Python.
+    usual_unit : the unit of a drawing that does not say its own, when ``unit`` is None; the others are those
+        of :func:`load`.
+    called : what the questions of ``files.questions`` are called where the part is asked for; None is for
+        Python.
 
     Raises
     ------
@@ -297,7 +301,7 @@ def from_drawing(
     fit: float | None,
     layered: bool = False,
 ) -> Loaded:
-    """A workpiece from a drawing's chains; ``layered`` tells whether its layers can be chosen.
+    """A workpiece from a drawing's chains; ``layered`` says whether its layers can be chosen.
 
     Raises
     ------
@@ -356,13 +360,12 @@ def outline_of(
     except ZeroDivisionError as error:  # pragma: no cover - geometry checks first
         raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
     remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *of_curves, *of_chords, *workpiece.remarks)
-    remarks += tuple(departure_remark(departure))
-    remarks += tuple(stray_remarks(joined.strays))
+    remarks += (*departure_remark(departure), *stray_remarks(joined.strays))
     return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts, part.number)
 
 
 def built(name: str, loops: Sequence[Loop], with_labels: bool = True, departure: float = 0.0) -> Workpiece:
-    """Build the workpiece; its complaints lose the part's name, since the file's name stands before them.
+    """Builds the workpiece; its complaints lose the part's name, since the file's name stands before them.
 
     Raises
     ------
@@ -377,17 +380,11 @@ def built(name: str, loops: Sequence[Loop], with_labels: bool = True, departure:
 
 
 def refuse_large(segments: int) -> None:
-    """Refuse a part of so many segments that no fixture search would end.
-
-    Raises
-    ------
-    InputError
-        Naming the number.
-    """
+    """Raises an InputError for a part of so many segments that no fixture search would end."""
     if segments > MOST_SEGMENTS:
         raise InputError(
-            f"the part has {segments} segments, more than the {MOST_SEGMENTS} this program takes: draw its outline "
-            "with lines and arcs instead of many short pieces."
+            f"the part has {segments} segments, more than the {MOST_SEGMENTS} this program takes: draw its "
+            "outline with lines and arcs instead of many short pieces."
         )
 
 
@@ -398,6 +395,5 @@ def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | Non
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
     because = "" if asked is not None else f", the largest (choose another with {PART_NUMBER})"
     listing = "; ".join(str(part) for part in parts[:PART_LIST])
-    return [
-        f"The file holds {len(parts)} separate parts: {listing}{more}. Part {chosen.number} is used{because}."
-    ]
+    used = f"Part {chosen.number} is used{because}."
+    return [f"The file holds {len(parts)} separate parts: {listing}{more}. {used}"]

@@ -1,6 +1,6 @@
 """What a file holds and what it leaves open, for someone who is asked on the spot instead of refused.
 
-The layers of a DXF drawing are told with what is on them, so that the ones with the outline can be chosen.
+The layers of a DXF drawing are listed with what is on them, so that the ones with the outline can be chosen.
 
 Glossary
 --------
@@ -43,7 +43,7 @@ class DrawnLayer:
     name : as it is drawn.
     kinds : how many entities of each kind are on it, blocks written out.
     hidden : whether it is frozen, switched off or never printed, so that it is read only when it is named.
-    loops : how many closed outlines its own lines, arcs and curves make; None where they cannot be told.
+    loops : how many closed outlines its own lines, arcs and curves make; None where that is unknown.
     size : width and height of these lines, arcs and curves; None where there are none.
     chains : these lines, arcs and curves.
     """
@@ -64,7 +64,7 @@ class LayerWalk(DxfWalk):
         self.kinds: dict[str, Counter[str]] = {}
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
-        """Count an entity, and collect its chain where it has one."""
+        """Counts an entity, and collect its chain where it has one."""
         kind = entity.dxftype()
         if kind != "INSERT":
             self.kinds.setdefault(self.effective_layer(entity, nest), Counter())[kind] += 1
@@ -81,7 +81,7 @@ class LayerWalk(DxfWalk):
 def drawn_layers(
     path: str | Path, unit: str | None, usual_unit: str | None
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
-    """The layers of a DXF file with something on them, by name, and whether their sizes are in mm; else in drawing units.
+    """The layers of a DXF file with something on them, by name, and whether their sizes are in mm.
 
     Raises
     ------
@@ -134,8 +134,9 @@ class Survey:
     loaded : the part, or None where it is refused.
     refusal : why it is, in a sentence; empty where it is not.
     asked : names of the questions that must be answered first, such as "unit".
-    size : width and height in mm of all that is drawn; None for files that hold no drawing, and while it cannot be read.
-        Where the unit is asked, one unit of the drawing stands for a millimetre in it and in all that follows.
+    size : width and height in mm of all that is drawn; None for files that hold no drawing, and while it
+        cannot be read. Where the unit is asked, one unit of the drawing stands for a millimetre in it and in
+        all that follows.
     chains : all that is drawn.
     parts : the parts that the closed outlines make, by decreasing area.
     gaps : between loose ends, each once, in increasing order.
@@ -153,7 +154,7 @@ class Survey:
 
 
 def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> Survey:
-    """Read a part as far as it goes.
+    """Reads a part as far as it goes.
 
     Parameters
     ----------
@@ -169,7 +170,7 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
     content = read_bytes(path)
     loaded, sentence = None, ""
     try:
-        # Questions keep their marks, so that they can be told from the sentence.
+        # Questions keep their marks, so that they can be found in the sentence.
         loaded = read_workpiece(path, **options, called=MARKS)
     except InputError as error:
         sentence = str(error)
@@ -211,7 +212,7 @@ def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawin
 
 
 def layers_of(path: Path, unit: str | None) -> tuple[DrawnLayer, ...]:
-    """The layers of a DXF file with something to read on them; none of other files, and where they cannot be told."""
+    """The layers of a DXF file with something to read on them; none of other or damaged files."""
     try:
         return tuple(layer for layer in drawn_layers(path, unit, None)[0] if layer.chains)
     except InputError:
@@ -228,7 +229,7 @@ def gaps_and_parts(
         strays = join(chains, 0.0).strays
         joined = join(chains, tolerance)
     except InputError:
-        # Ends that could go on in more than one way; the refusal tells where.
+        # Ends that could go on in more than one way; the refusal says where.
         return (), ()
     ends = np.array(
         [end for stray in strays for end in (stray.chain.points[0], stray.chain.points[-1])]

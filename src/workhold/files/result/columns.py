@@ -1,9 +1,9 @@
-"""A result file in columns: an archive (:mod:`workhold.archive`) of one array for each kind of number, for large results.
+"""Large results in columns: an archive (:mod:`workhold.archive`) of one array for each kind of number.
 
-Its text ``result.json`` is the head of the JSON form (:mod:`workhold.files.result.writer`). The numbers are those of that
-form, rounded as there, so that a result can go from one form to the other and back without a change. Where pegs stand
-follows from their holes and is not written. Opening such a file reads the head and the types; fixtures are read, and
-checked, when they are looked at.
+Its text ``result.json`` is the head of the JSON form (:mod:`workhold.files.result.writer`). The numbers are
+those of that form, rounded as there, so that a result can go from one form to the other and back without a
+change. Where pegs stand follows from their holes and is not written. Opening such a file reads the head and
+the types; fixtures are read, and checked, when they are looked at.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
-from workhold.files.result.fixture_forms import checked_seating, seatings_told
+from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees, significant
 from workhold.files.result.parts import (
     checked_head,
@@ -45,7 +45,7 @@ BLOCK = 1 << 15
 
 @frozen
 class ColumnsSink:
-    """Writes results in columns as they come; an earlier file of the name is replaced only when all went well."""
+    """Writes results in columns as they come; replaces an earlier file only when all went well."""
 
     path: Path
 
@@ -55,7 +55,7 @@ class ColumnsSink:
         return self.path.resolve().parent
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Write a result and its fixtures, so many unless somebody asks to stop.
+        """Writes a result and its fixtures, so many unless somebody asks to stop.
 
         Raises
         ------
@@ -73,12 +73,12 @@ class ColumnsSink:
                 result = result.cut_short(archive.done)
             text = head(result) | {"counts": {name: counts[name] for name in result.toolkit.types}}
             if result.query.seating is not None:
-                text["seatings"] = [told.as_fields() for told in result.seating]
+                text["seatings"] = [one.as_fields() for one in result.seating]
             archive.close(HEAD, json.dumps(text, ensure_ascii=False), FORMAT)
 
 
 def write_columns(result: Result, path: str | Path) -> None:
-    """Write a result file in columns; an earlier file of that name is replaced only when all went well.
+    """Writes a result file in columns; an earlier file of that name is replaced only when all went well.
 
     Raises
     ------
@@ -89,10 +89,10 @@ def write_columns(result: Result, path: str | Path) -> None:
 
 
 def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
-    """Find every fixture that a query asks for, however many, and write them in columns.
+    """Finds every fixture that a query asks for, however many, and writes them in columns.
 
-    No more than some 100 MB of fixtures are in memory at a time; what is being sorted is kept beside the file, in files
-    without a name, and takes up to twice its size.
+    No more than some 100 MB of fixtures are in memory at a time. What is being sorted is kept beside the
+    file, in files without a name, and takes up to twice its size.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ class MappedTable(FixtureTable):
 
 
 def read_columns(path: Path) -> Result:
-    """The result of a file in columns; nothing but its head and the types of its fixtures, a byte each, is read yet.
+    """The result of a file in columns, of which only the head and the fixtures' types are read yet.
 
     Raises
     ------
@@ -176,14 +176,15 @@ def read_columns(path: Path) -> Result:
     query = checked_query(head, path)
     refuse_unknown_types(columns["arrangement"], query.toolkit, path)
     result = result_with(MappedTable(**columns, query=query, path=path), head, query, path)
-    told = seatings_told(data, path)
-    if len(told) > len(result):
+    seatings = seatings_of(data, path)
+    if len(seatings) > len(result):
         raise InputError(
-            f"{path}: the seating of {len(told)} fixtures is told, but {len(result)} are listed."
+            f"{path}: the seating of {len(seatings)} fixtures is told, but {len(result)} are listed."
         )
-    # The pose tells which of the seats is the fixture's own.
-    poses = [fixture.pose for fixture in result[: len(told)]]
+    # The pose decides which of the seats is the fixture's own.
+    poses = [fixture.pose for fixture in result[: len(seatings)]]
     seating = [
-        checked_seating(one, pose, path, k) for k, (one, pose) in enumerate(zip(told, poses, strict=True), 1)
+        checked_seating(one, pose, path, k)
+        for k, (one, pose) in enumerate(zip(seatings, poses, strict=True), 1)
     ]
     return with_seating(result, seating, path)

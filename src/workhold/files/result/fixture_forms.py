@@ -14,12 +14,12 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from workhold.errors import InputError
-from workhold.files.result.forms import Head, Pair, Part
+from workhold.files.result.forms import FormPart, Head, Pair
 from workhold.model.fixture import Pose
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.seating import Seating
 
-__all__ = ["FixturePart", "ResultFile", "SeatingPart", "checked_seating", "figures_told", "seatings_told"]
+__all__ = ["FixturePart", "ResultFile", "SeatingPart", "checked_seating", "seating_figures_of", "seatings_of"]
 
 SeatingPair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Length = Annotated[float, Field(ge=0)]
@@ -49,7 +49,7 @@ class SeatContactPart(SeatingKeys):
 
     @model_validator(mode="after")
     def one_of_both(self) -> SeatContactPart:
-        """Refuse a contact with neither or both."""
+        """Refuses a contact with neither or both."""
         if (self.face is None) == (self.corner is None):
             raise ValueError("a contact is on a face or on a corner")
         return self
@@ -88,7 +88,7 @@ class CagePart(SeatingKeys):
 
 
 class CageShortPart(SeatingKeys):
-    """By how much the extremes of a cage may be too small at most."""
+    """Largest amount by which the extremes of a cage may be too small."""
 
     theta_deg: Length
     share: Length = Field(description="of shifts, of their whole range")
@@ -133,15 +133,17 @@ def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
     return Seating.of_fields(data, pose)
 
 
-def figures_told(data: Mapping[str, Any]) -> dict[str, float]:
-    """The figures of a seating as a file of this program tells it; what has no end is infinite."""
-    told = {figure.key: data[figure.key] for figure in SEATING_FIGURES}
+def seating_figures_of(data: Mapping[str, Any]) -> dict[str, float]:
+    """The figures of a seating in a file of this program; infinite where it has no end."""
+    figures = {figure.key: data[figure.key] for figure in SEATING_FIGURES}
     # Without a pass it is not known how near a part must be put.
-    told["placing"] = 0.0 if data["pass"] is None and data["capture_opening"] is not None else told["placing"]
-    return {key: inf if value is None else float(value) for key, value in told.items()}
+    figures["placing"] = (
+        0.0 if data["pass"] is None and data["capture_opening"] is not None else figures["placing"]
+    )
+    return {key: inf if value is None else float(value) for key, value in figures.items()}
 
 
-def seatings_told(data: dict[str, Any], path: Path) -> list[Any]:
+def seatings_of(data: dict[str, Any], path: Path) -> list[Any]:
     """The seating of the first fixtures as the head of a file in columns has it.
 
     Raises
@@ -149,17 +151,17 @@ def seatings_told(data: dict[str, Any], path: Path) -> list[Any]:
     InputError
         When it is no list.
     """
-    told = data.get("seatings", [])
-    if not isinstance(told, list):
+    seatings = data.get("seatings", [])
+    if not isinstance(seatings, list):
         raise InputError(f"{path}: seatings cannot be used: it is no list.")
-    return told
+    return seatings
 
 
 Whole = Annotated[int, Field(ge=0)]
 
 
-class ContactPart(Part):
-    """Where a peg's centre is in mm, the face it touches, and its force per unit of clamping force, or of each of two."""
+class ContactPart(FormPart):
+    """A peg's centre in mm, the face it touches, and its force per unit of each clamping force."""
 
     x: float
     y: float
@@ -184,7 +186,7 @@ class LocatorPart(ContactPart):
 
 
 class ClampPart(ContactPart):
-    """The tip of a clamp, the hole it is bolted in where that is known, and the row or column that it pushes along."""
+    """The tip of a clamp, its hole where that is known, and the row or column that it pushes along."""
 
     role: Literal["clamp"]
     hole: Annotated[list[Whole], Field(min_length=2, max_length=2)] | None
@@ -193,7 +195,7 @@ class ClampPart(ContactPart):
     direction: str | None = None
 
 
-class WallPart(Part):
+class WallPart(FormPart):
     """The contact with a fence, from one end to the other."""
 
     from_: Pair = Field(alias="from")
@@ -202,7 +204,7 @@ class WallPart(Part):
     forces: list[float | Pair]
 
 
-class PosePart(Part):
+class PosePart(FormPart):
     """Where the workpiece lies."""
 
     theta_deg: float
@@ -210,7 +212,7 @@ class PosePart(Part):
     y: float
 
 
-class FixturePart(Part):
+class FixturePart(FormPart):
     """One fixture; best first."""
 
     type: str

@@ -43,7 +43,7 @@ __all__ = [
     "ANGLE_STEPS",
     "HEADER",
     "LENGTH_STEPS",
-    "as_told",
+    "as_written",
     "column_names",
     "fixture_lines",
     "fixture_rows",
@@ -60,8 +60,8 @@ __all__ = [
 
 LENGTH_STEPS = 1e9
 ANGLE_STEPS = 1e10
-# Digits of forces and figures of quality; what lies nearer than this to the middle between two such numbers is rounded
-# one by one, because a product in doubles may fall on its other side.
+# Digits of forces and figures of quality; what lies nearer than this to the middle between two such numbers
+# is rounded one by one, because a product in doubles may fall on its other side.
 DIGITS, DOUBTFUL = 12, 1e-3
 
 
@@ -81,17 +81,18 @@ def rounded_degrees(degrees: Any) -> NDArray[np.float64]:
     return np.where(out >= 360.0, 0.0, out)
 
 
-def as_told(table: FixtureTable) -> tuple[NDArray[np.float64], FixtureTable]:
-    """Orientations (N,) in degrees as they are written, and the table with poses and travels as they are then read: where
-    pegs stand follows from these, so that it is the same for the reader."""
+def as_written(table: FixtureTable) -> tuple[NDArray[np.float64], FixtureTable]:
+    """Orientations (N,) in degrees as they are written, and the table as it is then read.
+
+    Where pegs stand follows from the poses and travels as read, so that it is the same for the reader.
+    """
     theta = rounded_degrees(np.degrees(table.theta))
     position, travel = (rounded(values, LENGTH_STEPS) for values in (table.position, table.jaw_separation))
     return theta, evolve(table, theta=np.radians(theta), position=position, jaw_separation=travel)
 
 
 def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The floats nearest to values as they are with twelve significant digits; NaN for what is not finite, which JSON does
-    not know either.
+    """Floats nearest to values with twelve significant digits; NaN for infinite ones, which JSON lacks.
 
     A whole number below 1e12 times or over an exact power of ten is rounded once, as reading the digits is.
     """
@@ -112,14 +113,15 @@ def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 BLOCK = 4096
 
-# The form of a force and of a figure, by how many things move. Of two the forces are those at either one's force, rounded
-# before their ratio is told, so that reading and writing changes nothing.
+# The form of a force and of a figure, by how many things move. Of two the forces are those at either one's
+# force, rounded before their ratio is taken, so that reading and writing changes nothing.
 FORCE: Mapping[int, str] = {1: "%.12g", 2: "[%r, %r]"}
 FIGURE: Mapping[int, str] = {1: "%.12g", 2: "%r"}
-# What is told of the directions in which clamps push, by how many there are, before the pegs.
+# What stands about the directions in which clamps push, by how many there are, before the pegs.
 PUSHED: Mapping[int, str] = {0: "", 1: '"direction": {0}, ', 2: '"directions": [{0}, {1}], '}
 RATIO: Mapping[int, str] = {0: "", 1: "", 2: '"ratio": [%r, %s], '}
-# What is told of a travel behind the pose, by how many clamps there are; that of a clamp follows from its place.
+# What stands about a travel behind the pose, by how many clamps there are; that of a clamp follows from its
+# place.
 TRAVELLED: Mapping[int, str] = {0: '"jaw_separation": %r, ', 1: "", 2: '"pairs": %d, '}
 POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, '
 # A number that is not written.
@@ -127,23 +129,24 @@ LEFT_OUT = "%.0s"
 
 
 def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure]) -> str:
-    """The line of a fixture with its numbers left open, in the order of :meth:`Told.line_columns`."""
+    """The line of a fixture with its numbers left open, in the order of :meth:`WrittenBlock.line_columns`."""
     tips, travels = toolkit.tips, toolkit.travels
     carriers = [toolkit.carriers[number] for number in arrangement.carriers]
     pegs = ", ".join(f"{{{peg_template(one, travels)}}}" for one in carriers if one.contact.is_placed)
     quality = ", ".join(f'"{figure.key}": {FIGURE[travels]}' for figure in figures)
     pushed = PUSHED[tips].format(*map(json.dumps, arrangement.directions))
-    ends = f'"from": [%r, %r], "to": [%r, %r], "segments": [%d, %d], "forces": [{FORCE[travels]}, {FORCE[travels]}]'
+    forces = f"[{FORCE[travels]}, {FORCE[travels]}]"
+    ends = f'"from": [%r, %r], "to": [%r, %r], "segments": [%d, %d], "forces": {forces}'
     wall = f'"wall": {{{ends}}}, ' * len(toolkit.ends_on_walls)
     flats = ', "flats": %s' * (FLAT_PIN in toolkit.contacts)
     return (
-        f'{{"type": "{arrangement.name}", {pushed}{wall}{RATIO[tips]}"pegs": [{pegs}], {POSE}{TRAVELLED[tips]}'
-        f'"quality": {{{quality}}}{flats}}}'
+        f'{{"type": "{arrangement.name}", {pushed}{wall}{RATIO[tips]}"pegs": [{pegs}], {POSE}'
+        f'{TRAVELLED[tips]}"quality": {{{quality}}}{flats}}}'
     )
 
 
 def peg_template(carrier: Carrier, travels: int) -> str:
-    """What is written of a peg of a carrier, with its numbers left open; those of the place of a clamp come twice."""
+    """The form of a peg of a carrier, its numbers left open; those of a clamp's place come twice."""
     key, name = carrier.written_as
     contact = f'"x": %r, "y": %r, "segment": %d, "force": {FORCE[travels]}'
     if carrier.contact is not CLAMP_TIP:
@@ -158,9 +161,9 @@ def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -
     """The lines of a list of fixtures, block by block."""
     figures = known_figures(table)
     templates = [fixture_template(one, toolkit, figures) for one in toolkit.arrangements]
-    for told in blocks(table, toolkit, workpiece):
-        rows = zip(*told.line_columns(), strict=True)
-        yield [templates[k] % row for k, row in zip(told.table.arrangement.tolist(), rows, strict=True)]
+    for block in blocks(table, toolkit, workpiece):
+        rows = zip(*block.line_columns(), strict=True)
+        yield [templates[k] % row for k, row in zip(block.table.arrangement.tolist(), rows, strict=True)]
 
 
 def fixture_rows(
@@ -170,27 +173,27 @@ def fixture_rows(
 
     Yields
     ------
-    The indices of the arrangements, and for every fixture a tuple of numbers: for each peg column, row, x, y, face, force
-    (of two clamps at their working ratio); then theta in degrees, x and y of the pose, jaw separation or the travel of each
-    clamp; and after them the figures of :func:`known_figures`. Where pegs have flats, last a list: which way the flat of
-    each looks that stands in a hole.
+    The indices of the arrangements, and a tuple of numbers for every fixture. It holds column, row, x, y,
+    face and force of each peg (of two clamps at their working ratio). Then come theta in degrees, x and y of
+    the pose, jaw separation or each clamp's travel, and the figures of :func:`known_figures`. Where pegs
+    have flats, a list is last: the directions of the flats of those in holes.
     """
-    for told in blocks(table, toolkit, workpiece):
-        yield told.table.arrangement.tolist(), zip(*told.row_columns(), strict=True)
+    for block in blocks(table, toolkit, workpiece):
+        yield block.table.arrangement.tolist(), zip(*block.row_columns(), strict=True)
 
 
-def blocks(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[Told]:
+def blocks(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[WrittenBlock]:
     """The fixtures of a table, rounded as they are written, block by block."""
     known = [FIGURES.index(figure) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
-        theta, told = as_told(block)
-        x, y = (rounded(places, LENGTH_STEPS) for places in peg_places(told, toolkit, workpiece))
-        yield Told(told, toolkit, workpiece, theta, x, y, known)
+        theta, table_read = as_written(block)
+        x, y = (rounded(places, LENGTH_STEPS) for places in peg_places(table_read, toolkit, workpiece))
+        yield WrittenBlock(table_read, toolkit, workpiece, theta, x, y, known)
 
 
 @frozen(eq=False)
-class Told:
+class WrittenBlock:
     """A block of N fixtures with their places as they are written.
 
     Parameters
@@ -227,7 +230,7 @@ class Told:
 
     @property
     def flats(self) -> list[list[list[float | None]]]:
-        """A column of the flats' angles in degrees, of all pegs in places of their own, where there are any."""
+        """A column of the flats' angles in degrees, of all pegs in places of their own."""
         if FLAT_PIN not in self.toolkit.contacts:
             return []
         angles, placed = flat_angles(self.table, self.toolkit, self.workpiece), self.placed
@@ -280,9 +283,10 @@ TRAVEL_COLUMNS = {1: ("jaw_separation",), 2: ("travel_1", "travel_2")}
 
 
 def write_result_csv(result: Result, path: str | Path) -> None:
-    """Write the fixtures of a result as comma-separated values, numbered by rank from 1.
+    """Writes the fixtures of a result as comma-separated values, numbered by rank from 1.
 
-    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the pictures.
+    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the
+    pictures.
 
     Raises
     ------
@@ -294,7 +298,7 @@ def write_result_csv(result: Result, path: str | Path) -> None:
 
 
 def write_result_csv_to(result: Result, stream: IO[str]) -> None:
-    """Write the comma-separated values to an open text stream."""
+    """Writes the comma-separated values to an open text stream."""
     for text in result_csv_text(result):
         stream.write(text)
 
@@ -318,10 +322,9 @@ def column_names(result: Result) -> list[str]:
 
 
 def seating_values(result: Result) -> list[list[float]]:
-    """The figures of the seating of all fixtures of a result in which it is told: infinite where there is no end, NaN where
-    it was not worked out."""
-    told = [list(one.figures.values()) for one in result.seating]
-    return told + [[nan] * len(SEATING_FIGURES)] * (len(result) - len(told))
+    """Figures of the seating of all fixtures: infinite without an end, NaN where it is not worked out."""
+    known = [list(one.figures.values()) for one in result.seating]
+    return known + [[nan] * len(SEATING_FIGURES)] * (len(result) - len(known))
 
 
 def result_csv_text(result: Result) -> Iterator[str]:
@@ -369,7 +372,8 @@ def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, 
 
     Parameters
     ----------
-    unit : of the lengths: x and y of the hole's centre from the first carrier's hole A1, diameter and length of the pin.
+    unit : of the lengths: x and y of the hole's centre from the first carrier's hole A1, diameter and length
+        of the pin.
     dowel : what the pins are and how they fit, in words; the cell is empty where it is not known.
     length : of the pins, in mm; the same.
     """

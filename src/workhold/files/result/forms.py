@@ -25,7 +25,7 @@ LONGEST_STANDARD = 40
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
-class Part(BaseModel):
+class FormPart(BaseModel):
     """What a key of the head must look like; further keys are allowed."""
 
     model_config = ConfigDict(strict=True, allow_inf_nan=False)
@@ -39,11 +39,11 @@ class Part(BaseModel):
                 continue
             several = value if isinstance(value, list) else [value]
             for number, part in enumerate(several):
-                if isinstance(part, Part):
+                if isinstance(part, FormPart):
                     yield from part.not_given(f"{place}{name}." + (f"{number}." if several is value else ""))
 
 
-class WorkpiecePart(Part):
+class WorkpiecePart(FormPart):
     """The workpiece's keys."""
 
     name: str
@@ -52,7 +52,7 @@ class WorkpiecePart(Part):
     departure: float = 0.0
 
 
-class FlatPart(Part):
+class FlatPart(FormPart):
     """The keys of a flat."""
 
     distance: float
@@ -76,8 +76,8 @@ def key_of(row: ToolkitField) -> tuple[Any, Any]:
 
 
 # The usual vise stands in a file without its kind.
-PARTS = forms_by_noun(Part, "{}Part", key_of, summary="{}'s keys.")
-NAMED = forms_by_noun(Part, "Named{}Part", key_of, lambda kinds: (str, ...), "{}'s keys, with its kind.")
+PARTS = forms_by_noun(FormPart, "{}Part", key_of, summary="{}'s keys.")
+NAMED = forms_by_noun(FormPart, "Named{}Part", key_of, lambda kinds: (str, ...), "{}'s keys, with its kind.")
 if TYPE_CHECKING:
     from typing import TypeAlias
 
@@ -87,7 +87,7 @@ else:
     VisePart, ToolkitPart = PARTS[table_of(USUAL).noun], one_of(NAMED)
 
 
-class RestrictionsPart(Part):
+class RestrictionsPart(FormPart):
     """What was ruled out."""
 
     avoid: list[int] = []
@@ -106,7 +106,7 @@ class RestrictionsPart(Part):
         return Restrictions(tuple(self.avoid), zones, tuple((low, high) for low, high in self.angles))
 
 
-class FitPart(Part):
+class FitPart(FormPart):
     """The fit of the dowels that are the pegs."""
 
     pin: Pair
@@ -121,7 +121,7 @@ class FitPart(Part):
         return Fit((low, high), (hole[0], hole[1]), self.position, self.position_assumed, self.standard)
 
 
-class TolerancePart(Part):
+class TolerancePart(FormPart):
     """How far pegs and faces may be off."""
 
     peg: float
@@ -140,7 +140,7 @@ class TolerancePart(Part):
         return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit(), self.departure)
 
 
-class LoadPart(Part):
+class LoadPart(FormPart):
     """A load."""
 
     name: str = ""
@@ -164,7 +164,7 @@ class LoadPart(Part):
 Counts = dict[str, Annotated[int, Field(ge=0)]]
 
 
-class UndecidedPart(Part):
+class UndecidedPart(FormPart):
     """One entry of the proof's list of what is not decided; columns and rows may be negative."""
 
     type: str
@@ -181,7 +181,7 @@ class UndecidedPart(Part):
         return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason, self.reach_deg)
 
 
-class ProofPart(Part):
+class ProofPart(FormPart):
     """The account of the search."""
 
     cells: int = Field(ge=0)
@@ -197,7 +197,7 @@ class ProofPart(Part):
         return Proof(*counts, tuple(item.undecided() for item in self.undecided))
 
 
-class Head(Part):
+class Head(FormPart):
     """Everything in the file but the fixtures."""
 
     format: Literal["workhold-result/1"]

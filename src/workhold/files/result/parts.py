@@ -48,7 +48,7 @@ NOT_FINITE = "cannot be used: a length, an angle or a force is not a finite numb
 
 
 def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit, path: Path) -> None:
-    """Refuse indices (N,) of arrangements that a toolkit does not have.
+    """Refuses indices (N,) of arrangements that a toolkit does not have.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit
 
 
 def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequence[int]) -> None:
-    """Refuse fixtures of known types that contradict the toolkit, the workpiece or themselves.
+    """Refuses fixtures of known types that contradict the toolkit, the workpiece or themselves.
 
     Parameters
     ----------
@@ -90,10 +90,10 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
             ("column", table.column, carrier.columns),
             ("row", table.row, carrier.rows),
         ):
-            beyond = (jaw == number) & (
+            outside = (jaw == number) & (
                 (places_on < 0) | (places_on >= (LARGEST_NUMBER if most is None else most))
             )
-            refuse(beyond, f"has a peg in a {what} beyond the {most} of the {carrier.title}")
+            refuse(outside, f"has a peg in a {what} beyond the {most} of the {carrier.title}")
     faces = [face.number for face in query.workpiece.faces]
     refuse(~np.isin(table.face, faces), "has a peg on a segment that does not name a face of the workpiece")
     for values in (table.theta, table.position, table.jaw_separation, table.force):
@@ -105,7 +105,7 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
 
 
 def checked_head(data: Any, path: Path) -> Head:
-    """Check the head's keys.
+    """Checks the head's keys.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def checked_query(head: Head, path: Path) -> Query:
 
 
 def refuse_other_types(head: Head, toolkit: Toolkit) -> None:
-    """Refuse counts of other types than the toolkit's.
+    """Refuses counts of other types than the toolkit's.
 
     Raises
     ------
@@ -188,13 +188,13 @@ def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Resu
     Raises
     ------
     InputError
-        Where that is told though it was not asked for, or of more fixtures than it was asked of.
+        Where it is given without being asked for, or for more fixtures than it was asked for.
     """
     query = result.query
     if len(seating) > (query.seating or 0) or len(seating) > len(result):
         raise InputError(
-            f"{path}: the seating of {len(seating)} fixtures is told, but it is asked of {query.seating or 0} and "
-            f"{len(result)} are listed."
+            f"{path}: the seating of {len(seating)} fixtures is told, but it is asked of "
+            f"{query.seating or 0} and {len(result)} are listed."
         )
     return evolve(result, seating=tuple(one.in_toolkit(query.toolkit, query.opening) for one in seating))
 
@@ -205,12 +205,14 @@ def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
     Raises
     ------
     InputError
-        When its counts do not add up, or an undecided candidate names an unknown type or a segment that is no face.
+        When its counts do not add up, or an undecided candidate names an unknown type or a segment that is no
+        face.
     """
     accounted = part.discarded_by_bound + part.verified + len(part.undecided)
     if accounted != part.candidates:
         raise InputError(
-            f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified or undecided."
+            f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified "
+            "or undecided."
         )
     faces = {face.number for face in query.workpiece.faces}
     # With two clamps also contacts of one of them may be undecided.
@@ -250,7 +252,8 @@ def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
 
     Parameters
     ----------
-    take : makes something of the fixtures, once from first to last; it may be called a second time from the start.
+    take : makes something of the fixtures, once from first to last; it may be called a second time from the
+        start.
 
     Raises
     ------
@@ -318,7 +321,8 @@ def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     """Head and fixtures of a file of any layout."""
     if path.is_file() and path.stat().st_size > LARGEST_WHOLE:
         raise InputError(
-            f"{path} is too large a file to be read but with one fixture on every line, as workhold writes it."
+            f"{path} is too large a file to be read but with one fixture on every line, as workhold writes "
+            "it."
         )
     text = path.read_text(encoding="utf-8-sig")
     if not text.strip():

@@ -1,8 +1,8 @@
-"""Reading a result file back (MODEL, "Result file"), from workhold or from any other program that writes the form.
+"""Reader of result files (MODEL, "Result file"), from workhold or any program that writes the form.
 
-The head is checked by pydantic (``files.result.parts``), the fixtures by array operations. A file in columns is mapped into
-memory, and its fixtures are checked when they are looked at. What a file is, its first bytes tell, not its name. Messages
-count fixtures and pegs from 1.
+The head is checked by pydantic (``files.result.parts``), the fixtures by array operations. A file in columns
+is mapped into memory, and its fixtures are checked when they are looked at. The first bytes
+of a file say what it is, not its name. Messages count fixtures and pegs from 1.
 """
 
 from __future__ import annotations
@@ -47,10 +47,17 @@ BLOCK = 4096
 
 @frozen
 class Columns:
-    """The fixtures of a file as arrays: (N,) types and (N, P) jaws by name, (N, P, 3) holes and faces, (N, P, 4) x, y and
-    forces (per unit of each of two clamps' forces; the second is 0 where there is one), (N, 5) pose in degrees and mm, jaw
-    separation and number of pairs, (N, Q) figures of quality (NaN where the file gives none), and the seating of the first
-    fixtures."""
+    """The fixtures of a file as arrays.
+
+    Parameters
+    ----------
+    types, jaws : (N,) and (N, P), by name.
+    holes : (N, P, 3) holes and faces.
+    contacts : (N, P, 4) x, y and forces per unit of each of two clamps' forces (0 for a missing second one).
+    placing : (N, 5) pose in degrees and mm, jaw separation and number of pairs.
+    quality : (N, Q) figures of quality, NaN where the file gives none.
+    seating : of the first fixtures.
+    """
 
     types: NDArray[np.str_]
     jaws: NDArray[np.str_]
@@ -62,7 +69,7 @@ class Columns:
 
 
 def read_result(path: str | Path) -> Result:
-    """Read a result file.
+    """Reads a result file.
 
     Raises
     ------
@@ -82,7 +89,7 @@ def read_result(path: str | Path) -> Result:
 
 
 def collected(fixtures: Iterable[Any], path: Path) -> Columns:
-    """Put fixtures into arrays, block by block.
+    """Puts fixtures into arrays, block by block.
 
     Raises
     ------
@@ -184,7 +191,7 @@ def wall_pegs(wall: Any) -> list[Any]:
 
 
 def peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
-    """The carrier of a peg, and the column and row of its hole; 0 for what a clamp without a hole does not give."""
+    """The carrier of a peg, and the column and row of its hole; 0 for what a clamp without a hole lacks."""
     if "role" not in peg:
         return peg["jaw"], peg["column"], peg["row"]
     if peg["role"] == WALL:
@@ -276,7 +283,7 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
 
 
 def faces_on_wall(workpiece: Workpiece, theta: NDArray[np.float64], path: Path) -> NDArray[np.int32]:
-    """The faces (N, 2) told for the ends of the contact with a wall, in orientations (N,) in radians.
+    """The faces (N, 2) at the ends of the contact with a wall, in orientations (N,) in radians.
 
     Raises
     ------
@@ -291,8 +298,7 @@ def faces_on_wall(workpiece: Workpiece, theta: NDArray[np.float64], path: Path) 
 def clamp_travel(
     toolkit: Toolkit, numbers: NDArray[Any], hole: NDArray[np.int32], tip: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """How far (N,) clamps, carriers of some numbers (N,), have travelled from their holes (N, 2 or more) to their tips (N, 2
-    or more), in mm."""
+    """Travels (N,) in mm of clamps on carriers (N,), from their holes to their tips, both (N, 2 or more)."""
     out = np.zeros(len(tip))
     for number, carrier in enumerate(toolkit.carriers):
         if carrier.travel is None:

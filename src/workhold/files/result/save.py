@@ -1,9 +1,7 @@
-"""Writing a result in any form."""
+"""Result files in any of their forms, chosen by name or by a file's ending."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from importlib import import_module
 from pathlib import Path
 
 from workhold.errors import InputError
@@ -11,19 +9,16 @@ from workhold.model.result import Result
 
 __all__ = ["save"]
 
-WRITERS: Mapping[str, tuple[str, str]] = {
-    "json": ("workhold.files.result.writer", "write_result"),
-    "csv": ("workhold.files.result.fixture_text", "write_result_csv"),
-    "npz": ("workhold.files.result.columns", "write_columns"),
-}
+FORMS = ("json", "csv", "npz")
 
 
 def save(result: Result, path: str | Path, form: str | None = None) -> None:
-    """Write a result file; an earlier file of that name is replaced only when all went well.
+    """Writes a result file; an earlier file of that name is replaced only when all went well.
 
     Parameters
     ----------
-    form : "json" for exchange, "npz" for columns, "csv" for a spreadsheet; None lets the name's ending decide.
+    form : "json" for exchange, "npz" for columns, "csv" for a spreadsheet; None lets the name's ending
+        decide.
 
     Raises
     ------
@@ -31,8 +26,18 @@ def save(result: Result, path: str | Path, form: str | None = None) -> None:
         When the form is not known, or the file cannot be written.
     """
     form = Path(path).suffix[1:].lower() if form is None else form
-    if form not in WRITERS:
-        raise InputError(f"{path}: {form!r} is no form of a result file: choose one of {', '.join(WRITERS)}.")
-    module, name = WRITERS[form]
-    write: Callable[[Result, str | Path], None] = getattr(import_module(module), name)
-    write(result, path)
+    # Each writer is imported when it is needed, because some take long.
+    if form == "json":
+        from workhold.files.result.writer import write_result
+
+        write_result(result, path)
+    elif form == "csv":
+        from workhold.files.result.fixture_text import write_result_csv
+
+        write_result_csv(result, path)
+    elif form == "npz":
+        from workhold.files.result.columns import write_columns
+
+        write_columns(result, path)
+    else:
+        raise InputError(f"{path}: {form!r} is no form of a result file: choose one of {', '.join(FORMS)}.")

@@ -4,8 +4,8 @@ Glossary
 --------
 head : everything but the fixtures; a few lines in front of them.
 
-The bytes depend on nothing but the result. Lengths are rounded to 1e-9 mm and angles to 1e-10 degree; forces and
-quality have twelve significant digits. :mod:`workhold.files.result.reader` reads the file back.
+The bytes depend on nothing but the result. Lengths are rounded to 1e-9 mm and angles to 1e-10 degree; forces
+and quality have twelve significant digits. :mod:`workhold.files.result.reader` reads the file back.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from attrs import asdict
 
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import fixture_lines, rounded_degrees
-from workhold.fixels.carrier import Flat, Holes
+from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
+from workhold.fixels.pegs import Flat
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
@@ -49,7 +50,7 @@ OWN_KEYS = {USUAL: "vise"}
 
 
 def write_result(result: Result, path: str | Path) -> None:
-    """Write a result file (MODEL, "Result file"); an earlier file of that name is replaced only when all went well.
+    """Writes a result file (MODEL, "Result file"), whole or not at all.
 
     Raises
     ------
@@ -61,7 +62,7 @@ def write_result(result: Result, path: str | Path) -> None:
 
 
 def write_result_to(result: Result, stream: IO[str]) -> None:
-    """Write a result to an open text stream."""
+    """Writes a result to an open text stream."""
     for text in result_text(result):
         stream.write(text)
 
@@ -72,16 +73,16 @@ def result_text(result: Result) -> Iterator[str]:
     yield "{" + "".join(lines) + '"fixtures": ['
     separator, count = "\n", 0
     for lines in fixture_lines(result.table, result.toolkit, result.workpiece):
-        told = result.seating[count : count + len(lines)]
-        lines[: len(told)] = map(with_seating, lines, told)
+        seatings = result.seating[count : count + len(lines)]
+        lines[: len(seatings)] = map(with_seating, lines, seatings)
         yield separator + ",\n".join(lines)
         separator, count = ",\n", count + len(lines)
     yield "\n]}\n"
 
 
-def with_seating(line: str, told: Seating) -> str:
+def with_seating(line: str, seating: Seating) -> str:
     """The line of a fixture with its seating."""
-    return f'{line[:-1]}, "seating": {json.dumps(told.as_fields())}}}'
+    return f'{line[:-1]}, "seating": {json.dumps(seating.as_fields())}}}'
 
 
 def head(result: Result) -> dict[str, Any]:
@@ -95,7 +96,7 @@ def head(result: Result) -> dict[str, Any]:
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
         "complete": bool(result.complete),
         "notes": list(result.notes),
-        **({} if result.query.listing is None else {"pairs": result.pairs, "seats": result.seats}),
+        **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.travels > 1 else {}),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
 
@@ -136,21 +137,22 @@ def asked_entry(query: Query) -> dict[str, Any]:
 
 
 def tolerance_entry(tolerance: Tolerance) -> dict[str, Any]:
-    """How far pegs and faces may be off, the fit of the dowels where it is known, and what of the faces is departure."""
+    """How far pegs and faces may be off, the fit of the dowels, and the departure among these."""
     fit = None if tolerance.fit is None else asdict(tolerance.fit)
     return {"peg": tolerance.peg, "face": tolerance.face, "fit": fit, "departure": tolerance.departure}
 
 
 def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
-    """The key of a toolkit in a file, and what it holds: its fields, with its kind where it has no key of its own."""
+    """The key of a toolkit in a file, and its fields, with its kind where it has no key of its own."""
     fields = toolkit_fields(toolkit)
     key = OWN_KEYS.get(toolkit.kind)
     return {"toolkit": {"kind": toolkit.kind, **fields}} if key is None else {key: fields}
 
 
 def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
-    """The fields of a toolkit as they are written: lengths in mm, holes by name; how many holes there are comes first."""
-    fields = {name: written(value) for name, value in asdict(toolkit, recurse=False).items()}  # type: ignore[arg-type]
+    """The fields of a toolkit as they are written: lengths in mm, holes by name, their number first."""
+    values = asdict(toolkit, recurse=False)  # type: ignore[arg-type]
+    fields = {name: written(value) for name, value in values.items()}
     fields = {name: value for name, value in fields.items() if name != "flat" or value is not None}
     return {name: fields.pop(name) for name in ("pitch", "columns", "rows") if name in fields} | fields
 

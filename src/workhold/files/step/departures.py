@@ -41,7 +41,8 @@ class Outline:
     area : in mm².
     low, high : z of the solid's lowest and highest point, in mm.
     insets, overhangs : of each face, in mm.
-    departure : how far lines and arcs may be from curves of the border, in mm; a face may lie off them by as much.
+    departure : how far lines and arcs may be from curves of the border, in mm; a face may lie off them by as
+        much.
     """
 
     area: float
@@ -58,14 +59,15 @@ class Outline:
         Raises
         ------
         InputError
-            When the borders do not enclose one region of that area, so that the library's work cannot be right.
+            When the borders do not enclose one region of that area, so that the library's work cannot be
+            right.
         """
         parts = nest([closed_loop(chain) for chain in edges.chains])
         allowed = (FREE_AREA if edges.curves else 1e-6) * area + edges.departure * lengths_of(parts)
         if len(parts) != 1 or abs(parts[0].area - area) > allowed:
             raise InputError(
-                f"the sections of the solid do not make one outline: give another {AXIS}, or {SECTION}, or repair the solid "
-                "in the CAD program."
+                f"the sections of the solid do not make one outline: give another {AXIS}, or {SECTION}, or "
+                "repair the solid in the CAD program."
             )
         rows = oriented_rows(parts[0])
         insets, overhangs = [], []
@@ -97,7 +99,7 @@ def oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
 
 
 def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, axis: str) -> None:
-    """Refuse a silhouette that some face reaches out of: its true border is not made of lines and circles.
+    """Refuses a silhouette that some face reaches out of: its true border is not made of lines and circles.
 
     Raises
     ------
@@ -110,9 +112,10 @@ def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, ax
     face = faces[worst]
     another = other_axis(solid, axis, f", or {AXIS} ")
     raise InputError(
-        f"along {axis} the silhouette is not made of lines and circles: a {face.kind} at {heights(outline, face)} reaches "
-        f"{outline.overhangs[worst]:.3g} mm out of what is; give {SECTION}, the height above the part's lowest "
-        f"point (0 to {outline.high - outline.low:.6g} mm) at which the pegs touch{another}."
+        f"along {axis} the silhouette is not made of lines and circles: a {face.kind} at "
+        f"{heights(outline, face)} reaches {outline.overhangs[worst]:.3g} mm out of what is; give "
+        f"{SECTION}, the height above the part's lowest point (0 to {outline.high - outline.low:.6g} mm) at "
+        f"which the pegs touch{another}."
     )
 
 
@@ -125,7 +128,7 @@ def departure_remarks(
     axis: str,
     section_height: float | None,
 ) -> list[str]:
-    """What is not prismatic about a part, how far it departs, and where pegs have to touch; nothing for a prism."""
+    """What is not prismatic about a part, its departure, and where pegs have to touch; empty for a prism."""
     groups = departures(outline, faces)
     chosen = section_height is not None
     if not groups and max(outline.overhangs) <= OVERHANG + outline.departure:
@@ -187,14 +190,16 @@ def silhouette_remark(outline: Outline, layers: Sequence[Layer], shape: Any) -> 
             else:
                 whole.append((layer.low, layer.high))
     worst, z = max(lacks)
-    lack = f"the section at height {z - outline.low:.6g} mm has {worst:.3g} mm² ({100 * worst / outline.area:.2g} %) less"
+    share = f"{worst:.3g} mm² ({100 * worst / outline.area:.2g} %)"
+    lack = f"the section at height {z - outline.low:.6g} mm has {share} less"
     if not whole:
         return (
-            f"The outline is the silhouette; no range of heights has all of it ({lack}): pegs have to reach over all "
-            "heights."
+            f"The outline is the silhouette; no range of heights has all of it ({lack}): pegs have to reach "
+            "over all heights."
         )
     ranges = " and ".join(span(outline, low, high) for low, high in whole)
-    return f"The outline is the silhouette, which is the section at heights {ranges} ({lack}): pegs have to touch there."
+    where = f"the section at heights {ranges} ({lack})"
+    return f"The outline is the silhouette, which is {where}: pegs have to touch there."
 
 
 def probed(layer: Layer) -> list[float]:

@@ -5,8 +5,10 @@ Glossary
 height : z above the solid's lowest point, in mm.
 level : a flat face perpendicular to the axis.
 upright : a face parallel to the axis everywhere; only such faces can be the outline.
-leaning : any other face, such as a chamfer, a fillet along a horizontal edge, a draft, a hole across the axis.
-layer : a range of heights without a level face and without a leaning one inside it: one section holds for all of it.
+leaning : any other face, such as a chamfer, a fillet along a horizontal edge, a draft, a hole across the
+    axis.
+layer : a range of heights without a level face and without a leaning one inside it: one section holds for all
+    of it.
 """
 
 from __future__ import annotations
@@ -145,14 +147,17 @@ def kind_of(surface: Any, lie: Lie) -> str:
         )
     if kind == Type.GeomAbs_Cylinder:
         along_axis, _ = components(surface.Cylinder().Axis().Direction(), 2)
-        return f"cylinder of radius {surface.Cylinder().Radius():.6g} mm {'across' if along_axis < 1e-6 else 'aslant'}"
+        lies = "across" if along_axis < 1e-6 else "aslant"
+        return f"cylinder of radius {surface.Cylinder().Radius():.6g} mm {lies}"
     names = {Type.GeomAbs_Cone: "cone", Type.GeomAbs_Sphere: "sphere", Type.GeomAbs_Torus: "rounded rim"}
     return names.get(kind, "free-form surface")
 
 
 def fold_of(surface: Any) -> float | None:
-    """z at which a leaning surface stands upright all along a horizontal line: the equator of a sphere, an upright torus
-    or a lying cylinder."""
+    """The height at which a leaning surface stands upright all along a horizontal line.
+
+    It is the equator of a sphere, an upright torus or a lying cylinder.
+    """
     from OCP.GeomAbs import GeomAbs_SurfaceType as Type
 
     kind = surface.GetType()

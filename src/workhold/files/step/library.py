@@ -1,6 +1,7 @@
 """Open CASCADE (OCCT), the library that reads and writes STEP files: loaded only when one is read or written.
 
-It is the package ``OCP`` of the distribution that the extra ``step`` asks for, which links to the system's libGL and libX11.
+It is the package ``OCP`` of the distribution that the extra ``step`` asks for, which links to the system's
+libGL and libX11.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ def load_step_library() -> None:
 
 
 def remedy(error: ImportError) -> str:
-    """What to install, told from why the import failed."""
+    """What to install, by why the import failed."""
     if isinstance(error, ModuleNotFoundError):
         return f"STEP files need a library that is not installed: pip install '{REQUIREMENT}'."
     missing = re.match(r"(lib\S+?\.so[.\d]*): cannot open shared object file", str(error))

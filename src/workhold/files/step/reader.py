@@ -45,27 +45,27 @@ __all__ = ["border_remarks", "read_shapes", "read_solid", "read_step", "read_ste
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
-    """What :func:`read_step` reads, in a process of its own: damaged files bring the library down, or keep it busy forever.
+    """Runs :func:`read_step` in a process of its own: damaged files crash or hang the library.
 
     Raises
     ------
     InputError
         As :func:`read_step`, and for a file that the process does not survive.
     """
-    told = run_apart(__name__, content, options, "the STEP file")
+    answered = run_apart(__name__, content, options, "the STEP file")
     chains = [
         Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels))
-        for points, bulges, labels in told[0]
+        for points, bulges, labels in answered[0]
     ]
     curves = {
         label: CurveReading((x, y), departure, is_disguise, np.array(pieces), arcs)
-        for label, (x, y), departure, is_disguise, pieces, arcs in told[2]
+        for label, (x, y), departure, is_disguise, pieces, arcs in answered[2]
     }
-    return Drawing(tuple(chains), tuple(told[1]), curves)
+    return Drawing(tuple(chains), tuple(answered[1]), curves)
 
 
 def prepare() -> None:
-    """Load the library, and compile what the reader calls, see :func:`workhold.files.apart.run_apart`."""
+    """Loads the library, and compile what the reader calls, see :func:`workhold.files.apart.run_apart`."""
     load_step_library()
     rows = segment_rows(
         [Line((0.0, 0.0), (1.0, 0.0)), Line((1.0, 0.0), (0.0, 1.0)), Line((0.0, 1.0), (0.0, 0.0))]
@@ -106,16 +106,19 @@ def read_step(
     part_number: int | None = None,
     fit: float | None = None,
 ) -> Drawing:
-    """Read the outline of a solid in a STEP file.
+    """Reads the outline of a solid in a STEP file.
 
     Parameters
     ----------
     content : the file's bytes.
-    axis : "x", "y" or "z" (the default): the direction of the file that the pegs are parallel to. The part is seen from
-        the axis's far end: x and y of the outline are y and z of the file for "x", z and x for "y", x and y for "z".
-    section_height : take the section at this height in mm above the part's lowest point, instead of the silhouette.
+    axis : "x", "y" or "z" (the default): the direction of the file that the pegs are parallel to. The part is
+        seen from the axis's far end. So x and y of the outline are y and z of the file for "x", or z and x
+        for "y".
+    section_height : take the section at this height in mm above the part's lowest point, instead of the
+        silhouette.
     part_number : which solid to take of several, from 1 by decreasing volume; the largest when None.
-    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see ``Drawing``.
+    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
+        ``Drawing``.
 
     Raises
     ------
@@ -197,14 +200,14 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
             widest = z
             regions.append(section(shape, z))
     if not regions:
-        # The widest piece of a section is in the silhouette too, and tells how far the part departs from it.
+        # The widest piece of a section is in the silhouette too, and shows how far the part departs from it.
         middles = (section(shape, layer.middle) for layer in layers)
         regions = [max((face for middle in middles for face in sub_shapes(middle, "FACE")), key=area_of)]
     return union(regions)
 
 
 def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None:
-    """Refuse a solid whose sections do not fill it: it is open, or runs through itself.
+    """Refuses a solid whose sections do not fill it: it is open, or runs through itself.
 
     Raises
     ------
@@ -213,8 +216,8 @@ def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None
     """
     if abs(swept - volume) > tolerance * volume:
         raise InputError(
-            f"the sections of the solid fill {swept:.6g} mm³, but it says to have {volume:.6g} mm³: repair it in the CAD "
-            "program and export it again."
+            f"the sections of the solid fill {swept:.6g} mm³, but it says to have {volume:.6g} mm³: repair "
+            "it in the CAD program and export it again."
         )
 
 
@@ -240,8 +243,8 @@ def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any
     low, high = min(face.low for face in faces), max(face.high for face in faces)
     if not 0 < height < high - low:
         raise InputError(
-            f"the section height {height:g} is not within the part, which is {high - low:.6g} mm high along the axis: "
-            "give a height above its lowest point, in mm."
+            f"the section height {height:g} is not within the part, which is {high - low:.6g} mm high along "
+            "the axis: give a height above its lowest point, in mm."
         )
     z = low + height
     if any(face.lie == "level" and abs(face.low - z) <= SAME_HEIGHT for face in faces):
@@ -252,7 +255,8 @@ def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any
     pieces = len(sub_shapes(region, "FACE"))
     if pieces > 1:
         raise InputError(
-            f"the section at height {height:g} falls into {pieces} pieces: give a height where the part is in one."
+            f"the section at height {height:g} falls into {pieces} pieces: give a height where the part is "
+            "in one."
         )
     return region
 
@@ -278,14 +282,14 @@ def read_shapes(
     Parameters
     ----------
     shapes : of Open CASCADE, in mm.
-    axis, section_height, part_number, fit : see :func:`workhold.files.step.reader.read_step`. Faces that lie level
-        to an axis need not be told which.
+    axis, section_height, part_number, fit : see :func:`workhold.files.step.reader.read_step`. Faces that
+        are level need no axis.
 
     Raises
     ------
     InputError
-        For shapes with neither a solid nor a face, solids as in :func:`workhold.files.step.reader.read_step`, and faces that
-        are not flat, or do not lie level to an axis at one height.
+        For shapes without solids and faces, for solids as in :func:`read_step`, and for faces that are not
+        flat, or not at one height along an axis.
     """
     load_step_library()
     solids = [solid for shape in shapes for solid in sub_shapes(shape, "SOLID")]

@@ -136,7 +136,9 @@ def area_of(region: Any) -> float:
 
 
 def union(regions: Sequence[Any]) -> Any:
-    """The union of regions. A region that holds all others is returned as it is, so that its curves stay untouched.
+    """The union of regions.
+
+    A region that holds all others is returned as it is, so that its curves stay untouched.
 
     Raises
     ------
@@ -157,7 +159,8 @@ def union(regions: Sequence[Any]) -> Any:
         whole = fuse.Shape()
         if abs(area_of(whole) - size - more) > 1e-6 * size:
             raise InputError(
-                f"the sections of the solid cannot be united: repair it in the CAD program, or give {SECTION}."
+                "the sections of the solid cannot be united: repair it in the CAD program, or give "
+                f"{SECTION}."
             )
     return whole
 

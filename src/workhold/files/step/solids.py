@@ -65,7 +65,7 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
     shape = transferred(content)
     solids = numbered(sub_shapes(shape, "SOLID"))
     if not solids:
-        if told(content):
+        if counted_in_text(content):
             raise InputError(
                 "no solid of the STEP file can be read: repair it in a CAD program and export it again."
             )
@@ -87,22 +87,24 @@ def numbered(shapes: Iterable[Any]) -> tuple[Solid, ...]:
     return tuple(Solid(k, s.shape, s.volume, s.low, s.high) for k, s in enumerate(solids, start=1))
 
 
-def told(content: bytes) -> int:
-    """How many solids the text of a STEP file tells of, before assemblies repeat them."""
+def counted_in_text(content: bytes) -> int:
+    """How many solids stand in the text of a STEP file, before assemblies repeat them."""
     return len(re.findall(rb"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP)\s*\(", content))
 
 
 def lost_remarks(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
     """What to say about solids that the library could not make of the file's text."""
-    if told(content) <= len(solids):
+    if counted_in_text(content) <= len(solids):
         return []
     return [
-        f"The file tells of {told(content)} solids, but only {len(solids)} could be read: check that yours is there."
+        f"The file tells of {counted_in_text(content)} solids, but only {len(solids)} could be read: "
+        "check that yours "
+        "is there."
     ]
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuse what is plainly no STEP file, is cut short, or does not say its unit (the library would take mm).
+    """Refuses what is plainly no STEP file, is cut short, or has no unit (the library would take mm).
 
     Raises
     ------
@@ -117,7 +119,7 @@ def refuse_other_formats(content: bytes) -> None:
         )
     if b"END-ISO-10303-21" not in content[-4096:]:
         raise InputError("the STEP file is cut short (it has no end mark): export or copy it again.")
-    # Files with nothing in them have no unit either, and are told apart later.
+    # Files with nothing in them have no unit either, and are distinguished later.
     if b"_REPRESENTATION" in content and b"LENGTH_UNIT" not in content:
         raise InputError("the STEP file does not give its unit of length: export it again, with units.")
 
@@ -150,7 +152,7 @@ def transferred(content: bytes) -> Any:
 
 
 def sub_shapes(shape: Any, kind: str) -> list[Any]:
-    """The parts of a shape that are a "SOLID", "FACE", "WIRE", "EDGE" or "VERTEX", each as often as it is used."""
+    """The "SOLID", "FACE", "WIRE", "EDGE" or "VERTEX" parts of a shape, each as often as it is used."""
     from OCP import TopAbs
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS
@@ -224,7 +226,7 @@ def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | None) -
 
 
 def along(shape: Any, axis: str) -> Any:
-    """A shape turned so that an axis of the file, "x", "y" or "z", points up; coordinates only change places."""
+    """A shape turned so that an axis of the file points up; coordinates only change places."""
     from OCP.gp import gp_Trsf
     from OCP.TopLoc import TopLoc_Location
 

@@ -1,8 +1,8 @@
 """STEP assemblies that are written: a set-up, and the jaw plates to drill.
 
 A set-up is the part in its pose, the pegs, the clamps with their bolts, and the plates with their holes. The
-frame is the vise's: millimetres, x to the right, the origin at the left jaw's hole L-A1, or at hole A1 of a
-plate. z is 0 on top of the plates. The part lies there, and the pegs stand through the plates up to the
+frame is the vise's, in millimetres, with x to the right. Its origin is the left jaw's hole L-A1, or hole A1
+of a plate, on top of the plates. The part lies there, and the pegs stand through the plates up to the
 part's upper side, where nothing else is asked for.
 
 Jaw plates are solids with their dowel holes and bolt holes through them, their upper sides at z = 0. They
@@ -20,7 +20,8 @@ from typing import Any
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.step.library import load_step_library
-from workhold.fixels.carrier import hole_name, peg_outline
+from workhold.fixels.carrier import hole_name
+from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Box, Line, Point, Segment
 from workhold.model.dowels import JawPlate, plate_places
@@ -51,7 +52,7 @@ def write_setup_step(
     peg_height: float | None = None,
     zero: PartZero | None = None,
 ) -> None:
-    """Write a set-up as a STEP assembly; the same set-up gives the same bytes.
+    """Writes a set-up as a STEP assembly; the same set-up gives the same bytes.
 
     Parameters
     ----------
@@ -66,8 +67,8 @@ def write_setup_step(
     Raises
     ------
     InputError
-        For pegs without a radius, a length that is not positive, a file that cannot be written, and when the extra
-        ``step`` is not installed.
+        For pegs without a radius, a length that is not positive, a file that cannot be written, and when the
+        extra ``step`` is not installed.
     """
     sizes = {
         "thickness": thickness,
@@ -141,7 +142,7 @@ def setup_step(
 
 
 def axes_at(point: Point, pose: Pose, length: float) -> Any:
-    """The axes of the part at a point of it, at z = 0: x as long as told, y half as long."""
+    """The axes of the part at a point of it, at z = 0: x of the given length, y half as long."""
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Compound
 
@@ -339,7 +340,7 @@ def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
 
 
 def write_plates_step(plates: Sequence[JawPlate], path: str | Path, thickness: float | None = None) -> None:
-    """Write jaw plates as a STEP assembly.
+    """Writes jaw plates as a STEP assembly.
 
     Raises
     ------

@@ -113,8 +113,8 @@ def read_document(content: bytes) -> Document:
     Raises
     ------
     InputError
-        For files that are no SVG, style sheets outside the file, and animations. Also for XML that is broken (with line and
-        column), nested without end or declares entities, which can blow up to any size.
+        For files that are no SVG, style sheets outside the file, and animations. Also for XML that is broken
+        (with line and column), nested without end or declares entities, which can blow up to any size.
     """
     if content.startswith(b"\x1f\x8b"):
         raise InputError("the SVG file is compressed (svgz): unpack it first.")
@@ -179,7 +179,8 @@ def parsed(content: bytes, lines: dict[Element, int]) -> Element:
         raise InputError("the SVG file declares XML entities, which are not read: save it as plain SVG.")
 
     def typed(name: str, system: str | None, public: str | None, subset: object) -> None:
-        # With an external document type, which is not read, expat drops unknown entities in attributes in silence.
+        # With an external document type, which is not read, expat drops unknown entities in attributes in
+        # silence.
         unknown = ENTITY.search(content.replace(b"\0", b""))
         if (system or public) and unknown:
             raise InputError(
@@ -203,7 +204,8 @@ def parsed(content: bytes, lines: dict[Element, int]) -> Element:
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code) or "broken"
         raise InputError(
-            f"the file is not valid XML ({reason} at line {error.lineno}, column {error.offset + 1}): export it again."
+            f"the file is not valid XML ({reason} at line {error.lineno}, column {error.offset + 1}): export "
+            "it again."
         ) from error
     except (ValueError, LookupError) as error:
         if isinstance(error, InputError):
@@ -218,51 +220,21 @@ Block = list[tuple[str, str]]
 GEOMETRY = ("x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "d")
 # Properties that say where a shape is or whether it is seen, and that an attribute of their name may set.
 ATTRIBUTES = {"display", "visibility", "opacity", "overflow", "color", "clip-path", "clip", "mask", "filter"}
-ATTRIBUTES |= {
-    "fill",
-    "fill-opacity",
-    "stroke",
-    "stroke-opacity",
-    "stroke-width",
-    "stroke-dasharray",
-    "fill-rule",
-}
-ATTRIBUTES |= {
-    "marker-start",
-    "marker-mid",
-    "marker-end",
-    "stop-opacity",
-    "transform",
-    "transform-origin",
-    *GEOMETRY,
-}
-ONLY_STYLES = {
-    "translate",
-    "rotate",
-    "scale",
-    "transform-box",
-    "overflow-x",
-    "overflow-y",
-    "mask-image",
-    "mask-border",
-}
-ONLY_STYLES |= {"marker", "offset", "offset-path", "animation", "animation-name", "zoom", "all"}
+ATTRIBUTES |= {"fill", "fill-opacity", "stroke", "stroke-opacity", "stroke-width", "stroke-dasharray"}
+ATTRIBUTES |= {"fill-rule", "marker-start", "marker-mid", "marker-end", "stop-opacity", *GEOMETRY}
+ATTRIBUTES |= {"transform", "transform-origin"}
+ONLY_STYLES = {"translate", "rotate", "scale", "transform-box", "overflow-x", "overflow-y", "mask-image"}
+ONLY_STYLES |= {"mask-border", "marker", "offset", "offset-path", "animation", "animation-name", "zoom"}
+ONLY_STYLES |= {"all"}
 KNOWN = ATTRIBUTES | ONLY_STYLES
-HARMLESS_RULES = {
-    "charset",
-    "font-face",
-    "page",
-    "keyframes",
-    "-webkit-keyframes",
-    "counter-style",
-    "property",
-}
+HARMLESS_RULES = {"charset", "font-face", "page", "keyframes", "-webkit-keyframes", "counter-style"}
+HARMLESS_RULES |= {"property"}
 SCREENS = {"", "all", "screen", "only screen"}
 
 
 @frozen
 class Declared:
-    """A declared value, and whether a style sheet or ``style`` gives it (CSS has stricter rules than attributes)."""
+    """A declared value, and whether CSS gives it, which has stricter rules than attributes."""
 
     text: str
     css: bool
@@ -274,7 +246,8 @@ class Styles:
     Raises
     ------
     InputError
-        For rules of a style sheet that are not read and could change an outline, naming the style and its line.
+        For rules of a style sheet that are not read and could change an outline, naming the style and its
+        line.
     """
 
     def __init__(self, document: Document) -> None:

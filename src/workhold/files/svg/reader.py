@@ -1,12 +1,13 @@
 """SVG drawings: from bytes to chains in mm.
 
-What the author of a drawing sees is read, or refused by name; svgelements resolves path data. SVG's y axis points
-down, a workpiece's up: the drawing is turned over, so that the part looks as it does on screen. The origin is the page's
-lower left corner, or the point x = 0, y = 0 of the user units when the page has no size.
+What the author of a drawing sees is read, or refused by name; svgelements resolves path data. SVG's y axis
+points down, a workpiece's up: the drawing is turned over, so that the part looks as it does on screen. The
+origin is the page's lower left corner, or the point x = 0, y = 0 of the user units when the page has no size.
 
 Glossary
 --------
-user unit : the plain number in an SVG attribute; what it means in mm follows from the root's width, height and viewBox.
+user unit : the plain number in an SVG attribute; what it means in mm follows from the root's width, height
+    and viewBox.
 physical size : a root width and height in mm, cm or in (or pt, pc). Pixels are no physical size.
 """
 
@@ -33,7 +34,8 @@ def read_svg(
     content : the file's bytes.
     unit : what one user unit is; None to go by the file's physical size.
     usual_unit : what it is in a file without a physical size.
-    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see ``Drawing``.
+    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
+        ``Drawing``.
 
     Raises
     ------

@@ -123,13 +123,14 @@ def path_data(figure: ShapeElement) -> str:
     match = CSS_PATH.match(given.text) if given.css else None
     if given.css and match is None:
         raise InputError(
-            f"{figure.label} has the d '{short(given.text)}' in its style, which is not read: make it an attribute."
+            f"{figure.label} has the d '{short(given.text)}' in its style, which is not read: make it an "
+            "attribute."
         )
     return given.text if match is None else match.group(1) or match.group(2) or ""
 
 
 def plain_commands(data: str) -> Iterator[str]:
-    """The commands of path data, each with its letter and arguments (SVG 2, 9.3.9); arcs without radius are lines (9.5.1).
+    """Commands of path data, with letter and arguments (SVG 2, 9.3.9); arcs without radius are lines (9.5.1).
 
     Raises
     ------
@@ -210,7 +211,7 @@ def curve_of(segment: Any, kind: str, label: str) -> Pieces | None:
 
 
 def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
-    """Signed sweep of an arc by chord and radius, more accurate than the rough one, which gives side and direction."""
+    """Sweep of an arc by chord and radius, more accurate than the rough one, which gives sign and half."""
     half_chord = hypot(end[0] - start[0], end[1] - start[1]) / 2
     ratio = half_chord / radius if radius > 0 else 1.0
     half = pi / 2 if ratio > 1 - HALF_CIRCLE else asin(ratio)

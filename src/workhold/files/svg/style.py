@@ -29,8 +29,8 @@ NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(%|[a-z]*)$")
 HEX = re.compile(r"#(?:[0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})$")
 URL = re.compile(r"""url\(\s*(?:"([^"]*)"|'([^']*)'|([^"')\s]*))\s*\)\s*(.*)$""", re.DOTALL | re.IGNORECASE)
 DISPLAYS = re.compile(
-    r"(?:none|contents|inline|list-item|run-in|compact|marker|flow-root|(?:inline-)?(?:table|flex|grid|block)|ruby"
-    r"|table-[a-z-]+)$"
+    r"(?:none|contents|inline|list-item|run-in|compact|marker|flow-root"
+    r"|(?:inline-)?(?:table|flex|grid|block)|ruby|table-[a-z-]+)$"
 )
 PROFILE = re.compile(r"\s+(?:icc|device)-[a-z]+\(.*$")
 # What a paint of these kinds shows.
@@ -62,8 +62,8 @@ class Style:
     displayed : False takes the element away with all that is in it (``display: none``, ``opacity: 0``).
     shown : visibility.
     fill, stroke : "none", "seen" or "currentcolor".
-    fill_opaque, stroke_opaque, stroke_wide, stroke_drawn, color_opaque : whether opacity, width, a dash, and the alpha of
-        ``color`` are above 0.
+    fill_opaque, stroke_opaque, stroke_wide, stroke_drawn, color_opaque : whether opacity, width, a dash, and
+        the alpha of ``color`` are above 0.
     even_odd : the fill rule.
     markers : whether the element carries markers.
     """
@@ -159,7 +159,8 @@ def refuse_effects(declarations: Declarations, label: str) -> None:
                 name == "all" or text.lower() not in ("normal", "initial", "unset", "inherit")
             ):
                 raise InputError(
-                    f"{label} has the {name} '{short(text)}', which is not read: remove it, or draw its effect."
+                    f"{label} has the {name} '{short(text)}', which is not read: remove it, or draw its "
+                    "effect."
                 )
 
 
@@ -176,7 +177,7 @@ def width(text: str) -> bool | None:
 
 
 def dashed(text: str) -> bool | None:
-    """Whether a pattern of dashes and gaps has a dash; None when it is none. Dashes are read as whole lines."""
+    """Whether a pattern of dashes and gaps has a dash; None when it is no pattern."""
     words = text.replace(",", " ").split()
     if text == "none" or len(words) % 2:
         words *= 2
@@ -220,7 +221,7 @@ def paint(text: str, styles: Styles) -> str | None:
 
 
 def paints(server: Element, styles: Styles, deepest: int = 50) -> bool:
-    """Whether a gradient has a stop that is seen, or a pattern has content; it may be that of another it links to."""
+    """Whether a gradient has a visible stop, or a pattern has content, itself or by what it links to."""
     content = [
         child for child in server if (local_name(child) == "stop") == (local_name(server) != "pattern")
     ]
@@ -237,8 +238,8 @@ def paints(server: Element, styles: Styles, deepest: int = 50) -> bool:
 def boundaries(chains: Sequence[Chain]) -> list[Chain]:
     """The chains that have paint on one side only, by the nonzero rule.
 
-    How often the loops around a point turn about it, less those that turn the other way, is not zero where there is paint.
-    A loop that meets others stays, to be refused with its place.
+    How often the loops around a point turn about it, less those that turn the other way, is not zero where
+    there is paint. A loop that meets others stays, to be refused with its place.
     """
     clean = [cleaned([chain]).chains for chain in chains]
     known = [k for k, found in enumerate(clean) if found and len(found[0].bulges) > 1]

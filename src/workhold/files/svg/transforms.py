@@ -1,4 +1,4 @@
-"""Transforms: the attribute's list (SVG 1.1, section 7.6) and the properties of CSS Transforms 1 and 2, in the plane."""
+"""Transforms in the plane: the attribute's list (SVG 1.1, section 7.6) and CSS Transforms 1 and 2."""
 
 from __future__ import annotations
 

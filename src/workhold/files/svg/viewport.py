@@ -63,7 +63,7 @@ Viewport = tuple[float | None, float | None]
 
 
 def absolute(text: str, *, unitless: bool = True) -> float | None:
-    """A length in user units of CSS pixels; None unless it is a number with an absolute unit, or with none."""
+    """A length in CSS pixels; None unless it is a number with an absolute unit, or with none."""
     match = LENGTH.match(text)
     if match is None or match.group(2).lower() not in PIXELS:
         return None
@@ -157,7 +157,8 @@ class ShapeElement:
         return None if match is None or side is None else float(match.group(1)) / 100 * side
 
 
-# A window's edge and an outline on it, relative to the window's size, may differ by the rounding of a drawing's digits.
+# A window's edge and an outline on it, relative to the window's size, may differ by the rounding of a
+# drawing's digits.
 ON_EDGE = 1e-6
 
 ViewBox = tuple[float, float, float, float]
@@ -257,7 +258,8 @@ def reach(chain: Chain, direction: Point) -> float:
     for k, bulge in enumerate(chain.bulges):
         if bulge:
             (u, v), (x, y) = chain.points[k], chain.points[k + 1]
-            # Centre and radius of an arc of bulge b over a chord: half the chord times (1 - b²) / 2b and (1 + b²) / 2b.
+            # Centre and radius of an arc of bulge b over a chord: half the chord times (1 - b²) / 2b and (1 +
+            # b²) / 2b.
             off, radius = (
                 (1 - bulge * bulge) / (4 * bulge),
                 hypot(x - u, y - v) * (1 + bulge * bulge) / abs(4 * bulge),

@@ -208,7 +208,7 @@ class SvgWalk:
             self.visit(target, inner)
 
     def visit_target(self, target: Element, use: ShapeElement, nest: ElementNesting) -> None:
-        """Visits a symbol or a nested drawing that a <use> shows, which gives it its size (SVG 2, 5.5 and 5.6).
+        """Visits a symbol or nested drawing in the size that a <use> gives it (SVG 2, 5.5 and 5.6).
 
         Raises
         ------
@@ -287,10 +287,11 @@ class SvgWalk:
         if text.lower() in ("none", "initial", "unset", ""):
             return nest
         error = InputError(
-            f"{label} has the clip-path '{short(text)}', which is not one plain rectangle or convex polygon: cut the "
-            "drawing itself, or release the clip."
+            f"{label} has the clip-path '{short(text)}', which is not one plain rectangle or convex "
+            "polygon: cut the drawing itself, or release the clip."
         )
-        # A drawing has two coordinate systems, outside and inside; programs differ in which of them a clip path is.
+        # A drawing has two coordinate systems, outside and inside; programs differ in which of them a clip
+        # path is.
         target = self.document.linked(href(element)) if local_name(element) == "use" else element
         if target is not None and local_name(target) in ("svg", "symbol"):
             raise InputError(
@@ -339,13 +340,14 @@ class SvgWalk:
             remarks.append(f"Ignored elements that are no outline: {kinds}.")
         if self.painted_over:
             remarks.append(
-                f"Left out {counted(self.painted_over, 'loop that is', 'loops that are')} painted over by the rest of the "
+                f"Left out {counted(self.painted_over, 'loop that is', 'loops that are')} painted over by "
+                "the rest of the "
                 "shape (fill-rule nonzero); for a hole, use the even-odd rule or turn the loop round."
             )
         if self.hidden:
             remarks.append(
-                f"Left out {counted(self.hidden, 'hidden element', 'hidden elements')} (switched off, transparent, empty, "
-                "or without fill and stroke); make them visible to read them."
+                f"Left out {counted(self.hidden, 'hidden element', 'hidden elements')} (switched off, "
+                "transparent, empty, or without fill and stroke); make them visible to read them."
             )
         return remarks
 
@@ -372,7 +374,7 @@ def suits(element: Element, label: str) -> bool:
 
 
 def visible_overflow(declarations: dict[str, list[Declared]]) -> bool:
-    """Whether a nested drawing shows what reaches beyond its edge."""
+    """Whether a nested drawing shows what reaches over its edge."""
     names = ("overflow", "overflow-x", "overflow-y")
     given = [declarations[name][0].text for name in names if name in declarations]
     return bool(given) and all(text in ("visible", "auto") for text in given)

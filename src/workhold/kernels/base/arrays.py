@@ -24,7 +24,8 @@ def grown(array: NDArray[Number]) -> NDArray[Number]:
 
 @inner_making_arrays
 def with_room(array: NDArray[Number], count: int) -> NDArray[Number]:
-    """A (N, M) array with room for another row after ``count``: the array itself, or a grown copy when it is full."""
+    """A (N, M) array with room for another row after ``count``: the array itself, or a grown copy when it is
+    full."""
     return grown(array) if count == array.shape[0] else array
 
 
@@ -33,7 +34,7 @@ Array = NDArray[np.float64]
 
 @inner
 def eliminate(matrix: Array, inverse: Array) -> float:
-    """Invert a (4, 4) matrix, which is used up, by Gauss and Jordan's elimination with pivots by rows.
+    """Inverts a (4, 4) matrix, which is used up, by Gauss and Jordan's elimination with pivots by rows.
 
     Returns
     -------

@@ -1,11 +1,11 @@
 """Kernels compiled when the package was built: one shared library that needs neither numba nor Python.
 
-The library holds each kernel under its name, as a function of an array of words: those of its result, one for
-a failure, and those of its arguments, with all records taken apart. It tells in ``DESCRIPTION`` what each is
-called with (written by ``building/compile_kernels.py``). It is called through ctypes, which releases the
-interpreter lock. Kernels trust what they are given, so every call is checked. The word of an array is where
-NumPy keeps its header, in which the library itself looks up and checks what it is: seating calls small
-kernels often, and a call takes as long as its arrays take to be told.
+The library holds each kernel under its name, as a function of an array of words. These are those of its
+result, one for a failure, and those of its arguments, with all records taken apart. It describes in
+``DESCRIPTION`` what each is called with (written by ``building/compile_kernels.py``). It is called through
+ctypes, which releases the interpreter lock. Kernels trust what they are given, so every call is checked. The
+word of an array is where NumPy keeps its header, in which the library itself looks up and checks what it is.
+Seating calls small kernels often, and most of a call is spent on describing its arrays.
 
 The library belongs to the sources of which it holds the hash: code compiled from others is never run.
 
@@ -49,13 +49,14 @@ __all__ = [
 
 # Names that the library exports besides those of its kernels.
 DESCRIPTION, RELEASE, KNOWN = "workhold_description", "workhold_release", "workhold_known"
-# Elements of arrays. The library has to be told where Python keeps the type of arrays and those of each of these.
+# Elements of arrays. The library needs to know where Python keeps the type of arrays and those of each of
+# these.
 ELEMENTS = ("f8", "i8", "i1")
 LIBRARY_NAME = "kernels.{platform}.so"
 # Appends the words of a value, and says whether it is taken.
 Taker = Callable[[Any, list[Any]], bool]
-# What a kernel returns: done, or done with nothing to hand back; that it was called with another array than those it was
-# compiled for. All else means that it had no memory.
+# What a kernel returns: done, or done with nothing to hand back; that it was called with another array than
+# those it was compiled for. All else means that it had no memory.
 DONE, REFUSED = (0, -2), -100
 SCALARS: dict[str, tuple[type[Any], tuple[type[Any], ...]]] = {
     "int64": (ctypes.c_int64, (int, np.integer)),
@@ -63,10 +64,12 @@ SCALARS: dict[str, tuple[type[Any], tuple[type[Any], ...]]] = {
     "bool": (ctypes.c_bool, (bool, np.bool_)),
 }
 WORD = 8
-# Where an array's header tells what, in bytes, and its flags where elements are in order and aligned (``ndarraytypes.h``).
+# Where an array's header holds what, in bytes, and its flags where elements are in order and aligned
+# (``ndarraytypes.h``).
 HEADER = {"type": 8, "data": 16, "dimensions": 24, "shape": 32, "strides": 40, "element": 56, "flags": 64}
 HEADER_BYTES, ORDERED = 68, 0x0001 | 0x0100
-# Words of an array that is handed back before its shape: two owners, number of elements, bytes of one, address.
+# Words of an array that is handed back before its shape: two owners, number of elements, bytes of one,
+# address.
 ARRAY_WORDS, ADDRESS = 5, 4
 
 
@@ -105,7 +108,8 @@ class Library:
 
 
 class Door:
-    """A kernel that checks what it is called with: places, element types, dimensions and layout of all arguments.
+    """A kernel that checks what it is called with: places, element types, dimensions and layout of all
+    arguments.
 
     Raises
     ------
@@ -152,7 +156,8 @@ class Door:
         return words
 
     def plain(self, values: tuple[Any, ...]) -> list[Any]:
-        """Values of which one was not taken, with arrays as NumPy makes them: of a class of their own, say, they are not.
+        """Values of which one was not taken, with arrays as NumPy makes them: of a class of their own, say,
+        they are not.
 
         Raises
         ------
@@ -207,7 +212,7 @@ class Made:
 
 
 def are_headers_known() -> bool:
-    """Whether the header of an array tells what it should, where it should."""
+    """Whether the header of an array holds what it should, where it should."""
     array = np.zeros((2, 3), np.int8)
     header = ctypes.string_at(id(array), HEADER_BYTES)
 
@@ -225,15 +230,15 @@ def are_headers_known() -> bool:
 
 
 def taker(argument: Any) -> Taker:
-    """What appends the words that a library takes for an argument; it says whether the value is one that it takes, but of
-    arrays, of which the library says it."""
+    """What appends the words that a library takes for an argument; it says whether the value is one that it
+    takes, but of arrays, of which the library says it."""
     if isinstance(argument, str):
         return number_taker(argument)
     return array_taken if isinstance(argument, dict) else record_taker(argument)
 
 
 def number_taker(argument: str) -> Taker:
-    """See ``taker``, of a number."""
+    """The taker of a number, see ``taker``."""
     kinds = SCALARS[argument][1]
 
     def take(value: Any, taken: list[Any]) -> bool:
@@ -244,14 +249,14 @@ def number_taker(argument: str) -> Taker:
 
 
 def array_taken(value: Any, taken: list[Any]) -> bool:
-    """See ``taker``, of an array."""
+    """The taker of an array, see ``taker``."""
     # Where Python keeps it.
     taken.append(id(value))
     return True
 
 
 def record_taker(argument: list[Any]) -> Taker:
-    """See ``taker``, of a record."""
+    """The taker of a record, see ``taker``."""
     takers, are_arrays = [taker(part) for part in argument], all(isinstance(part, dict) for part in argument)
 
     def take(value: Any, taken: list[Any]) -> bool:

@@ -1,11 +1,12 @@
 """How kernels are compiled, and where the compiled code is kept.
 
-Where the package was built with a library of all kernels, of exactly these sources, they come from there (``built``) and
-numba is not needed. Elsewhere numba compiles them on first use.
+Where the package was built with a library of all kernels, of exactly these sources, they come from there
+(``built``) and numba is not needed. Elsewhere numba compiles them on first use.
 
-Numba's disk cache looks only at the file of the function it keeps, so a kernel that calls a changed kernel of another
-file would be served stale. The cache therefore lives in a folder named by a hash of all the package's sources: any
-change of any source starts a new folder. Where no folder can be written, kernels are compiled anew in every process.
+Numba's disk cache looks only at the file of the function it keeps, so a kernel that calls a changed kernel of
+another file would be served stale. The cache therefore lives in a folder named by a hash of all the package's
+sources: any change of any source starts a new folder. Where no folder can be written, kernels are compiled
+anew in every process.
 """
 
 from __future__ import annotations
@@ -38,19 +39,22 @@ __all__ = [
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 FOLDERS_KEPT = 3
-# Bytes of address space: with less, numba and its compiler end the process by a signal or with an error of their own.
+# Bytes of address space: with less, numba and its compiler end the process by a signal or with an error of
+# their own.
 COMPILER_SPACE = 1_000_000_000
-# "numba" compiles on first use whatever was built; "building" besides neither reads nor keeps machine code; "callable" makes
-# kernels that only kernels call callable from Python as well, for tests, and takes longer to compile.
+# "numba" compiles on first use whatever was built; "building" besides neither reads nor keeps machine code;
+# "callable" makes kernels that only kernels call callable from Python as well, for tests, and takes longer to
+# compile.
 MODE = os.environ.get("WORKHOLD_KERNELS", "")
 ALL_CALLABLE = MODE == "callable"
-# Options of numba for kernels that make arrays, for those that make none, and besides for all of them, which no C calls,
-# and for those that only kernels call.
+# Options of numba for kernels that make arrays, for those that make none, and besides for all of them, which
+# no C calls, and for those that only kernels call.
 MAKING_ARRAYS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 WITHOUT_COUNTS: dict[str, Any] = {**MAKING_ARRAYS, "_nrt": False}
 NO_CALLBACK: dict[str, Any] = {"no_cfunc_wrapper": True}
 ONLY_INNER: dict[str, Any] = {"no_cpython_wrapper": True, **NO_CALLBACK}
-# The numba whose inner parts ``lean`` builds on. Any other compiles in its own way, which takes twice as long.
+# The numba whose inner parts ``lean`` builds on. Any other compiles in its own way, which takes twice as
+# long.
 LEAN_NUMBA = "0.68."
 # The modules and kernels that two processes compile last for a search: where both are stored, all are.
 LAST_OF_SEARCH = ("canonical_form.contacts_of", "quality.figures")
@@ -74,7 +78,8 @@ def built_library() -> Library | None:
                 return library
     if find_spec("numba") is None:
         raise InputError(
-            "This installation has no compiled kernels for this kind of machine, and no numba to compile them with; "
+            "This installation has no compiled kernels for this kind of machine, and no numba to compile "
+            "them with; "
             "install workhold[numba]."
         )
     refuse_little_space(
@@ -87,7 +92,8 @@ LIBRARY = built_library()
 
 
 def cache_key() -> str:
-    """Hash of the sources, of where they are, and of the versions that compile them: the same code has the same key."""
+    """Hash of the sources, of where they are, and of the versions that compile them: the same code has the
+    same key."""
     import numba
 
     known = f"{sys.version} numba {numba.__version__} {KERNELS} {ALL_CALLABLE} {source_hash()}"
@@ -95,7 +101,8 @@ def cache_key() -> str:
 
 
 def user_cache() -> Path:
-    """The folder for all of workhold's compiled code: ``$WORKHOLD_CACHE_DIR`` or ``workhold`` in the user's cache."""
+    """The folder for all of workhold's compiled code: ``$WORKHOLD_CACHE_DIR`` or ``workhold`` in the user's
+    cache."""
     named = os.environ.get("WORKHOLD_CACHE_DIR")
     if named:
         return Path(named)
@@ -105,7 +112,8 @@ def user_cache() -> Path:
 
 @cache
 def cache_folder() -> Path | None:
-    """The folder for the compiled code of exactly these sources, or None where nothing can be written or is to be."""
+    """The folder for the compiled code of exactly these sources, or None where nothing can be written or is
+    to be."""
     if MODE == "building":
         return None
     try:
@@ -120,7 +128,7 @@ def cache_folder() -> Path | None:
 
 
 def drop_old_folders(current: Path) -> None:
-    """Remove the compiled code of sources long replaced, keeping the newest few folders."""
+    """Removes the compiled code of sources long replaced, keeping the newest few folders."""
     try:
         others = [p for p in current.parent.glob("kernels-*") if p != current]
         others.sort(key=lambda p: p.stat().st_mtime, reverse=True)
@@ -131,12 +139,13 @@ def drop_old_folders(current: Path) -> None:
 
 
 def is_first_run() -> bool:
-    """Whether the search's kernels of these sources still have to be compiled (a matter of a quarter of a minute or so)."""
+    """Whether the search's kernels of these sources still have to be compiled (a matter of a quarter of a
+    minute or so)."""
     return not are_stored(LAST_OF_SEARCH)
 
 
 def are_stored(kernels: Sequence[str]) -> bool:
-    """Whether kernels, told as "module.kernel", need not be compiled any more."""
+    """Whether kernels, named as "module.kernel", need not be compiled any more."""
     if LIBRARY is not None:
         return True
     folder = cache_folder()
@@ -146,32 +155,33 @@ def are_stored(kernels: Sequence[str]) -> bool:
 
 
 def compiled(function: Function) -> Function:
-    """Compile a kernel that Python calls on first use, without the interpreter lock, and keep the machine code on disk if
-    possible; it makes and returns no array.
+    """Compiles a kernel that Python calls on first use, without the interpreter lock, and keeps the machine
+    code on disk if possible; it makes and returns no array.
 
-    Division by zero gives an infinity or NaN, as in NumPy. Kernels avoid what is slow to compile: assignments of slices,
-    and long kernels that call other long kernels (every caller is optimized together with all it calls).
+    Division by zero gives an infinity or NaN, as in NumPy. Kernels avoid what is slow to compile: assignments
+    of slices, and long kernels that call other long kernels (every caller is optimized together with all it
+    calls).
 
-    A kernel counts no references to arrays, for its caller holds all it looks at. A count is an atomic addition and every
-    view of a row would take two: they were half of a search's time.
+    A kernel counts no references to arrays, for its caller holds all it looks at. A count is an atomic
+    addition and every view of a row would take two: they were half of a search's time.
     """
     return called_by_python(function, WITHOUT_COUNTS)
 
 
 def compiled_making_arrays(function: Function) -> Function:
-    """Compile a kernel like :func:`compiled`, but one that makes or returns arrays, and so counts references to arrays: it
-    makes room, and leaves loops to kernels that do not."""
+    """Compiles a kernel like :func:`compiled`, but one that makes or returns arrays, and so counts references
+    to arrays: it makes room, and leaves loops to kernels that do not."""
     return called_by_python(function, MAKING_ARRAYS)
 
 
 def inner(function: Function) -> Function:
-    """Compile a kernel like :func:`compiled` that only kernels call: its code becomes part of theirs, and is not kept or
-    made callable itself."""
+    """Compiles a kernel like :func:`compiled` that only kernels call: its code becomes part of theirs, and is
+    not kept or made callable itself."""
     return called_by_kernels(function, WITHOUT_COUNTS)
 
 
 def inner_making_arrays(function: Function) -> Function:
-    """Compile a kernel like :func:`compiled_making_arrays` that only kernels call."""
+    """Compiles a kernel like :func:`compiled_making_arrays` that only kernels call."""
     return called_by_kernels(function, MAKING_ARRAYS)
 
 

@@ -1,4 +1,5 @@
-"""Distances from points and from straight pieces to the segments of an outline, and how it turns around a point.
+"""Distances from points and from straight pieces to the segments of an outline, and how it turns around a
+point.
 
 A clamp's body is a capsule, what lies within a radius of a straight piece: it may lie where that piece is far
 enough from the outline.
@@ -75,8 +76,8 @@ def winding_angle(x: float, y: float, row: Array) -> float:
     ax, ay = row[RADIUS] * cos(mid - row[HALF_EXTENT]) - dx, row[RADIUS] * sin(mid - row[HALF_EXTENT]) - dy
     bx, by = row[RADIUS] * cos(mid + row[HALF_EXTENT]) - dx, row[RADIUS] * sin(mid + row[HALF_EXTENT]) - dy
     turned = atan2(ax * by - ay * bx, ax * bx + ay * by)
-    # Seen from inside its circle a counter-clockwise arc turns forward, by up to a whole turn; from outside it turns as
-    # its chord does.
+    # Seen from inside its circle a counter-clockwise arc turns forward, by up to a whole turn; from outside
+    # it turns as its chord does.
     if hypot(dx, dy) < row[RADIUS]:
         if row[HALF_EXTENT] >= pi:
             turned = 2.0 * pi
@@ -98,7 +99,8 @@ def turns_around(x: float, y: float, rows: Array) -> float:
 
 @compiled
 def is_inside(x: float, y: float, rows: Array) -> bool:
-    """Whether a point not on the outline lies in the material bounded by (N, 10) segments, material on the left."""
+    """Whether a point not on the outline lies in the material bounded by (N, 10) segments, material on the
+    left."""
     return turns_around(x, y, rows) > pi
 
 
@@ -118,8 +120,8 @@ def distance_along(x: float, y: float, start: Array, ax: float, ay: float, lengt
 def piece_distance(start: Array, end: Array, row: Array) -> float:
     """Distance in mm from a straight piece to one segment (see ``base.feature``).
 
-    It is least at an end of either, or where they cross, or, from an arc's outside, at the foot of the perpendicular from
-    its centre; from its inside the distance has no minimum between.
+    It is least at an end of either, or where they cross, or, from an arc's outside, at the foot of the
+    perpendicular from its centre. From its inside the distance has no minimum between.
     """
     length = hypot(end[0] - start[0], end[1] - start[1])
     best = segment_distance(start[0], start[1], row)
@@ -150,8 +152,8 @@ def piece_distance(start: Array, end: Array, row: Array) -> float:
 
 @compiled
 def piece_distances(starts: Array, ends: Array, rows: Array, distances: Array) -> None:
-    """Distances in mm, which ``distances`` (M,) receives, from straight pieces, given by their ends (M, 2) each, to the
-    nearest of (N, 10) segments."""
+    """Distances in mm, which ``distances`` (M,) receives, from straight pieces, given by their ends (M, 2)
+    each, to the nearest of (N, 10) segments."""
     for k in range(starts.shape[0]):
         best = inf
         for n in range(rows.shape[0]):

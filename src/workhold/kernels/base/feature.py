@@ -13,7 +13,7 @@ LOW_SLACK, HIGH_SLACK : how far in mm a contact may lie past either end (of feat
 
 Shallow arcs are those whose centre is so far away that numbers of its size would drown the arc's own. A
 crowned edge of 60 mm with a sagitta of a hundredth of a millimetre has a radius of 45 m. Coordinates of its
-centre are rounded by more than the edge's own points need be. All that counts is therefore told from the
+centre are rounded by more than the edge's own points need be. All that counts is therefore measured from the
 arc's middle m, with the curvature k = 1 / R. With t the unit vector from the centre to m, square to which the
 arc goes through m, a point m + z is
 
@@ -146,7 +146,8 @@ def angle_on(row: Array, x: float, y: float) -> float:
 
 @inner
 def off_shallow(row: Array, x: float, y: float) -> tuple[float, float, float]:
-    """Distance in mm of a point from a shallow arc's circle, outward positive, and the unit vector from its centre."""
+    """Distance in mm of a point from a shallow arc's circle, outward positive, and the unit vector from its
+    centre."""
     mx, my = middle_of(row)
     dx, dy, k = x - mx, y - my, 1.0 / row[RADIUS]
     rise = k * (dx * dx + dy * dy) + 2.0 * (row[AXIS_X] * dx + row[AXIS_Y] * dy)
@@ -160,8 +161,8 @@ def beside_middle(
 ) -> tuple[float, float, float, float]:
     """Where an arc's circle meets a straight line.
 
-    The line's points are ``off`` from the arc's middle along the unit normal n. With T = (-ny, nx), nu = n . t and
-    tau = T . t, the point that is ``half`` R beside the centre's foot on the line has
+    The line's points are ``off`` from the arc's middle along the unit normal n. With T = (-ny, nx), nu = n .
+    t and tau = T . t, the point that is ``half`` R beside the centre's foot on the line has
 
         half^2 = tau^2 - k off (2 nu + k off),      R (half - tau) = -off (2 nu + k off) / (half + tau)
 
@@ -170,7 +171,7 @@ def beside_middle(
     Parameters
     ----------
     row : of an arc, shallow or not.
-    across : tau, which is told because it must be known better than n is.
+    across : tau, which is given because it must be known better than n is.
     branch : the sign of ``half``.
 
     Returns

@@ -1,7 +1,8 @@
-"""What every kernel of a search is given, as named records: features, lattice, limits and what a proof needs besides.
+"""What every kernel of a search is given, as named records: features, lattice, limits and what a proof needs
+besides.
 
-Kernels work in the frame in which the moving carrier of the toolkit slides along +x (``contact.frame``). Pegs of the carrier
-that stands still come first.
+Kernels work in the frame in which the moving carrier of the toolkit slides along +x (``contact.frame``). Pegs
+of the carrier that stands still come first.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ class Features(NamedTuple):
     ----------
     loose : (F, 10) rows with ends moved out by a hair, to search.
     rows : (F, 12) rows with the slack of their ends, to check.
-    standing, moving : first and past-the-last number of those that pegs of each carrier touch; ranges are the same or apart.
+    standing, moving : first and past-the-last number of those that pegs of each carrier touch; ranges are the
+        same or apart.
     """
 
     loose: Array
@@ -33,8 +35,8 @@ class Features(NamedTuple):
 
 
 class Lattice(NamedTuple):
-    """The lattice of holes, common to both carriers, in mm; ``row_offset`` is the height of the moving carrier's row 0 above
-    that of the standing one."""
+    """The lattice of holes, common to both carriers, in mm; ``row_offset`` is the height of the moving
+    carrier's row 0 above that of the standing one."""
 
     pitch_x: float
     pitch_y: float
@@ -50,11 +52,12 @@ class Limits(NamedTuple):
     contact_margin : smallest distance in mm from a contact to the end of its feature.
     wrench_length : L in mm.
     most_column_steps : largest column difference between pegs of one carrier.
-    clamping : 1 when the moving carrier clamps by pushing towards -x, -1 when it clamps by pushing towards +x.
+    clamping : 1 when the moving carrier clamps by pushing towards -x, -1 when it clamps by pushing towards
+        +x.
     least_margin : smallest closure margin of interest.
     most_listed : how many contacts a block lists when it counts them.
-    pairing : 1 when the peg that moves is one of two clamps: nothing need close yet, but the standing pegs alone must fix
-        the pose, and the clamp must push. Else 0.
+    pairing : 1 when the peg that moves is one of two clamps: nothing need close yet, but the standing pegs
+        alone must fix the pose, and the clamp must push. Else 0.
     """
 
     gap: float
@@ -68,8 +71,11 @@ class Limits(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """What is common to all records of a search: lattice and limits, radii of the standing and the moving pegs in mm, and
-    how far in mm the features' rows may be from the drawing."""
+    """What is common to all records of a search.
+
+    It holds lattice and limits, radii of the standing and the moving pegs in mm, and how far in mm the
+    features' rows may be from the drawing.
+    """
 
     lattice: Lattice
     limits: Limits

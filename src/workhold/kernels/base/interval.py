@@ -2,8 +2,10 @@
 
 Every operation widens its result by a few units in the last place of each bound. That covers the rounding of
 the operation itself and that of a number that enters it as a coefficient (sine and cosine: also that of the
-angle). Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, SIAM 2009,
-chapters 2 and 3.
+angle).
+
+Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, SIAM 2009, chapters
+2 and 3.
 
 A slope or a value over a range is bounded by those at both ends and by bounds of the derivative between them.
 """
@@ -23,7 +25,7 @@ TURN = 2.0 * pi
 
 @inner
 def outward(low: float, high: float) -> Interval:
-    """Widen a pair of rounded bounds."""
+    """Widens a pair of rounded bounds."""
     return (low - ROUNDING * abs(low) - SMALLEST, high + ROUNDING * abs(high) + SMALLEST)
 
 
@@ -137,7 +139,8 @@ def slope_range(
     second_derivative_high: float,
     width: float,
 ) -> tuple[float, float]:
-    """Enclosure of a slope over a range from its values at both ends and the second derivative between them."""
+    """Enclosure of a slope over a range from its values at both ends and the second derivative between
+    them."""
     if second_derivative_low >= 0.0:
         return (slope_low, slope_high)
     if second_derivative_high <= 0.0:
@@ -157,7 +160,8 @@ def slope_range(
 def value_bounds(
     value_low: float, value_high: float, lowest: float, highest: float, width: float
 ) -> tuple[float, float]:
-    """Bounds of a function over a range from its values at both ends and bounds of its slope, finite or not."""
+    """Bounds of a function over a range from its values at both ends and bounds of its slope, finite or
+    not."""
     low, high = min(value_low, value_high), max(value_low, value_high)
     if lowest >= 0.0 or highest <= 0.0:
         return (low, high)

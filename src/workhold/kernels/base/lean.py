@@ -1,8 +1,9 @@
 """How numba compiles kernels: with the passes that they need, and optimizing only what Python calls.
 
-Numba by itself optimizes every function in full and makes machine code of it, and does so again within each function that
-calls it. A kernel that only kernels call is never run on its own, though: here it stays what LLVM reads, tidied up. The
-kernel that Python calls takes in all that it and they call, and is optimized as a whole, as numba would.
+Numba by itself optimizes every function in full and makes machine code of it, and does so again within each
+function that calls it. A kernel that only kernels call is never run on its own, though: here it stays what
+LLVM reads, tidied up. The kernel that Python calls takes in all that it and they call, and is optimized as a
+whole, as numba would.
 
 Numba's own compiler is left as it is for whatever else uses it: kernels name these as their pipelines.
 
@@ -32,8 +33,8 @@ from numba.core.llvm_bindings import create_pass_builder
 
 __all__ = ["InnerCompiler", "OuterCompiler"]
 
-# Numba's passes but those for what kernels are without: closures, blocks of ``with``, errors that are raised, functions put
-# in place of their calls, literals that are types, and expressions of whole arrays.
+# Numba's passes but those for what kernels are without: closures, blocks of ``with``, errors that are raised,
+# functions put in place of their calls, literals that are types, and expressions of whole arrays.
 PASSES = (
     untyped.TranslateByteCode,
     untyped.FixupArgs,
@@ -51,7 +52,7 @@ class Code(JITCodeLibrary):
     """The code of a kernel, tidied up as it comes."""
 
     def add_llvm_module(self, module: Any) -> None:
-        """Take in a function, its variables in registers."""
+        """Takes in a function, its variables in registers."""
         module.data_layout = self._codegen._data_layout
         passes, builder = llvm.create_new_module_pass_manager(), create_pass_builder(self._codegen._tm, opt=0)
         passes.add_sroa_pass()
@@ -65,7 +66,7 @@ class InnerCode(Code):
     """The code of an inner kernel: for others to take in."""
 
     def finalize(self) -> None:
-        """Let those who take it in do with it as they like."""
+        """Makes a function one that its callers may inline or drop."""
         for function in self._final_module.functions:
             if not function.is_declaration:
                 function.linkage = "linkonce_odr"
@@ -76,7 +77,7 @@ class OuterCode(Code):
     """The code of a kernel that Python calls, with all that it calls."""
 
     def finalize(self) -> None:
-        """Take in all inner kernels, whoever calls them, optimize and make machine code."""
+        """Takes in all inner kernels, whoever calls them, optimizes and makes machine code."""
         found, waiting = dict[Any, None](), list(self._linking_libraries)
         while waiting:
             library = waiting.pop()
@@ -123,9 +124,11 @@ class OuterLowering(typed.NativeLowering):
 
 @cache
 def steady_contexts(typing: Any, target: Any) -> tuple[Any, Any]:
-    """Numba's contexts of types and of the machine, which look for new declarations only now and remember what they told.
+    """Numba's contexts of types and of the machine, which look for new declarations only now and remember
+    their answers.
 
-    Without, each kernel would look through all declarations, and ask anew what the sum of two numbers is, each time.
+    Without, each kernel would look through all declarations, and ask anew what the sum of two numbers is,
+    each time.
     """
     typing.refresh()
     target.refresh()

@@ -27,7 +27,8 @@ OPENING = Lock()
 
 
 class SealedFile(IndexDataCacheFile):
-    """Numba's files of one function's cache, where a damaged one (a loss of power leaves empty and halved files) is as none.
+    """Numba's files of one function's cache, where a damaged one (a loss of power leaves empty and halved
+    files) is as none.
 
     Machine code stands behind its hash, because running damaged code would end the process.
     """
@@ -40,7 +41,7 @@ class SealedFile(IndexDataCacheFile):
             return {}
 
     def _save_data(self, name: str, data: Any) -> None:
-        """Write machine code behind its hash."""
+        """Writes machine code behind its hash."""
         content = self._dump(data)  # type: ignore[no-untyped-call]
         with self._open_for_write(self._data_path(name)) as stream:  # type: ignore[no-untyped-call]
             stream.write(sha256(content).digest() + content)
@@ -57,8 +58,8 @@ class SealedFile(IndexDataCacheFile):
 class StoredCode(FunctionCache):
     """Numba's cache of one function, whose files are sealed, without the wait before machine code is read.
 
-    Numba would first set up all it needs to compile, a fifth of a second. Code that is there needs only the allocator of
-    arrays; where it is not there, the compiler sets up the rest itself.
+    Numba would first set up all it needs to compile, a fifth of a second. Code that is there needs only the
+    allocator of arrays; where it is not there, the compiler sets up the rest itself.
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
@@ -66,7 +67,7 @@ class StoredCode(FunctionCache):
         self._cache_file.__class__ = SealedFile
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Store machine code, unless the disk is full or does not let it."""
+        """Stores machine code, unless the disk is full or does not let it."""
         with suppress(OSError):
             super().save_overload(sig, data)  # type: ignore[no-untyped-call]
 
@@ -80,7 +81,8 @@ class StoredCode(FunctionCache):
 class LateCache:
     """The cache of a kernel, opened when the kernel is first called or compiled into another.
 
-    Most kernels are never looked up once those that call them are stored, and opening a cache touches the disk.
+    Most kernels are never looked up once those that call them are stored, and opening a cache touches the
+    disk.
     """
 
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:

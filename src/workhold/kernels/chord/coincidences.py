@@ -2,14 +2,14 @@
 
 Two coincidences are common in drawings whose sizes are whole multiples of the pitch:
 
-- two arcs of equal radius R whose centres are exactly one chord length d apart: at the direction of the centres' line the
-  two circles that the tail must lie on coincide;
-- a line and an arc of radius R whose centre is d - R beyond the line (or R - d before it): where the chord is square to the
-  line, both tangencies fall together.
+- two arcs of equal radius R whose centres are exactly one chord length d apart. At the direction of the
+  centres' line the two circles that the tail must lie on coincide;
+- a line and an arc of radius R whose centre is d - R beyond the line (or R - d before it). Where the chord is
+  square to the line, both tangencies fall together.
 
-At the coincidence both contacts share one line of action, so it is never part of a fixture itself; but curves run through it
-with finite slopes. With gamma the angle from the coincidence, q = d (1 - cos gamma) and, for the arcs, m the direction half
-way between the chord and the centres' line, everything is regular:
+At the coincidence both contacts share one line of action, so it is never part of a fixture itself; but curves
+run through it with finite slopes. Let gamma be the angle from the coincidence, and q = d (1 - cos gamma). For
+the arcs let m be the direction half way between the chord and the centres' line. Then everything is regular:
 
 - arcs:       u = c_a + (c - w) / 2 +- sqrt(R^2 - d^2 sin(gamma / 2)^2) m, c from centre to centre;
 - line, arc:  u = c_b + eta n + S t - w, eta = +-(R - q), S = +- sin(gamma / 2) sqrt(2 d (2 R - q)),
@@ -50,7 +50,8 @@ MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
 # Nearer than this to a coincidence, in radians, a chord's contacts share one line of action.
 SHARED = 1e-10
-# Kinds of coincidence a curve may have; chords between concentric arcs turn about the centre without changing shape.
+# Kinds of coincidence a curve may have; chords between concentric arcs turn about the centre without changing
+# shape.
 NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC = 0.0, 1.0, 2.0, 3.0, 4.0
 
 
@@ -86,7 +87,8 @@ def are_concentric(a: Array, b: Array) -> bool:
 
 @inner
 def coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
-    """Kind of coincidence of a chord of length d, its direction alpha, and the side of the line (see ``beyond_line``)."""
+    """Kind of coincidence of a chord of length d, its direction alpha, and the side of the line (see
+    ``beyond_line``)."""
     if are_one_chord_apart(a, b, d):
         return (ARCS, atan2(b[Y] - a[Y], b[X] - a[X]), 0.0)
     if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
@@ -135,7 +137,8 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
 
     Returns
     -------
-    (whether the regular formulas apply, (ux, uy, u'x, u'y, r_ax R, r_ay R)), the last two only for an arc tail
+    (whether the regular formulas apply, (ux, uy, u'x, u'y, r_ax R, r_ay R)), the last two only for an arc
+    tail
     """
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
     alpha = psi + curve[SHIFT]

@@ -1,4 +1,5 @@
-"""The tables that kernels hand each other: chord curves, sliding pairs, and the pieces that curves are cut to.
+"""The tables that kernels hand each other: chord curves, sliding pairs, and the pieces that curves are cut
+to.
 
 Whole numbers of a curve (C, 7), the same for a sliding pair: TAIL and HEAD (features), COLUMN_STEP and
 ROW_STEP (of the head from the tail), CENTER (number of the common centre of concentric arcs, -1 for others),
@@ -43,7 +44,8 @@ SLIDING_PAIR_REALS = 5
 
 
 class Curves(NamedTuple):
-    """Chord curves: whole numbers (C, 7), reals (C, 14), and their stretches (S, 13), see ``chord.stretches``."""
+    """Chord curves: whole numbers (C, 7), reals (C, 14), and their stretches (S, 13), see
+    ``chord.stretches``."""
 
     integers: NDArray[np.int64]
     reals: NDArray[np.float64]

@@ -1,29 +1,34 @@
 r"""Chords: two pegs of one carrier touching two features, as a curve over the orientation.
 
-Look from the workpiece's frame: the pegs turn by psi = -theta and move as one rigid set. Two pegs a lattice step
-``Delta`` apart, the first on feature a (the chord's tail u) and the second on feature b (its head v = u + w), form a
-segment of length d = \|Delta\| and direction alpha = psi + arg Delta. Given alpha, u follows in closed form, with at most
-two branches.
+Look from the workpiece's frame: the pegs turn by psi = -theta and move as one rigid set. Let two pegs be a
+lattice step ``Delta`` apart, the first on feature a (the chord's tail u), the second on feature b (its head v
+= u + w). They form a segment of length d = \|Delta\| and direction alpha = psi + arg Delta. Given alpha, u
+follows in closed form, with at most two branches.
 
 Conventions
 -----------
-r_a, r_b : unit normal of a line, unit vector from the centre for an arc (its sign plays no part in lines of action).
+r_a, r_b : unit normal of a line, unit vector from the centre for an arc (its sign plays no part in lines of
+    action).
 P : the chord's instant centre, where the lines of action through both contacts meet; P = u + p r_a with
     p = cross(w, r_b) / X and X = cross(r_a, r_b). When psi turns, u' = J (u - P), J the quarter turn.
-height : h = y . u, with x = (cos psi, sin psi) and y = J x the axes of the pegs' frame. From u' follows h' = -x . P.
+height : h = y . u, with x = (cos psi, sin psi) and y = J x the axes of the pegs' frame. From u' follows h' =
+    -x . P.
 position : s, the parameter of u on feature a. s' = -p on a line, -p / R on an arc of radius R.
 A tangency of the chord (X = 0) is where its two branches meet and both derivatives are infinite.
-backward error : eta, a bound in mm of how far the computed contacts are off their features, from rounding alone.
+backward error : eta, a bound in mm of how far the computed contacts are off their features, from rounding
+    alone.
 
 Errors of computed chords
 -------------------------
-Let G(u) be the distances of the tail u from the carrier of a and of the head u + w from that of b. A computed tail has
-\|G\| <= eta in both entries (backward error). The rows of the Jacobian of G are r_a and r_b, its determinant is X, and its
-Lipschitz constant is at most kappa = 1 / R_a + 1 / R_b; so its inverse is at most 2 / \|X\| and the first Newton step at
-most 2 eta / \|X\|. The Newton-Kantorovich theorem says that when 16 kappa eta <= X^2 (its h is then 1 / 4) there is exactly
-one chord within 2.35 eta / \|X\| of the computed one, on the same branch. Over that way X changes by a part of 0.15, so
-the chain rule on P = u + p r_a, p = cross(w, r_b) / X, gives an error of P of at most
-eta / X^2 (2.35 + kappa (2.8 d + 5.2 \|p\|)). The bounds of ``chord_state`` are a little wider.
+Let G(u) be the distances of the tail u from the carrier of a and of the head u + w from that of b. A computed
+tail has \|G\| <= eta in both entries (backward error). The rows of the Jacobian of G are r_a and r_b, its
+determinant is X, and its Lipschitz constant is at most kappa = 1 / R_a + 1 / R_b. So its inverse is at most 2
+/ \|X\| and the first Newton step at most 2 eta / \|X\|. Let 16 kappa eta <= X^2, so that h of the
+Newton-Kantorovich theorem is 1 / 4. Then there is exactly one chord within 2.35 eta / \|X\| of the computed
+one, on the same branch. Over that way X changes by a part of 0.15, so the chain rule on P = u + p r_a, p =
+cross(w, r_b) / X, applies. It gives an error of P of at most eta / X^2 (2.35 + kappa (2.8 d + 5.2 \|p\|)).
+The bounds of ``chord_state`` are a little wider.
+
 Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical Monthly 75 (1968) 658-660.
 """
 
@@ -77,12 +82,13 @@ Array = NDArray[np.float64]
 Chord = tuple[float, float, float, float, float, float]
 State = tuple[float, float, float, float, float, float, float, float, float, float]
 
-# Which value of a curve is meant. (Kernels are compiled anew for every whole number written as such; these are not.)
+# Which value of a curve is meant. (Kernels are compiled anew for every whole number written as such; these
+# are not.)
 HEIGHT = 0.0
 POSITION = 1.0
 
-# Roundings of half a unit in the last place that add up to a contact's distance from its feature, generously counted: those
-# of the angle (of up to 9 radians), of its sine and cosine, and of a dozen sums and products.
+# Roundings of half a unit in the last place that add up to a contact's distance from its feature, generously
+# counted: those of the angle (of up to 9 radians), of its sine and cosine, and of a dozen sums and products.
 ROUNDINGS = 32.0 * 1.2e-16
 
 
@@ -157,7 +163,8 @@ def chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
 
 @inner
 def direction_at(row: Array, x: float, y: float) -> tuple[float, float]:
-    """Direction of a contact at a point on a feature: the normal of a line, the unit vector from an arc's centre."""
+    """Direction of a contact at a point on a feature: the normal of a line, the unit vector from an arc's
+    centre."""
     if row[IS_ARC] == 0.0:
         return (row[AXIS_Y], -row[AXIS_X])
     return ((x - row[X]) / row[RADIUS], (y - row[Y]) / row[RADIUS])
@@ -175,7 +182,8 @@ def parameter_on(row: Array, x: float, y: float) -> float:
 def distance_to_end(row: Array, s: float) -> float:
     """Distance in mm along a feature from a parameter to the nearer end; negative beyond it.
 
-    A whole circle has no end: half its circumference is told, the farthest that a contact could be from any point.
+    A whole circle has no end: half its circumference is given, the farthest that a contact could be from any
+    point.
     """
     if row[IS_ARC] == 0.0:
         return row[HALF_EXTENT] - abs(s)
@@ -184,7 +192,8 @@ def distance_to_end(row: Array, s: float) -> float:
 
 @inner
 def end_slack(row: Array, x: float, y: float) -> float:
-    """How far in mm a contact on a feature is from breaking the rule of ends; infinite on a whole circle, which has none.
+    """How far in mm a contact on a feature is from breaking the rule of ends; infinite on a whole circle,
+    which has none.
 
     ``row`` has ten entries.
     """
@@ -208,7 +217,8 @@ def backward_error(a: Array, b: Array, d: float) -> float:
         )
     spread = 1.0
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
-        # The head's distance from its circle is found from that of the tail: an error grows with the ratio of radii.
+        # The head's distance from its circle is found from that of the tail: an error grows with the ratio of
+        # radii.
         spread = max(a[RADIUS] / b[RADIUS], b[RADIUS] / a[RADIUS])
         if are_concentric(a, b):
             return ROUNDINGS * size * spread + hypot(a[X] - b[X], a[Y] - b[Y])
@@ -217,7 +227,8 @@ def backward_error(a: Array, b: Array, d: float) -> float:
 
 @inner
 def curvature(row: Array) -> float:
-    """How fast in 1 / mm the unit vector towards a contact turns when the contact moves off or along its feature."""
+    """How fast in 1 / mm the unit vector towards a contact turns when the contact moves off or along its
+    feature."""
     return 0.0 if row[IS_ARC] == 0.0 else 1.0 / row[RADIUS]
 
 
@@ -229,13 +240,14 @@ def regular_error(curve: Array) -> float:
 
 @inner
 def write_shift(row: Array, shift: float) -> None:
-    """Write to a row of the curve table what depends on the lattice step: arg Delta in radians (psi = alpha - shift)."""
+    """Writes to a row of the curve table what depends on the lattice step: arg Delta in radians (psi = alpha
+    - shift)."""
     row[SHIFT], row[COSINE], row[SINE] = shift, cos(shift), sin(shift)
 
 
 @inner
 def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: float) -> None:
-    """Write to a row of the curve table what does not change along the curve.
+    """Writes to a row of the curve table what does not change along the curve.
 
     Parameters
     ----------
@@ -263,8 +275,9 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
 
     Returns
     -------
-    (ux, uy, r_ax, r_ay, r_bx, r_by, Px, Py, bound of the tail's error in mm, bound of the error of P over the chord's own
-     directions), the errors infinite where these formulas do not bound them, too near a tangency
+    (ux, uy, r_ax, r_ay, r_bx, r_by, Px, Py, bound of the tail's error in mm, bound of the error of P over the
+    chord's own directions). The errors are infinite where these formulas do not bound them, too near a
+    tangency
     """
     d = curve[LENGTH]
     wx, wy = (
@@ -306,8 +319,8 @@ def valued(
     if mode == HEIGHT:
         doubt = state[9]
         if a[IS_ARC] + b[IS_ARC] == 1.0:
-            # P lies on the line of action through the straight feature, which turns with nothing: of its error along that
-            # line only the part along x counts.
+            # P lies on the line of action through the straight feature, which turns with nothing: of its
+            # error along that line only the part along x counts.
             nx, ny = (state[2], state[3]) if a[IS_ARC] == 0.0 else (state[4], state[5])
             share = abs(cosine * nx + sine * ny)
             doubt = min(doubt, state[8] + share * (doubt + state[8]))
@@ -333,8 +346,8 @@ def curve_value(
 
     Returns
     -------
-    (value, derivative, bound of the value's error, bound of the derivative's error), the errors infinite where these
-    formulas do not bound them, too near a tangency
+    (value, derivative, bound of the value's error, bound of the derivative's error), the errors infinite
+    where these formulas do not bound them, too near a tangency
     """
     cosine, sine = cos(psi), sin(psi)
     return valued(a, b, chord_state(a, b, curve, psi, cosine, sine), cosine, sine, mode)

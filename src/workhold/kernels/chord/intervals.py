@@ -1,12 +1,14 @@
 """The ranges of direction over which a chord exists, with closed-form ends.
 
-A chord of length d from feature a to feature b can begin or cease to exist only where its tail reaches an end of a, its
-head reaches an end of b, or the chord is a tangency. All these directions are arc cosines. Between two neighbours of the
-sorted list a branch exists throughout or not at all, so one test in the middle decides.
+A chord of length d from feature a to feature b can begin or cease to exist in three ways only. Its tail
+reaches an end of a, its head reaches an end of b, or the chord is a tangency. All these directions are arc
+cosines. Between two neighbours of the sorted list a branch exists throughout or not at all, so one test in
+the middle decides.
 
-The ranges hold every chord between the features, in spite of rounding: the features' ends have been moved out by far more
-than rounding (``contact.curves.LOOSE``), a range too narrow for the test counts wherever the carriers of the features
-meet, and what is found past an end is discarded later. The end of a range at a tangency is known to an error that is told.
+The ranges hold every chord between the features, in spite of rounding. The features' ends have been moved out
+by far more than rounding (``contact.curves.LOOSE``). A range too narrow for the test counts wherever the
+carriers of the features meet, and what is found past an end is discarded later. The end of a range at a
+tangency is known to a stated error.
 """
 
 from __future__ import annotations
@@ -39,26 +41,28 @@ from workhold.kernels.chord.shallow import arcs_cosine, is_turned, tangent_off
 Array = NDArray[np.float64]
 
 MOST_EVENTS = 16
-# Kinds of events: an end of a feature is reached (ranges are merged over it when the chord exists on both sides), the chord
-# is a tangency, or ranges are cut for another reason.
+# Kinds of events: an end of a feature is reached (ranges are merged over it when the chord exists on both
+# sides), the chord is a tangency, or ranges are cut for another reason.
 END, TANGENCY, CUT = 0.0, 1.0, 2.0
-# Half-width in radians of the sliver left out around a coincidence (see ``chord.coincidences``): there both contacts share
-# one line of action; what slides there is covered by the sliding pairs.
+# Half-width in radians of the sliver left out around a coincidence (see ``chord.coincidences``): there both
+# contacts share one line of action; what slides there is covered by the sliding pairs.
 SLIVER = 1e-12
 # In ranges narrower than this, in radians, the test in the middle cannot be trusted near a tangency.
 NARROW = 1e-6
-# A chord this far from a tangency, by its X, moves along the features no faster than a hundred times its length.
+# A chord this far from a tangency, by its X, moves along the features no faster than a hundred times its
+# length.
 STEADY = 0.01
 # Ends of features are met with this much to spare, in mm: more than rounding, less than they were moved out.
 SPARE = 1e-8
-# Relative rounding of a cosine, in half units in the last place: differences and products of coordinates, their sum, the
-# length of a line's direction, the radius added, and the quotient make eight.
+# Relative rounding of a cosine, in half units in the last place: differences and products of coordinates,
+# their sum, the length of a line's direction, the radius added, and the quotient make eight.
 ROUNDINGS = 10.0 * 1.2e-16
 
 
 @inner
 def add_event(events: Array, count: int, alpha: float, kind: float, error: float) -> int:
-    """Append a direction, brought into [0, 2 pi), and a bound of its error to the events; return the new count."""
+    """Appends a direction, brought into [0, 2 pi), and a bound of its error to the events, and returns the
+    new count."""
     alpha = alpha % TURN
     events[count, 0] = alpha
     events[count, 1] = kind
@@ -68,7 +72,8 @@ def add_event(events: Array, count: int, alpha: float, kind: float, error: float
 
 @inner
 def add_pair(events: Array, count: int, middle: float, cosine: float, kind: float, rounding: float) -> int:
-    """Append both solutions of cos(alpha - middle) = cosine, if there are any; ``rounding`` bounds the cosine's error."""
+    """Appends both solutions of cos(alpha - middle) = cosine, if there are any; ``rounding`` bounds the
+    cosine's error."""
     if abs(cosine) <= 1.0:
         offset = acos(cosine)
         error = 2e-15 + 2.0 * rounding / max(sin(offset), sqrt(rounding))
@@ -81,8 +86,8 @@ def add_pair(events: Array, count: int, middle: float, cosine: float, kind: floa
 def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: float, turned: float) -> int:
     """Directions at which the chord runs from an end of ``moving`` to the carrier of ``fixed``.
 
-    ``turned`` is 0 when ``moving`` carries the tail, pi when it carries the head. A tail on a whole circle reaches its
-    seam, where its position jumps by a turn; ranges are cut there.
+    ``turned`` is 0 when ``moving`` carries the tail, pi when it carries the head. A tail on a whole circle
+    reaches its seam, where its position jumps by a turn; ranges are cut there.
     """
     ends = 1 if moving[IS_ARC] != 0.0 and moving[HALF_EXTENT] >= pi else 2
     kind = CUT if ends == 1 and turned == 0.0 else END
@@ -157,9 +162,11 @@ def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) 
 def add_gap(
     events: Array, count: int, middle: float, apart: float, d: float, a: Array, b: Array, gap: float
 ) -> int:
-    """Append the tangencies at which the centre of b, moved back by the chord, is ``gap`` away from the centre of a.
+    """Appends the tangencies at which the centre of b, moved back by the chord, is ``gap`` away from the
+    centre of a.
 
-    That distance is g with g^2 = (apart - d)^2 + 4 apart d sin(gamma / 2)^2, gamma the angle between chord and centres.
+    That distance is g with g^2 = (apart - d)^2 + 4 apart d sin(gamma / 2)^2, gamma the angle between chord
+    and centres.
     """
     difference = apart - d
     rounding = ROUNDINGS * (abs(a[X]) + abs(a[Y]) + abs(b[X]) + abs(b[Y]) + a[RADIUS] + b[RADIUS] + d)
@@ -179,7 +186,7 @@ def add_gap(
 
 @inner
 def collect_events(events: Array, a: Array, b: Array, d: float) -> int:
-    """All directions at which a chord may begin or cease to exist, sorted; return their number."""
+    """All directions at which a chord may begin or cease to exist, sorted, and their number."""
     count = add_end_events(events, int(np.int64(0)), a, b, d, 0.0)
     count = add_end_events(events, count, b, a, d, pi)
     if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
@@ -216,10 +223,11 @@ def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
 
 @inner
 def only_touch(a: Array, b: Array, d: float) -> bool:
-    """Whether a chord of length d between two carriers, one of them an arc, exists at one direction only or at none.
+    """Whether a chord of length d between two carriers, one of them an arc, exists at one direction only or
+    at none.
 
-    Its contacts then share one line of action, and nothing closes. It is not asked of shallow arcs, whose ranges are short
-    in any case.
+    Its contacts then share one line of action, and nothing closes. It is not asked of shallow arcs, whose
+    ranges are short in any case.
     """
     if is_shallow(a) or is_shallow(b):
         return False
@@ -282,10 +290,10 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
     Returns
     -------
     (N, 5) array
-        Columns: lowest and highest alpha in radians (lowest in [0, 4 pi)), branch, and for the lowest and the highest
-        alpha a bound of its error in radians when the chord is a tangency there, 0 when it is not. Parallel lines give
-        none: their chords are sliding pairs. Nor do concentric arcs whose chord lies on a line through the centre: their
-        contacts share one line of action.
+        Columns: lowest and highest alpha in radians (lowest in [0, 4 pi)), branch, and for both alphas a
+        bound of its error. It is in radians when the chord is a tangency there, 0 when it is not. Parallel
+        lines give none: their chords are sliding pairs. Nor do concentric arcs whose chord lies on a line
+        through the centre: their contacts share one line of action.
     """
     if (
         are_concentric(a, b)
@@ -321,7 +329,8 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
 def branch_intervals(
     events: Array, count: int, a: Array, b: Array, d: float, branch: float, out: Array, found: int
 ) -> int:
-    """Write the ranges of one branch to ``out`` from row ``found`` on; return the new number of rows."""
+    """Writes the ranges of one branch to ``out`` from row ``found`` on, and returns the new number of
+    rows."""
     alive = np.empty(count, np.bool_)
     start = -1
     for i in range(count):

@@ -1,13 +1,14 @@
-"""Chords one of whose features is a shallow arc (see ``base.shallow``), without numbers of the size of its radius.
+"""Chords one of whose features is a shallow arc (see ``base.shallow``), without numbers of the size of its
+radius.
 
-With m the arcs' middles, t their directions, k their curvatures and q = m_b - m_a, the cosine xi of the angle between both
-contact directions of a chord w is given by the law of cosines,
+Let m be the arcs' middles, t their directions, k their curvatures and q = m_b - m_a. The law of cosines gives
+the cosine xi of the angle between both contact directions of a chord w,
 
     1 - xi = |t_a - t_b|^2 / 2 + (q - w) . (k_b t_a - k_a t_b) + k_a k_b |q - w|^2 / 2,
 
-so X^2 = (1 - xi) (1 + xi), and both are a constant and a multiple of cos(alpha - beta), beta the direction from centre to
-centre. Between a line of normal n and an arc X^2 = tau^2 - k e (2 nu + k e), with nu and tau the parts of t along and square
-to n, and e how far the contact is from m along n.
+so X^2 = (1 - xi) (1 + xi), and both are a constant and a multiple of cos(alpha - beta), beta the direction
+from centre to centre. Between a line of normal n and an arc X^2 = tau^2 - k e (2 nu + k e). Here nu and tau
+are the parts of t along and square to n, and e is how far the contact is from m along n.
 """
 
 from __future__ import annotations
@@ -60,8 +61,8 @@ def line_to_shallow(a: Array, b: Array, wx: float, wy: float, branch: float) -> 
 
 @inner
 def shallow_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
-    """``evaluation.arc_to_arc`` where an arc is shallow: the tail lies where the circle of a meets the line on which both
-    circles' equations agree."""
+    """``evaluation.arc_to_arc`` where an arc is shallow: the tail lies where the circle of a meets the line
+    on which both circles' equations agree."""
     gx, gy = b[X] - a[X] - wx, b[Y] - a[Y] - wy
     gap = hypot(gx, gy)
     nx, ny = gx / gap, gy / gap
@@ -99,7 +100,8 @@ def tangent_off(line: Array, arc: Array) -> float:
 
 @inner
 def is_turned(a: Array, b: Array, wx: float, wy: float) -> bool:
-    """Whether the carriers of two features, one of them a shallow arc, meet for a chord: whether X^2 is positive."""
+    """Whether the carriers of two features, one of them a shallow arc, meet for a chord: whether X^2 is
+    positive."""
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
         near, far, swing, beta = arcs_cosine(a, b, hypot(wx, wy))
         part = swing * (wx * cos(beta) + wy * sin(beta)) / hypot(wx, wy)
@@ -115,7 +117,8 @@ def is_turned(a: Array, b: Array, wx: float, wy: float) -> bool:
 
 @inner
 def arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float, float]:
-    """What xi is made of between two arcs: 1 - xi = near - swing cos(alpha - beta), 1 + xi = far + swing cos(alpha - beta).
+    """What xi is made of between two arcs: 1 - xi = near - swing cos(alpha - beta), 1 + xi = far + swing
+    cos(alpha - beta).
 
     Returns
     -------
@@ -170,5 +173,6 @@ def shallow_turn_size(a: Array, b: Array, d: float, low: float, high: float) -> 
 
 @inner
 def shallow_half(a: Array, b: Array, turn: float, gap: float) -> float:
-    """Half the chord that two circles have in common, by X, where an arc is shallow (``discs.arcs_radius``)."""
+    """Half the chord that two circles have in common, by X, where an arc is shallow
+    (``discs.arcs_radius``)."""
     return a[RADIUS] * b[RADIUS] * abs(turn) / gap

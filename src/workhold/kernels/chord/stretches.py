@@ -1,4 +1,5 @@
-"""How fast a chord's instant centre moves, and stretches: ranges of direction over which its speed is bounded.
+"""How fast a chord's instant centre moves, and stretches: ranges of direction over which its speed is
+bounded.
 
 Let C_a = cross(w, r_a), C_b = cross(w, r_b), X = cross(r_a, r_b), and let k_a and k_b be the features'
 curvatures (0 for a line, 1 / R for an arc). Differentiating the two lines of action through the instant
@@ -13,15 +14,15 @@ The right-hand side stays finite at a tangency, where X = 0, so the sign of the 
 is bounded there too (see ``curves.pieces``).
 
 Between two arcs of nearly equal radii R_a and R_b whose centres are nearly one chord apart, r_a and r_b
-nearly agree, and the terms on the right nearly cancel. With g = c - w, c from centre to centre, R_a r_a - R_b
-r_b = g gives the same without cancellation: X = -G / R_b with G = cross(r_a, g), and with W = cross(w, c), E
-= C_a - G, rho = R_a / R_b
+nearly agree, and the terms on the right nearly cancel. Let g = c - w, c from centre to centre. Then R_a r_a -
+R_b r_b = g gives the same without cancellation: X = -G / R_b with G = cross(r_a, g), and with W = cross(w,
+c), E = C_a - G, rho = R_a / R_b
 
     R_b X^3 P' = (1 - rho^2) C_a E r_a + rho C_a E g / R_b
                  + (rho C_a W / R_a + (W / R_b) (E - W / R_a)) (rho r_a - g / R_b).
 
 All lattice steps of one length share the stretches of their curves: P, seen from the workpiece, depends on
-the direction alpha only. Beside a tangency, where P runs off to infinity, a short stretch tells of X^3 P' and
+the direction alpha only. Beside a tangency, where P runs off to infinity, a short stretch holds X^3 P' and
 X^3 instead, from which the signs of second derivatives follow.
 
 Columns of a stretch: STRETCH_HIGH (where it ends, alpha in radians; it begins where the one before it ends,
@@ -29,7 +30,7 @@ the first part of a stretch where that begins), SPEED (bound of |P'| in mm per r
 tangency), X_LOW, X_HIGH, Y_LOW, Y_HIGH (of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a), LARGEST_CROSS
 (largest |X|, with the sign of X), LEAST_CUBE (smallest |X|^3), PART_A, PART_B (largest sizes of the parts of
 X^3 P' along r_a and r_b), PARTS (how many of the rows that follow divide this stretch once more, for lattice
-steps whose curves it tells too little of).
+steps whose curves it bounds too loosely).
 """
 
 from __future__ import annotations
@@ -65,7 +66,8 @@ from workhold.kernels.chord.evaluation import chord, curvature
 from workhold.kernels.chord.shallow import shallow_turn_size
 
 Array = NDArray[np.float64]
-# Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of contact.
+# Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of
+# contact.
 NEAR = 0.5
 ChordBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 CenterMotion = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
@@ -146,7 +148,7 @@ def chord_box(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> C
 
 @inner
 def one_sided(turn: Interval, sign: float) -> Interval:
-    """Cut a cross product known to keep its sign (0 at a tangency) to that side."""
+    """Cuts a cross product known to keep its sign (0 at a tangency) to that side."""
     if sign > 0.0:
         return (max(turn[0], 0.0), max(turn[1], 0.0))
     return (min(turn[0], 0.0), min(turn[1], 0.0))
@@ -156,13 +158,14 @@ def one_sided(turn: Interval, sign: float) -> Interval:
 def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
     r"""Enclosure of abs(X) for alpha in [low, high], by the sides of a triangle.
 
-    Between a line and an arc X^2 = 1 - (across / R)^2; between two arcs, with g = \|c - w\|,
+    Between a line and an arc X^2 = 1 - (across / R)^2. Between two arcs, with g = \|c - w\|,
     X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
     g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2, gamma the angle between w and c.
     """
     if is_shallow(a) or is_shallow(b):
         return shallow_turn_size(a, b, d, low, high)
-    # Differences of coordinates are intervals too: what is left of them beside a tangency is of the size of their rounding.
+    # Differences of coordinates are intervals too: what is left of them beside a tangency is of the size of
+    # their rounding.
     cx, cy = outward(b[X] - a[X], b[X] - a[X]), outward(b[Y] - a[Y], b[Y] - a[Y])
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         turn = icross(
@@ -171,7 +174,8 @@ def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval
         return isqrt(isquare(turn))
     if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0:
         line, arc = (a, b) if a[IS_ARC] == 0.0 else (b, a)
-        # The arc's centre from the line's middle, in direction of the normal, less the head's way in the same direction.
+        # The arc's centre from the line's middle, in direction of the normal, less the head's way in the same
+        # direction.
         fixed = isub(iscale(line[AXIS_Y], cx), iscale(line[AXIS_X], cy))
         normal = atan2(-line[AXIS_X], line[AXIS_Y])
         across = isub(fixed, iscale(d, icos((low - normal, high - normal))))
@@ -227,8 +231,9 @@ def center_motion(
 
     Returns
     -------
-    (X, x and y of X^3 P', X^3 P' . r_a, its part along r_a, its part against r_b); near a coincidence P' is enclosed itself,
-     X is 1, and what cannot be told is infinite
+    (X, x and y of X^3 P', X^3 P' . r_a, its part along r_a, its part against r_b). Near a coincidence P' is
+    enclosed itself,
+     X is 1, and what cannot be bounded is infinite
     """
     unit, zero = (1.0, 1.0), (0.0, 0.0)
     if curve[COINCIDENCE] == CONCENTRIC:
@@ -266,9 +271,9 @@ STRETCH_LENGTH = 13
 WIDEST = 0.25
 NARROWEST = 1e-7
 BESIDE = 4e-3
-# Each part of a stretch beside a tangency is this much shorter than the one before it; the last between two arcs, and
-# between a line and an arc, where the chord may run along the line (as at a tangent joint of the part) and pass the
-# tangency smoothly.
+# Each part of a stretch beside a tangency is this much shorter than the one before it; the last between two
+# arcs, and between a line and an arc, where the chord may run along the line (as at a tangent joint of the
+# part) and pass the tangency smoothly.
 SHORTER = 4.0
 LAST_OF_ARCS, LAST_OF_LINE = 1e-8, 1e-12
 # What cannot be bounded is cut no further than this.
@@ -280,10 +285,11 @@ MOST_MOTION = 1.0
 
 @inner
 def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high: float, sign: float) -> bool:
-    """Write the stretch over [low, high] to a (13,) row; whether it is good enough, and not to be cut further.
+    """Writes the stretch over [low, high] to a (13,) row, and returns whether it is good enough not to be
+    cut.
 
-    The speed is good enough when it is of the order of that in the middle, so that a shorter stretch would tell no more, or
-    when P moves no farther than some part of the chord's length.
+    The speed is good enough when it is of the order of that in the middle, so that a shorter stretch would
+    bound it no better. It also is when P moves no farther than some part of the chord's length.
     """
     turn, x, y, along, part_a, part_b = center_motion(a, b, curve, low, high, sign)
     row[STRETCH_HIGH], row[PARTS] = high, 0.0
@@ -314,7 +320,8 @@ def add_parts(
     error: float,
     sign: float,
 ) -> tuple[Array, int]:
-    """Append the parts of the last stretch, in order, which begins (``at_low``) or ends at a tangency known to ``error``."""
+    """Appends the parts of the last stretch, in order, which begins (``at_low``) or ends at a tangency known
+    to ``error``."""
     width, number = right - left, 1
     last = max(LAST_OF_LINE if a[IS_ARC] + b[IS_ARC] == 1.0 else LAST_OF_ARCS, 8.0 * error)
     while width > last:
@@ -340,7 +347,7 @@ def add_parts(
 
 @inner_making_arrays
 def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array) -> tuple[Array, int]:
-    """Append the stretches of a curve, in order, to ``out`` (grown as needed)."""
+    """Appends the stretches of a curve, in order, to ``out`` (grown as needed)."""
     low, high = curve[FROM], curve[TO]
     c = chord(a, b, curve[LENGTH], (low + high) / 2.0, curve[BRANCH])
     sign = 1.0 if c[2] * c[5] - c[3] * c[4] > 0.0 else -1.0

@@ -1,10 +1,12 @@
 r"""Two clamps at one seat: which pairs close, in which ratio their forces may be, and which pair is the best.
 
-With the wrenches w_i of three locators, W = [w1 w2 w3], and w_k of clamp k, the locators take up a_k = -W^-1 w_k per unit of
-its force on the face. The null vectors of all five wrenches are u (a_1, 1, 0) + v (a_2, 0, 1): scaled to sum 1 a line, on
-which each entry is linear. So the largest least entry, the closure margin, is where two of the five are equal, at one of ten
-points. Reference: B. Mishra, J. T. Schwartz, M. Sharir, *On the existence and synthesis of multifinger positive grips*,
-Algorithmica 2 (1987), for closure; the rest is linear algebra.
+Let w_i be the wrenches of three locators, W = [w1 w2 w3], and w_k that of clamp k. The locators take up a_k =
+-W^-1 w_k per unit of its force on the face. The null vectors of all five wrenches are u (a_1, 1, 0) + v (a_2,
+0, 1): scaled to sum 1 a line, on which each entry is linear. So the largest least entry, the closure margin,
+is where two of the five are equal, at one of ten points.
+
+Reference: B. Mishra, J. T. Schwartz, M. Sharir, *On the existence and synthesis of multifinger positive
+grips*, Algorithmica 2 (1987), for closure; the rest is linear algebra.
 """
 
 from __future__ import annotations
@@ -24,8 +26,8 @@ __all__ = ["CLAMP_LENGTH", "PAIR_LENGTH", "PUSH", "Clamps", "Hardware", "closure
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Columns of a clamp: what locators take up per unit of force on its face (3), its push per unit of its own force, how far
-# the former may be off, and the place of its tip in mm.
+# Columns of a clamp: what locators take up per unit of force on its face (3), its push per unit of its own
+# force, how far the former may be off, and the place of its tip in mm.
 TAKEN, PUSH, DOUBT, TIP = 0, 3, 4, 5
 CLAMP_LENGTH = 7
 # Whole numbers of a clamp: direction, the number of its line, first and past-the-last of its holes.
@@ -33,8 +35,8 @@ DIRECTION, LINE, FIRST_HOLE, END_HOLE = range(4)
 # Columns of a hole: column and row, place in mm, travel in mm.
 HOLE_COLUMN, HOLE_ROW, HOLE_X, HOLE_Y, TRAVEL = range(5)
 HOLE_LENGTH = 5
-# Columns of a pair: seat, kind, clamps (2), holes (2), how many pairs it stands for, clamp freedom in degrees, closure
-# margin, and 1 where it is not decided whether it closes.
+# Columns of a pair: seat, kind, clamps (2), holes (2), how many pairs it stands for, clamp freedom in
+# degrees, closure margin, and 1 where it is not decided whether it closes.
 SEAT, KIND, CLAMPS, HOLES, COUNT, FREEDOM, MARGIN, OPEN = 0, 1, 2, 4, 6, 7, 8, 9
 PAIR_LENGTH = 10
 # Of pairs whose freedom (in degrees) and then margin differ by less, the first is taken.
@@ -90,9 +92,9 @@ def closure_margin(one: Array, other: Array) -> tuple[float, float]:
 
     Returns
     -------
-    (the largest least entry of null vectors that sum to 1, -1 where none is positive; the most by which the least entry of
-    a null vector (1 - s) (a_1, 1, 0) + s (a_2, 0, 1) exceeds ``LEAST_CLOSURE`` of its sum: its sign tells whether they
-    close, and it is off by no more than entries of a_1 and a_2 are)
+    (the largest least entry of null vectors that sum to 1, -1 where none is positive; the most by which the
+    least entry of a null vector (1 - s) (a_1, 1, 0) + s (a_2, 0, 1) exceeds ``LEAST_CLOSURE`` of its sum: its
+    sign decides whether they close, and it is off by no more than entries of a_1 and a_2 are)
     """
     best, lead = -1.0, -inf
     for i in range(5):
@@ -140,7 +142,8 @@ def ratio_range(one: Array, other: Array) -> tuple[float, float]:
 def boxes_apart(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> float:
-    """Distance in mm between two pieces along the axes, from (ax, ay) to (bx, by) and from (cx, cy) to (dx, dy)."""
+    """Distance in mm between two pieces along the axes, from (ax, ay) to (bx, by) and from (cx, cy) to (dx,
+    dy)."""
     across = max(min(ax, bx) - max(cx, dx), min(cx, dx) - max(ax, bx), 0.0)
     along = max(min(ay, by) - max(cy, dy), min(cy, dy) - max(ay, by), 0.0)
     return hypot(across, along)
@@ -148,7 +151,8 @@ def boxes_apart(
 
 @inner
 def spread_of(seat: IntArray, clamps: Clamps, m: int, hole: Array, bolted: bool, out: IntArray) -> None:
-    """Widen ``out``, the least and largest column and row of what stands on the plate, by a clamp in a hole."""
+    """Widens ``out``, the least and largest column and row of what stands on the plate, by a clamp in a
+    hole."""
     line = clamps.integers[m, LINE]
     if clamps.integers[m, DIRECTION] < ALONG_X:
         out[2], out[3] = min(out[2], line), max(out[3], line)
@@ -164,7 +168,8 @@ def spread_of(seat: IntArray, clamps: Clamps, m: int, hole: Array, bolted: bool,
 def best_holes(
     seat: IntArray, clamps: Clamps, i: int, j: int, hardware: Hardware, spread: IntArray
 ) -> tuple[int, int]:
-    """The holes of two clamps with the least total travel in which they have a place together, (-1, -1) for none.
+    """The holes of two clamps with the least total travel in which they have a place together, (-1, -1) for
+    none.
 
     Parameters
     ----------
@@ -211,7 +216,8 @@ def add_pair(
     hardware: Hardware,
     spread: IntArray,
 ) -> int:
-    """Append a pair of clamps of a seat if it closes and has a place; how many rows there are."""
+    """Appends a pair of clamps of a seat if it closes and has a place, and returns how many rows there
+    are."""
     one, other = clamps.reals[i], clamps.reals[j]
     margin, lead = closure_margin(one, other)
     doubt = 1.1 * max(one[DOUBT], other[DOUBT]) + ROUNDING
@@ -240,8 +246,8 @@ def add_pair(
 
 @inner
 def keep_best(out: Array, first: int, count: int) -> int:
-    """Keep of the rows from ``first`` on, pairs of one seat and kind, the best one, which stands for all, and those that are
-    not decided; how many rows there are then."""
+    """Keeps of the rows from ``first`` on, pairs of one seat and kind, the best one, which stands for all,
+    and those that are not decided. Returns how many rows there are then."""
     pairs = 0
     freest, widest = -inf, -inf
     for k in range(first, count):
@@ -277,7 +283,8 @@ def add_pairs_of_kind(
     hardware: Hardware,
     spread: IntArray,
 ) -> int:
-    """Append the pairs of two directions at a seat; how many rows there are, -1 when there is no room for more."""
+    """Appends the pairs of two directions at a seat, and returns how many rows there are, -1 when there is
+    no room for more."""
     kind = hardware.kinds[one, two]
     for i in range(clamps.starts[number], clamps.starts[number + 1]):
         if clamps.integers[i, DIRECTION] != one:
@@ -303,7 +310,8 @@ def add_pairs(
     every: bool,
     spread: IntArray,
 ) -> int:
-    """Append the pairs of a seat, see :func:`pairs_of`; how many rows there are, -1 when there is no room for more."""
+    """Appends the pairs of a seat, see :func:`pairs_of`, and returns how many rows there are, -1 when there
+    is no room for more."""
     for one in range(4):
         for two in range(one, 4):
             # Opposite directions: half a turn makes such a pair one of the same kind.
@@ -327,8 +335,8 @@ def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardwa
     ----------
     seats : (S, 2) the largest column and row of their locators, whose lowest are 0.
     halves : (S,) 1 where the orientation is in the first half turn, else 0.
-    every : all pairs, or of each seat and kind the best, which is the one of the largest clamp freedom, then of the largest
-        closure margin, then the first.
+    every : all pairs, or of each seat and kind the best, which is the one of the largest clamp freedom, then
+        of the largest closure margin, then the first.
 
     Returns
     -------

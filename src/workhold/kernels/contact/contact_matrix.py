@@ -1,7 +1,7 @@
 """Where the four contacts of a fixture are, and the contact matrix that all its figures come from.
 
-With c the centre of the part, L the length of the wrenches and x the direction against which the moving
-carrier clamps, the contact matrix A (4, 4) has a row for each peg:
+Let c be the centre of the part, L the length of the wrenches and x the direction against which the moving
+carrier clamps. The contact matrix A (4, 4) has a row for each peg:
 
     n_x,  n_y,  (q - c) x n / L,  n . x on the moving carrier and 0 on the other
 
@@ -12,7 +12,7 @@ the part's movement at c (x, y), its turn times L, and how far the carrier moves
 - Force: pegs press with f >= 0 against the part, a load (g_x, g_y, moment m about c) acts on it, the moving
   carrier is pushed with a force F. Then A^T f = (g_x, g_y, m / L, F).
 
-So one inverse serves for both; its last row is the peg forces per unit of clamping force, and that row scaled
+So one inverse serves for both. Its last row is the peg forces per unit of clamping force, and that row scaled
 to sum 1 is the null vector of the wrenches. The duality of motions and forces is that of virtual work.
 """
 
@@ -45,7 +45,8 @@ IntArray = NDArray[np.int64]
 
 @inner
 def distance_to_edge(row: Array, s: float) -> float:
-    """Distance in mm along a feature from a parameter to the nearer end that is no tangent joint; infinite without one."""
+    """Distance in mm along a feature from a parameter to the nearer end that is no tangent joint; infinite
+    without one."""
     if row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi:
         return inf
     low = row[HALF_EXTENT] + s if row[LOW_SLACK] <= 0.0 else inf
@@ -87,8 +88,10 @@ def contact_matrices_of(
     points : (N, P, 2) receives the peg centres in the part's frame about c, in mm.
     normals : (N, P, 2) receives the outward unit normals in the part's frame.
     ends : (N, P) receives the distances in mm along the features to their nearer ends.
-    edges : (N, P) receives the distances in mm along them to their nearer edges, see :func:`distance_to_edge`.
-    inverses : (N, 4, P) receives the inverses where P is 4; NaN where there is none, or a face has no feature.
+    edges : (N, P) receives the distances in mm along them to their nearer edges, see
+        :func:`distance_to_edge`.
+    inverses : (N, 4, P) receives the inverses where P is 4; NaN where there is none, or a face has no
+        feature.
     matrix : (P, 4) work space.
     """
     count = pegs.shape[1]
@@ -98,7 +101,8 @@ def contact_matrices_of(
         for i in range(count):
             px, py = pegs[k, i, 0] - pose[k, 1], pegs[k, i, 1] - pose[k, 2]
             x, y = cosine * px + sine * py - center[0], cosine * py - sine * px - center[1]
-            # A face may have several features; the peg stands on one of them, and beyond the ends of the others.
+            # A face may have several features; the peg stands on one of them, and beyond the ends of the
+            # others.
             nearest, chosen, parameter = -inf, -1, 0.0
             for f in range(starts[faces[k, i]], starts[faces[k, i] + 1]):
                 s = parameter_on(features[f], x, y)

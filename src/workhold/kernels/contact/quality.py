@@ -1,10 +1,10 @@
 """Figures of quality of whole tables of fixtures (model: "Quality"), and peg forces under loads.
 
-A load row (11,) holds: the force in N, the point it acts at (x, y) about c in mm, the moment in N mm, cosine
-and sine of the first and last direction, cosine and sine of the middle one, and the cosine of half the range
+A load row (11,) holds the force in N, the point it acts at (x, y) about c in mm, and the moment in N mm. Then
+follow cosine and sine of the first and last direction and of the middle one, and the cosine of half the range
 (-1 for any direction).
 
-Forces are linear in (cosine, sine) of the load's direction, so each is a sinusoid: its largest value over a
+Forces are linear in (cosine, sine) of the load's direction, so each is a sinusoid. Its largest value over a
 range is its amplitude if the peak lies in the range, and the larger of the values at the ends if not.
 
 See ``contact_matrix`` for the matrices.
@@ -36,12 +36,14 @@ def largest_value(x: float, y: float, load: Array) -> float:
 
 @inner
 def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
-    """Largest peg force in N that resists some load with the least clamping that keeps all forces from being negative.
+    """Largest peg force in N that resists some load with the least clamping that keeps all forces from being
+    negative.
 
-    Forces that balance a load are f = f0 + k lambda for any k. The smallest k without a negative force is the largest of
-    -f0_i / lambda_i, so f_j is the largest over i of f0_j - f0_i lambda_j / lambda_i, a sinusoid in the load's direction for
-    each i. Rank by this: R. C. Brost, K. Y. Goldberg, *A complete algorithm for designing planar fixtures using modular
-    components*, IEEE Transactions on Robotics and Automation 12 (1996).
+    Forces that balance a load are f = f0 + k lambda for any k. The smallest k without a negative force is the
+    largest of -f0_i / lambda_i, so f_j is the largest over i of f0_j - f0_i lambda_j / lambda_i. This is a
+    sinusoid in the load's direction for each i. Rank by this: R. C. Brost, K. Y. Goldberg, *A complete
+    algorithm for designing planar fixtures using modular components*, IEEE Transactions on Robotics and
+    Automation 12 (1996).
 
     Parameters
     ----------
@@ -71,7 +73,8 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
 
 IntArray = NDArray[np.int64]
 
-# No unit. Wrenches nearer than this to a plane are on it, and three with a smaller cross product are on a line.
+# No unit. Wrenches nearer than this to a plane are on it, and three with a smaller cross product are on a
+# line.
 FLAT = 1e-12
 # A bound of a movement is rounded by less than this.
 SURELY = 1.0 + 1e-12
@@ -85,7 +88,8 @@ def moment(points: Array, normals: Array, k: int, length: float) -> float:
 
 @inner
 def plane_distance(points: Array, normals: Array, length: float, a: int, b: int, c: int) -> float:
-    """Distance from the origin to the plane of three of five wrenches where it is a facet of their hull, else infinite."""
+    """Distance from the origin to the plane of three of five wrenches where it is a facet of their hull,
+    else infinite."""
     ax, ay, az = normals[a, 0], normals[a, 1], moment(points, normals, a, length)
     ux, uy, uz = normals[b, 0] - ax, normals[b, 1] - ay, moment(points, normals, b, length) - az
     vx, vy, vz = normals[c, 0] - ax, normals[c, 1] - ay, moment(points, normals, c, length) - az
@@ -104,7 +108,7 @@ def plane_distance(points: Array, normals: Array, length: float, a: int, b: int,
 
 @inner
 def wrench_radius_of_five(points: Array, normals: Array, length: float) -> float:
-    """As :func:`wrench_radius` of five wrenches, whose hull has up to six facets."""
+    """The wrench radius of five wrenches, whose hull has up to six facets; see :func:`wrench_radius`."""
     least = inf
     for a in range(5):
         for b in range(a + 1, 5):
@@ -115,10 +119,12 @@ def wrench_radius_of_five(points: Array, normals: Array, length: float) -> float
 
 @inner
 def wrench_radius(points: Array, normals: Array, length: float) -> float:
-    """Distance from the origin to the nearest facet of the tetrahedron of the wrenches w = (n, q x n / L); no unit.
+    """Distance from the origin to the nearest facet of the tetrahedron of the wrenches w = (n, q x n / L); no
+    unit.
 
-    The largest unit-norm load that pegs resist with forces that sum to 1. Reference: C. Ferrari, J. Canny, *Planning
-    optimal grasps*, IEEE ICRA (1992).
+    The largest unit-norm load that pegs resist with forces that sum to 1.
+
+    Reference: C. Ferrari, J. Canny, *Planning optimal grasps*, IEEE ICRA (1992).
 
     Parameters
     ----------
@@ -142,7 +148,8 @@ def wrench_radius(points: Array, normals: Array, length: float) -> float:
 
 @inner
 def generators(inverse: Array, faces: IntArray, peg: float, face: float, out: Array) -> int:
-    """Movements of the part (x, y, turn times L) that the tolerances make, each with either sign; (10, 3) and their number.
+    """Movements of the part (x, y, turn times L) that the tolerances make, each with either sign; (10, 3) and
+    their number.
 
     A face that one peg touches adds its error to the peg's; one that several pegs touch moves them all alike.
     """
@@ -172,16 +179,16 @@ def generators(inverse: Array, faces: IntArray, peg: float, face: float, out: Ar
 def farthest_movement(vx: float, vy: float, turn: float, corners: Array, arcs: Array) -> float:
     """Largest movement of a point of the silhouette, to first order.
 
-    A point q about c moves by v + turn (-q_y, q_x). On an arc with centre m and radius r the point that moves most lies in
-    the direction in which the turn adds to the centre's movement, and moves by |v(m)| + r |turn|.
+    A point q about c moves by v + turn (-q_y, q_x). On an arc with centre m and radius r the point that moves
+    most lies in the direction in which the turn adds to the centre's movement. It moves by |v(m)| + r |turn|.
 
     Parameters
     ----------
     vx, vy : movement of c in mm.
     turn : in radians.
     corners : (C, 2) corners of the silhouette about c.
-    arcs : (A, 6) its convex arcs: centre about c, radius, direction from the centre to the middle (x, y), cosine of half
-        the sweep.
+    arcs : (A, 6) its convex arcs: centre about c, radius, direction from the centre to the middle (x, y),
+        cosine of half the sweep.
     """
     most = 0.0
     for k in range(len(corners)):
@@ -213,9 +220,9 @@ def location_error(
 ) -> float:
     """Worst movement in mm of a point of the silhouette when pegs and faces are off by their tolerances.
 
-    Movement is a convex function of the errors, so the corners of their box suffice, and opposite corners move alike. No
-    point moves farther than c and by more than the turn times its distance from c: most corners of the box are left out by
-    that, after the one at which all errors turn the part the same way.
+    Movement is a convex function of the errors, so the corners of their box suffice, and opposite corners
+    move alike. No point moves farther than c and by more than the turn times its distance from c. That leaves
+    most corners of the box out, after the one at which all errors turn the part the same way.
 
     Parameters
     ----------
@@ -273,23 +280,25 @@ def figures(
     out: Array,
     work: Array,
 ) -> None:
-    """Closure margin, clamp amplification, wrench radius, location error, end distance, load reaction and edge distance of N
-    fixtures.
+    """Closure margin, clamp amplification, wrench radius, location error, end distance, load reaction and
+    edge distance of N fixtures.
 
     Parameters
     ----------
     points, normals, ends, edges, inverses : see ``kernels.contact.contact_matrix.contact_matrices_of``.
     faces : (N, P) touched.
-    length, tolerances, corners, arcs : see :func:`location_error`. No edge is told to be farther than the length.
+    length, tolerances, corners, arcs : see :func:`location_error`. No edge is given as farther than the
+        length.
     loads : (M, 11) rows, see ``kernels.contact.quality``.
-    out : (N, 7 or more) receives the figures; NaN for the load reaction without loads, and for all where the contact
-        matrix has no inverse.
+    out : (N, 7 or more) receives the figures; NaN for the load reaction without loads, and for all where the
+        contact matrix has no inverse.
     work : (10, 3) work space.
     """
     farthest = farthest_point(corners, arcs)
     for k in range(len(points)):
         inverse = inverses[k]
-        # The last row of the inverse: peg forces per unit of clamping force, in proportion to the null vector.
+        # The last row of the inverse: peg forces per unit of clamping force, in proportion to the null
+        # vector.
         total, least, most = 0.0, inf, 0.0
         nearest, edge = inf, length
         for i in range(inverse.shape[1]):

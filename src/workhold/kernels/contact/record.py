@@ -60,7 +60,7 @@ RECORD_LENGTH = 19
 def place_peg(
     peg: Array, x: float, y: float, feature: int, column: float, line: float, radius: float
 ) -> None:
-    """Write one peg to its (6,) place in a work array."""
+    """Writes one peg to its (6,) place in a work array."""
     peg[PEG_X], peg[PEG_Y], peg[PEG_FEATURE] = x, y, feature
     peg[PEG_COLUMN], peg[PEG_ROW], peg[PEG_RADIUS] = column, line, radius
 
@@ -69,7 +69,7 @@ def place_peg(
 def write_record(
     row: Array, standing: float, pegs: Array, psi: float, separation: float, reach: float
 ) -> None:
-    """Write four pegs in place to a (19,) row of the records."""
+    """Writes four pegs in place to a (19,) row of the records."""
     row[STANDING], row[PSI], row[SEPARATION], row[REACH] = standing, psi, separation, reach
     row[TAIL_X], row[TAIL_Y] = pegs[0, PEG_X], pegs[0, PEG_Y]
     row[LARGEST_RADIUS] = max(
@@ -83,7 +83,8 @@ def write_record(
 
 @inner
 def write_given_up(row: Array, standing: float, first: Array, second: Array, integers: IntArray) -> None:
-    """Write a pair of pieces that was given up, with the middle of their common range, to a (19,) row of the records."""
+    """Writes a pair of pieces that was given up, with the middle of their common range, to a (19,) row of
+    the records."""
     for k in range(RECORD_LENGTH):
         row[k] = 0.0
     psi = (max(first[LOW], second[LOW]) + min(first[HIGH], second[HIGH])) / 2.0
@@ -100,7 +101,7 @@ WORK_LENGTH = 19
 
 @inner
 def take_pegs(record: Array, lattice: Lattice, w: Array) -> None:
-    """Bring the pegs of a (19,) record to their places on the carriers, and the unknowns to its own."""
+    """Brings the pegs of a (19,) record to their places on the carriers, and the unknowns to its own."""
     w[UNKNOWNS, 0], w[UNKNOWNS, 1] = record[PSI], record[TAIL_X]
     w[UNKNOWNS, 2], w[UNKNOWNS, 3] = record[TAIL_Y], record[SEPARATION]
     for k in range(4):
@@ -111,7 +112,7 @@ def take_pegs(record: Array, lattice: Lattice, w: Array) -> None:
 
 @inner
 def touch(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
-    """Fill in centres, distances and Jacobian for the unknowns in place; ``length`` is L in mm."""
+    """Fills in centres, distances and Jacobian for the unknowns in place; ``length`` is L in mm."""
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
     for k in range(4):
         row = features[int(record[FEATURES + k])]
@@ -128,7 +129,7 @@ def touch(record: Array, features: Array, length: float, w: Array, points: Array
         else:
             size = hypot(dx, dy)
             w[OFF, k] = size - row[RADIUS]
-            # In its very centre no direction of an arc is nearer than another, and none is told.
+            # In its very centre no direction of an arc is nearer than another, and none is given.
             gx, gy = (dx / size, dy / size) if size > 0.0 else (0.0, 0.0)
         w[SLOPES + k, 0] = (gy * turned_x - gx * turned_y) / length
         w[SLOPES + k, 1], w[SLOPES + k, 2] = gx, gy
@@ -137,7 +138,7 @@ def touch(record: Array, features: Array, length: float, w: Array, points: Array
 
 @inner
 def invert(w: Array) -> float:
-    """Invert the Jacobian and make the Newton step.
+    """Inverts the Jacobian and makes the Newton step.
 
     Returns
     -------

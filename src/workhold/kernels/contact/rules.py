@@ -1,16 +1,18 @@
 """When four pegs in place may be a fixture: ends of features, the gap, force closure and clamping.
 
 The wrench of a contact at q with outward unit normal n is w = (n, (q - c) x n / L). Four wrenches of the
-plane's three-dimensional wrench space have a null vector: up to a common factor its entries are the signed
+plane's three-dimensional wrench space have a null vector. Up to a common factor its entries are the signed
 3x3 minors of [w1 w2 w3 w4] (Cramer's rule). The wrenches positively span the space exactly when all entries
-have one sign and none is 0. Reference: B. Mishra, J. T. Schwartz, M. Sharir, *On the existence and synthesis
-of multifinger positive grips*, Algorithmica 2 (1987); the construction from minors is linear algebra.
+have one sign and none is 0.
+
+Reference: B. Mishra, J. T. Schwartz, M. Sharir, *On the existence and synthesis of multifinger positive
+grips*, Algorithmica 2 (1987); the construction from minors is linear algebra.
 
 Four pegs at simultaneous contact are a fixture under three rules (model: conditions 1, 3, 4 and 5). Every
 contact lies inside its feature. The pegs of the moving carrier stand the smallest gap to the right of the
 standing ones. The wrenches close with the standing pegs pushing to the right, or to the left where opening
 clamps. Where the moving peg is one of two clamps, the wrenches need not close. Instead, the three standing
-pegs must fix the pose, which the last of the four minors tells, and the clamp must push.
+pegs must fix the pose, which the last of the four minors decides, and the clamp must push.
 
 Every rule is decided by bounds: the exact contact is within a radius of the computed one, and only what
 breaks a rule everywhere within that radius is discarded.
@@ -49,7 +51,8 @@ def minors(points: Array, normals: Array, length: float, out: Array) -> float:
 
     Parameters
     ----------
-    points : (4, 2) contact points (or peg centres: they lie on the same lines of action) about the centre c, in mm.
+    points : (4, 2) contact points (or peg centres: they lie on the same lines of action) about the centre c,
+        in mm.
     normals : (4, 2) outward unit normals.
     length : L in mm.
     out : (4,) receives the minors.
@@ -78,10 +81,12 @@ def minors(points: Array, normals: Array, length: float, out: Array) -> float:
 
 @inner
 def minor_band(swing: float, away: float, length: float) -> float:
-    """How far a minor may be off when normals may be turned by ``swing`` radians and points be off by ``away`` mm.
+    """How far a minor may be off when normals may be turned by ``swing`` radians and points be off by
+    ``away`` mm.
 
-    Moments over L, of size 1.42 at most, are off by away / L + 1.42 swing, and products of two normals by 2 swing. A minor
-    is three products of one with the other, so it is off by 12.8 swing + 3 away / L; the rest is for the second order.
+    Moments over L, of size 1.42 at most, are off by away / L + 1.42 swing, and products of two normals by 2
+    swing. A minor is three products of one with the other, so it is off by 12.8 swing + 3 away / L; the rest
+    is for the second order.
     """
     return 20.0 * swing + 4.0 * away / length + ROUNDING
 
@@ -100,7 +105,8 @@ IntArray = NDArray[np.int64]
 
 @inner
 def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> bool:
-    """Whether a contact, known to ``radius``, may lie on its feature, at least ``margin`` mm from its ends."""
+    """Whether a contact, known to ``radius``, may lie on its feature, at least ``margin`` mm from its
+    ends."""
     return end_slack(row, x, y) >= margin - 1.2 * radius
 
 
@@ -184,8 +190,8 @@ def is_fixture(
 
 @inner
 def is_listed(verdict: int, counting: bool, count: int, limits: Limits) -> bool:
-    """Whether four contacts with a verdict of :func:`is_fixture` are written to the records, ``count`` of which there are:
-    what may be a fixture, or, when contacts are counted, all up to so many."""
+    """Whether four contacts with a verdict of :func:`is_fixture` are written to the records, ``count`` of
+    which there are. Those that may be a fixture are, or, when contacts are counted, all up to so many."""
     if counting:
         return verdict > 0 and count < limits.most_listed
     return verdict == 2
@@ -193,8 +199,8 @@ def is_listed(verdict: int, counting: bool, count: int, limits: Limits) -> bool:
 
 @inner
 def share_a_carrier(one: IntArray, two: IntArray, limits: Limits) -> bool:
-    """Whether the heads of two chords with a common tail, given by their whole numbers, are different holes of one
-    carrier."""
+    """Whether the heads of two chords with a common tail, given by their whole numbers, are different holes
+    of one carrier."""
     k, m = one[COLUMN_STEP], two[COLUMN_STEP]
     if k == m and one[ROW_STEP] == two[ROW_STEP]:
         return False

@@ -4,27 +4,26 @@ Glossary
 --------
 disc : holds the tails of a chord whose orientation is known to a radius only, tangencies included.
 edge : a chord at an end of a piece, with what pieces need of it (see ``chord.columns``). It serves the pieces
-    on both of its sides, also where they are in neighbouring cells. It tells for how long after it the
-    curve's pegs stand too far along x for another peg to stand farther.
+    on both of its sides, also where they are in neighbouring cells. It says for how long after it the curve's
+    pegs stand too far along x for another peg to stand farther.
 force direction : a direction in which the two pegs of a piece can push together.
 
 Discs: let w be known to e = d reach + eta. Between a line and an arc of radius R, the head's distance from
-the line's direction through the arc's centre, ``across``, is known to e; its square from R^2 to q = e (2 R +
-e); the root of that, ``half``, to min(sqrt q, q / half). Between two arcs, g = |c - w| is known to e, and
-with D = R_a^2 - R_b^2
+the line's direction through the arc's centre, ``across``, is known to e. How far its square is from R^2 is
+known to q = e (2 R + e), and the root of that, ``half``, to min(sqrt q, q / half). Between two arcs, g = |c -
+w| is known to e, and with D = R_a^2 - R_b^2
 
     along = (g + D / g) / 2   to  t = e / 2 (1 + |D| / (g (g - e))),
     half = sqrt(R_a^2 - along^2)  to  min(sqrt q, q / half),  q = t (2 R_a + t),
     the direction of c - w  to  1.6 e / g.
 
-Near a coincidence the tail moves at no more than d + R + 3.2 sqrt(d R) < 2.6 (d + R) (see
-``chord.coincidences``: there d sin(gamma / 2) <= 0.7 R between arcs, d (1 - cos gamma) <= R between a line
-and an arc).
+Near a coincidence the tail moves at no more than d + R + 3.2 sqrt(d R) < 2.6 (d + R). There d sin(gamma / 2)
+<= 0.7 R between arcs, and d (1 - cos gamma) <= R between a line and an arc (see ``chord.coincidences``).
 
 Forces: two pegs push together with a force F between the two directions in which each pushes. Where closing
 clamps, F must point along +x for standing pegs, and moving pegs push with -F; where opening clamps it is the
-other way round. Directions with positive x are told as y / (x + |y|), which grows from -1 to 1 with the angle
-at a rate of at most 1.
+other way round. Directions with positive x are given as y / (x + |y|), which grows from -1 to 1 with the
+angle at a rate of at most 1.
 """
 
 from __future__ import annotations
@@ -74,11 +73,13 @@ Array = NDArray[np.float64]
 
 @inner
 def tail_radius(curve: Array, state: State, reach: float) -> float:
-    """How far in mm the exact tail may be from a computed one when the orientation may be ``reach`` radians off.
+    """How far in mm the exact tail may be from a computed one when the orientation may be ``reach`` radians
+    off.
 
-    The tail moves at a speed of at most d / |X|, and X^2 changes at a rate of at most 4 d kappa, here by no more than a
-    quarter of itself: so the speed stays below 1.16 d / |X|, and the theorem of ``chord.evaluation`` holds with h <= 1 / 3,
-    by which the tail is off by no more than 3 eta / |X|. Infinite where this does not bound it, too near a tangency.
+    The tail moves at a speed of at most d / |X|, and X^2 changes at a rate of at most 4 d kappa, here by no
+    more than a quarter of itself. So the speed stays below 1.16 d / |X|, and the theorem of
+    ``chord.evaluation`` holds with h <= 1 / 3. By it the tail is off by no more than 3 eta / |X|. Infinite
+    where this does not bound it, too near a tangency.
     """
     eta, d = curve[BACKWARD_ERROR], curve[LENGTH]
     kappa = curve[KAPPA]
@@ -99,7 +100,8 @@ def root_error(square: float, doubt: float) -> float:
 
 @inner
 def arcs_radius(a: Array, b: Array, state: State, e: float, eta: float) -> float:
-    """How far in mm a tail on an arc may be from a computed one when the chord, to another arc, is known to ``e``."""
+    """How far in mm a tail on an arc may be from a computed one when the chord, to another arc, is known to
+    ``e``."""
     gap = hypot(a[RADIUS] * state[2] - b[RADIUS] * state[4], a[RADIUS] * state[3] - b[RADIUS] * state[5])
     if gap <= 2.0 * e:
         return 2.2 * a[RADIUS]
@@ -116,10 +118,12 @@ def arcs_radius(a: Array, b: Array, state: State, e: float, eta: float) -> float
 
 @inner
 def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reach: float) -> float:
-    """How far in mm tails of a curve within ``reach`` of an orientation may be from the computed one there."""
+    """How far in mm tails of a curve within ``reach`` of an orientation may be from the computed one
+    there."""
     d, eta, kind = curve[LENGTH], curve[BACKWARD_ERROR], curve[COINCIDENCE]
     if kind == CONCENTRIC:
-        # The chord turns about the centre as it is; nearly along a diameter its place is known less well than its length.
+        # The chord turns about the centre as it is; nearly along a diameter its place is known less well than
+        # its length.
         return a[RADIUS] * reach + arcs_radius(a, b, state, eta, eta)
     radius = a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
     gamma = from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
@@ -127,7 +131,8 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
         return regular_error(curve) + 2.6 * (d + radius) * reach
     e = d * reach + eta
     if is_regular(kind, radius, d, gamma):
-        # The computed chord is that of a part with exactly the lengths of the coincidence, others within reach are not.
+        # The computed chord is that of a part with exactly the lengths of the coincidence, others within
+        # reach are not.
         e += EXACT
         eta += regular_error(curve)
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
@@ -147,14 +152,16 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
 
 @inner
 def tail_disc(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tuple[float, float, float]:
-    """A disc (x, y, radius in mm) that holds the tails of a curve for all orientations within ``reach`` of psi."""
+    """A disc (x, y, radius in mm) that holds the tails of a curve for all orientations within ``reach`` of
+    psi."""
     state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
     return (state[0], state[1], disc_radius(a, b, curve, state, psi, reach + 1e-15))
 
 
 @inner
 def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tuple[float, float, float]:
-    """The tail of a chord, and how far in mm the exact one may be from it when psi is off by up to ``reach``."""
+    """The tail of a chord, and how far in mm the exact one may be from it when psi is off by up to
+    ``reach``."""
     state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
     radius = tail_radius(curve, state, reach)
     coincides = curve[COINCIDENCE] != NONE
@@ -174,13 +181,15 @@ def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tu
 def value_disc(
     a: Array, b: Array, curve: Array, psi: float, reach: float, mode: float
 ) -> tuple[float, float]:
-    """A middle value of a curve for orientations within ``reach`` of psi, and how far its values may be from it."""
+    """A middle value of a curve for orientations within ``reach`` of psi, and how far its values may be from
+    it."""
     x, y, radius = tail_disc(a, b, curve, psi, reach)
     if mode == HEIGHT:
         return (cos(psi) * y - sin(psi) * x, radius + (abs(x) + abs(y) + radius) * reach)
     if a[IS_ARC] == 0.0:
         return (parameter_on(a, x, y), radius)
-    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either side.
+    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either
+    # side.
     return (parameter_on(a, x, y), 1.1 * radius / a[RADIUS] if radius <= 0.5 * a[RADIUS] else TURN)
 
 
@@ -190,8 +199,8 @@ HAIR = 1e-6
 
 @inner_making_arrays
 def kept_edges(count: int) -> Array:
-    """The (M, 15) last edges of so many curves, with psi behind them; as yet none. They serve neighbouring cells, one after
-    the other, in one mode."""
+    """The (M, 15) last edges of so many curves, with psi behind them; as yet none. They serve neighbouring
+    cells, one after the other, in one mode."""
     return np.full((count, EDGE_LENGTH + 1), np.nan)
 
 
@@ -199,7 +208,8 @@ def kept_edges(count: int) -> Array:
 def write_edge(
     edge: Array, a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float, mode: float
 ) -> None:
-    """Write what a piece needs of a chord at one of its ends, of an orientation with its cosine and sine, to a (14,) row."""
+    """Writes what a piece needs of a chord at one of its ends, of an orientation with its cosine and sine,
+    to a (14,) row."""
     state = chord_state(a, b, curve, psi, cosine, sine)
     edge[EDGE_VALUE], edge[EDGE_SLOPE], edge[EDGE_VALUE_ERROR], edge[EDGE_SLOPE_ERROR] = valued(
         a, b, state, cosine, sine, mode
@@ -221,11 +231,12 @@ def write_edge(
 
 @inner
 def is_farther(edge: Array, at: float, right: float, speed: float, farthest: float) -> bool:
-    """Whether the tails of a curve from an edge on, at psi ``at``, up to psi ``right`` all stand farther right than a place
-    in mm, in a stretch of an instant centre of a ``speed``.
+    """Whether the tails of a curve from an edge at psi ``at`` up to psi ``right`` all stand farther right
+    than a place in mm. The instant centre has a ``speed`` in that stretch.
 
-    The place along x has a slope of at most |P|, and |P| grows by no more than the speed. By what a piece's bound
-    of its place sags (see ``pieces.write_steady``) it is less, so that nothing is left out here that its bound would keep.
+    The place along x has a slope of at most |P|, and |P| grows by no more than the speed. By what a piece's
+    bound of its place sags (see ``pieces.write_steady``) it is less, so that nothing is left out here that
+    its bound would keep.
     """
     width = right - at
     center = edge[EDGE_CENTER] + edge[EDGE_CENTER_ERROR] + 2.0 * speed * width
@@ -235,7 +246,7 @@ def is_farther(edge: Array, at: float, right: float, speed: float, farthest: flo
 
 # Rounding of directions, places in mm and slopes, generously counted.
 DIRECTION_HAIR = 1e-9
-# Directions of sums of two normals are told only if the normals turn by less than this, in radians.
+# Directions of sums of two normals are given only if the normals turn by less than this, in radians.
 LITTLE_TURN = 0.3
 
 
@@ -247,9 +258,10 @@ def front(x: float, y: float) -> float:
 
 @inner
 def force_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tuple[float, float]:
-    """Directions with positive x between two directions, known to ``doubt`` in radians; (1, -1) when there are none.
+    """Directions with positive x between two directions, known to ``doubt`` in radians; (1, -1) when there
+    are none.
 
-    Where it is in doubt which way round "between" is, all directions are told.
+    Where it is in doubt which way round "between" is, all directions are given.
     """
     turn = ax * by - ay * bx
     if ax * bx + ay * by < 0.0 and abs(turn) <= doubt + DIRECTION_HAIR:
@@ -279,14 +291,16 @@ def shared_force(
 
 @inner
 def sum_is_long(edge: Array, share: float) -> bool:
-    """Whether the sum of one normal of an edge and ``share`` of the other is at least half as long as a normal."""
+    """Whether the sum of one normal of an edge and ``share`` of the other is at least half as long as a
+    normal."""
     cosine = edge[TAIL_NORMAL_X] * edge[HEAD_NORMAL_X] + edge[TAIL_NORMAL_Y] * edge[HEAD_NORMAL_Y]
     return 1.0 + 2.0 * share * cosine + share * share >= 0.25
 
 
 @inner
 def largest_turn(low: Array, high: Array) -> float:
-    """How far in radians the normals of a piece turn from end to end, at most, when they turn by less than 1."""
+    """How far in radians the normals of a piece turn from end to end, at most, when they turn by less than
+    1."""
     tail_x, tail_y = high[TAIL_NORMAL_X] - low[TAIL_NORMAL_X], high[TAIL_NORMAL_Y] - low[TAIL_NORMAL_Y]
     head_x, head_y = high[HEAD_NORMAL_X] - low[HEAD_NORMAL_X], high[HEAD_NORMAL_Y] - low[HEAD_NORMAL_Y]
     # A chord of up to 1 radian is no shorter than 0.95 times its arc.
@@ -295,14 +309,15 @@ def largest_turn(low: Array, high: Array) -> float:
 
 @inner
 def write_force_directions(row: Array, low: Array, high: Array, share: float, turned: float) -> None:
-    """Write the directions of the forces of a piece's pegs, from the normals at its ends.
+    """Writes the directions of the forces of a piece's pegs, from the normals at its ends.
 
-    Inside a curve X keeps its sign, so the normals do not pass through opposite directions: the lowest and the highest
-    direction between the forces are where one of them is at an end of the piece, or square to x. So the hull of both ends
-    is told, widened by as much as directions may sag between them. A normal sags by no more than ``turned``. With a
-    ``share`` (see ``shared_force``) sums p of two normals are meant: normals turn at a rate that changes by at most
-    8 turned / w^2, so w times the rate is at most the turn from end to end and 4 turned; abs(p'') w^2 / 8 is at most the
-    square of that over 4 and 2 turned, by less than 0.17, and p, nowhere shorter than 0.4, is seen under 2.6 times that.
+    Inside a curve X keeps its sign, so the normals do not pass through opposite directions. The lowest and
+    the highest direction between the forces are where one of them is at an end of the piece, or square to x.
+    So the hull of both ends is given, widened by as much as directions may sag between them. A normal sags by
+    no more than ``turned``. With a ``share`` (see ``shared_force``) sums p of two normals are meant. Normals
+    turn at a rate that changes by at most 8 turned / w^2, so w times the rate is at most the turn from end to
+    end and 4 turned. Then abs(p'') w^2 / 8 is at most the square of that over 4 and 2 turned, by less than
+    0.17. So p, nowhere shorter than 0.4, is seen under 2.6 times that.
     """
     write_hull(row, low, high, 0.0, turned)
     turn = largest_turn(low, high) + 4.0 * turned
@@ -323,10 +338,11 @@ def write_force_directions(row: Array, low: Array, high: Array, share: float, tu
 
 @inner
 def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) -> None:
-    """Write the hull of the forces (see ``shared_force``) at both ends of a piece, widened for a ``doubt`` of directions."""
+    """Writes the hull of the forces (see ``shared_force``) at both ends of a piece, widened for a ``doubt``
+    of directions."""
     at_ends, between = 2.0 * doubt, 4.0 * doubt + DIRECTION_HAIR
     for k in range(2):
-        # Pegs push against the outward normals: rightward as told, leftward as the opposite.
+        # Pegs push against the outward normals: rightward as given, leftward as the opposite.
         sign = -1.0 if k == 0 else 1.0
         bottom, top = edge_force(low, sign, share, at_ends)
         first, last = edge_force(high, sign, share, at_ends)
@@ -349,5 +365,5 @@ def edge_force(edge: Array, sign: float, share: float, doubt: float) -> tuple[fl
 
 @inner
 def write_all_force_directions(row: Array) -> None:
-    """Write that a piece's pegs may push in any direction."""
+    """Writes that a piece's pegs may push in any direction."""
     row[RIGHTWARD_LOW], row[RIGHTWARD_HIGH], row[LEFTWARD_LOW], row[LEFTWARD_HIGH] = -1.0, 1.0, -1.0, 1.0

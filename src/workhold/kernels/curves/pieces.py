@@ -3,20 +3,20 @@
 Glossary
 --------
 cell : a closed range of orientations psi; the work is shared out by cells.
-piece : a chord curve over a range inside one cell and inside one stretch, with value and derivative at both ends, an
-    enclosure of its second derivative and, made of these, enclosures of its value, of the place
-    of its pegs along x, and of the directions in which its pegs can push together.
+piece : a chord curve over a range inside one cell and inside one stretch. It has value and derivative at both
+    ends and an enclosure of its second derivative. From these follow enclosures of its value, of the place of
+    its pegs along x, and of the directions in which they can push together.
 
 Second derivatives: with P the instant centre and K >= |P'| (see ``stretches``)
 
     |h''| = |y . P + x . P'| <= |P| + K        and        |s''| = |P' . r_a| <= K      (divided by R_a on an arc);
 
-the place along x, x . u, has the slope y . P and so the second derivative |x . P - y . P'| <= |P| + K, and a contact
-direction turns at the rate p / R, which changes by at most K / R. A function of such a second derivative B is within B
-w^2 / 8 of its linear interpolation over a range w. Beside a tangency the second derivative is bounded on one side only,
-by X^3 P'.
+the place along x, x . u, has the slope y . P and so the second derivative |x . P - y . P'| <= |P| + K, and a
+contact direction turns at the rate p / R, which changes by at most K / R. A function of such a second
+derivative B is within B w^2 / 8 of its linear interpolation over a range w. Beside a tangency the second
+derivative is bounded on one side only, by X^3 P'.
 
-Directions of forces are told in ``force_directions``, and columns in ``piece_columns``.
+Directions of forces are described in ``curves.piece_bounds``, and columns in ``chord.columns``.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ IntArray = NDArray[np.int64]
 
 # Rounding of an orientation in radians.
 SAME = 2e-15
-# The directions of a piece are told only if its pegs' contacts turn by less than this, in radians.
+# The directions of a piece are given only if its pegs' contacts turn by less than this, in radians.
 MOST_TURN = 1.0
 
 
@@ -154,7 +154,8 @@ def second_derivative_beside(
 
 @inner
 def largest_part(one_x: float, one_y: float, two_x: float, two_y: float) -> float:
-    """Largest size of the part along x of a unit vector that turns evenly from one to another, less than half way round."""
+    """Largest size of the part along x of a unit vector that turns evenly from one to another, less than
+    half way round."""
     if one_y * two_y <= 0.0:
         return 1.0
     return max(abs(one_x), abs(two_x))
@@ -172,7 +173,7 @@ def write_steady(
     share: float,
     mode: float,
 ) -> None:
-    """Write the enclosures of a piece whose instant centre moves at a bounded speed."""
+    """Writes the enclosures of a piece whose instant centre moves at a bounded speed."""
     speed, sag = stretch[SPEED], width * width / 8.0
     error, with_backward_error = (
         max(low[EDGE_ERROR], high[EDGE_ERROR]),
@@ -184,7 +185,8 @@ def write_steady(
     turns_little = (curved * arm + 1.0) * width <= MOST_TURN
     turned = curved * (speed * sag + 2.0 * error) + DIRECTION_HAIR * width + SAME
     if mode == HEIGHT:
-        # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs along a line.
+        # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs
+        # along a line.
         tail = head = 1.0
         if turns_little:
             tail = largest_part(
@@ -227,7 +229,7 @@ def write_beside(
     tangent_high: float,
     mode: float,
 ) -> None:
-    """Write the enclosures of a piece beside a tangency; the tangency is at an end whose error is not 0."""
+    """Writes the enclosures of a piece beside a tangency; the tangency is at an end whose error is not 0."""
     middle = (row[LOW] + row[HIGH]) / 2.0
     # The end at a tangency may lie a hair beyond.
     reach = (row[HIGH] - row[LOW]) / 2.0 + max(tangent_low, tangent_high)
@@ -263,8 +265,8 @@ def write_beside(
 def end_slope(
     second_derivative_low: float, second_derivative_high: float, side: float
 ) -> tuple[float, float]:
-    """Slope at a tangency and its error: infinite, with the sign the second derivative gives it (side -1 at the low
-    end, +1 at the high end), or unknown."""
+    """Slope at a tangency and its error: infinite, with the sign the second derivative gives it (side -1 at
+    the low end, +1 at the high end), or unknown."""
     if second_derivative_low >= 0.0:
         return (side * inf, 0.0)
     if second_derivative_high <= 0.0:
@@ -290,7 +292,8 @@ def add_pieces(
     kept: Array,
     farthest: float,
 ) -> int:
-    """Append the pieces of one curve over [low, high] to ``out``, which has room for one for each stretch; their new number.
+    """Appends the pieces of one curve over [low, high] to ``out``, which has room for one for each stretch,
+    and returns their new number.
 
     Parameters
     ----------
@@ -299,7 +302,8 @@ def add_pieces(
     cell_end : psi where the cell ends, as most pieces in it do, its cosine and its sine.
     base : psi at the low end of the curve's range.
     edges : (2, 14) work space.
-    kept : (15,) the last edge that was written of the curve, and psi there: where a cell ends its neighbour begins.
+    kept : (15,) the last edge that was written of the curve, and psi there: where a cell ends its neighbour
+        begins.
     farthest : pieces whose rightmost peg stands farther right than this, in mm, may be left out.
     """
     integers, stretches, curve = curves.integers, curves.stretches, curves.reals[index]
@@ -326,7 +330,7 @@ def add_pieces(
         if right <= left:
             continue
         if stretch[PARTS] > 0.0:
-            # Where the whole stretch tells no sign of the second derivative, its parts, which follow, do.
+            # Where the whole stretch shows no sign of the second derivative, its parts, which follow, do.
             second_derivatives = second_derivative_beside(stretch, a, curve[LENGTH], size, left, right, mode)
             if second_derivatives[0] < 0.0 < second_derivatives[1]:
                 continue
@@ -381,7 +385,7 @@ def add_pieces(
 
 @inner
 def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
-    """Bring the positions at both ends of a piece on a whole circle to the turn of its inside."""
+    """Brings the positions at both ends of a piece on a whole circle to the turn of its inside."""
     width = row[HIGH] - row[LOW]
     for k in range(2):
         psi = row[LOW] + width / 64.0 if k == 0 else row[HIGH] - width / 64.0
@@ -407,7 +411,8 @@ def add_members(
     kept: Array,
     farthest: float,
 ) -> tuple[int, int]:
-    """Append the pieces of curves, from the ``first`` of the members on, as long as ``out`` has room for all of a curve.
+    """Appends the pieces of curves, from the ``first`` of the members on, as long as ``out`` has room for all
+    of a curve.
 
     Returns
     -------
@@ -469,8 +474,8 @@ def cell_pieces(
     members : (M,) indices of the curves to consider, ascending.
     features : (F, 10) rows.
     pitch_x : column pitch in mm.
-    least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m, each is at least
-        m / (1 - 3 m) of any other.
+    least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m,
+        each is at least m / (1 - 3 m) of any other.
     mode : ``HEIGHT`` or ``POSITION``.
     kept : of the members, see ``edges.kept_edges``.
     farthest : pieces may be left out whose rightmost peg stands farther right than this, in mm.

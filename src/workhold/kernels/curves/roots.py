@@ -1,18 +1,18 @@
 """Where two chord curves cross: roots of f = (second curve) - (first curve) - offset, modulo a period.
 
 Over the common range of two pieces the slope of f is enclosed by the pieces' slopes and their errors. Where
-the enclosure has one sign, f is monotone and its values at both ends tell how many targets it can take, each
-at most once. Where it has not, the range is dropped if no target lies between the bounds of f, and split
+the enclosure has one sign, f is monotone and its values at both ends determine how many targets it can take,
+each at most once. Where it has not, the range is dropped if no target lies between the bounds of f, and split
 otherwise. Nothing is sampled. A target that the errors leave in doubt counts as taken: what comes of it is
 decided by those who examine the contacts there.
 
-Every root is told with a radius: the exact root, if there is one, is no farther from the one told. A range
-too narrow to split in which f may take a target, monotone or not, is told as one root with half the range as
+Every root is given with a radius: the exact root, if there is one, is no farther from it. A range
+too narrow to split in which f may take a target, monotone or not, is given as one root with half the range as
 its radius. So is every range where two curves run on top of each other.
 
 A work space is what a block of a search finds crossings with and hands from kernel to kernel. It is made
 once, so that no inner kernel makes an array. Kernels that list fixtures go on until all is done or their
-output is full. They tell where in their pairs they stopped in ``at``; what they began there is taken back,
+output is full. They record where in their pairs they stopped in ``at``; what they began there is taken back,
 and begun anew when the caller has made room.
 """
 
@@ -53,25 +53,26 @@ __all__ = ["TRIPLE_ROWS", "WorkSpace", "work_space"]
 
 Array = NDArray[np.float64]
 
-# Ranges narrower than this, in radians, are not split any further: at a double root the clamping force is then below
-# ``contact.rules.LEAST_CLAMPING`` throughout.
+# Ranges narrower than this, in radians, are not split any further: at a double root the clamping force is
+# then below ``contact.rules.LEAST_CLAMPING`` throughout.
 NARROWEST = 1e-8
 # A range over which a curve moves farther than this, in mm or radians, is split beyond the narrowest.
 FARTHEST = 1e-6
-# A guard against endless work; what is left after so many splits of one pair is told as it is.
+# A guard against endless work; what is left after so many splits of one pair is given as it is.
 MOST_SPLITS = 4096
 STACK_DEPTH = 256
 MOST_ROOTS = 1 << 15
 # Rounding of an interpolated value in mm or radians, generously counted.
 HAIR = 1e-9
-# Ranges in radians from which on chords are bounded as discs, where their slopes are unknown, and to which those are split.
+# Ranges in radians from which on chords are bounded as discs, where their slopes are unknown, and to which
+# those are split.
 WIDEST_DISC = 0.1
 NARROWEST_DISC = 1e-13
 # Columns of a root: ROOT_PSI and ROOT_RADIUS in radians, MULTIPLE (k of the target offset + k period).
 ROOT_PSI, ROOT_RADIUS, MULTIPLE = range(3)
 STACK_LENGTH = 18
-# Rounding of a difference of values from a target, relative to them, in half units in the last place: of the difference,
-# of the target's product and sum, and of the difference from it.
+# Rounding of a difference of values from a target, relative to them, in half units in the last place: of the
+# difference, of the target's product and sum, and of the difference from it.
 ROUNDINGS = 4.0 * 1.2e-16
 
 
@@ -79,8 +80,8 @@ ROUNDINGS = 4.0 * 1.2e-16
 def value_at(
     psi: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float, float, float]:
-    """Value and slope of a curve of the table at an orientation, and bounds of their errors (that of the slope may be
-    infinite)."""
+    """Value and slope of a curve of the table at an orientation, and bounds of their errors (that of the
+    slope may be infinite)."""
     a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
     value, slope, error, spread = curve_value(a, b, curves.reals[curve], psi, mode)
     if not isfinite(error):
@@ -92,8 +93,8 @@ def value_at(
 def first_guess(
     low: float, high: float, f_low: float, f_high: float, slope_low: float, slope_high: float
 ) -> float:
-    """Where a monotone function from f_low to f_high is 0: the cubic through the ends of its inverse, or the straight line
-    where its slopes vary too much for that."""
+    """Where a monotone function from f_low to f_high is 0: the cubic through the ends of its inverse, or the
+    straight line where its slopes vary too much for that."""
     width, rise = high - low, f_high - f_low
     along = -f_low / rise
     one, two = rise / (width * slope_low), rise / (width * slope_high)
@@ -117,11 +118,13 @@ def solve(
     target: float,
     start: float,
 ) -> tuple[float, float]:
-    """The orientation at which a monotone f takes a target: Newton steps from ``start``, kept inside the bracket.
+    """The orientation at which a monotone f takes a target: Newton steps from ``start``, kept inside the
+    bracket.
 
     Returns
     -------
-    (psi, bound of how far f is from the target there, in mm or radians); the nearer end where the target is not bracketed
+    (psi, bound of how far f is from the target there, in mm or radians); the nearer end where the target is
+    not bracketed
     """
     rising = f_high > f_low
     before = high - low
@@ -185,8 +188,8 @@ def value_between(piece: Array, psi: float) -> float:
 
 @inner
 def sag(piece: Array) -> float:
-    """How far a steady piece may be from its linear interpolation, by its second derivative and by the errors at its
-    ends."""
+    """How far a steady piece may be from its linear interpolation, by its second derivative and by the errors
+    at its ends."""
     width = piece[HIGH] - piece[LOW]
     return piece[SECOND_DERIVATIVE_HIGH] * width * width / 8.0 + max(
         piece[VALUE_ERROR_LOW], piece[VALUE_ERROR_HIGH]
@@ -195,7 +198,7 @@ def sag(piece: Array) -> float:
 
 @inner
 def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
-    """Whether f may take a target, told from the ends of two steady pieces alone."""
+    """Whether f may take a target, as seen from the ends of two steady pieces alone."""
     low, high = max(first[LOW], second[LOW]), min(first[HIGH], second[HIGH])
     doubt = sag(first) + sag(second) + HAIR
     f_low = value_between(second, low) - value_between(first, low)
@@ -206,7 +209,10 @@ def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
 
 @inner
 def is_inside(psi: float, end: float, slope: float) -> bool:
-    """Whether an orientation is not an end of a piece. The end at a tangency, known to no better, counts within rounding."""
+    """Whether an orientation is not an end of a piece.
+
+    The end at a tangency, known to no better, counts within rounding.
+    """
     return psi != end and not (isinf(slope) and abs(psi - end) <= SAME)
 
 
@@ -299,17 +305,19 @@ def crossings(
         else:
             bottom1, top1 = value_bounds(v1, w1, low1, high1, width)
             bottom2, top2 = value_bounds(v2, w2, low2, high2, width)
-            # Where a curve is steep, as beside a tangency, the chord still moves far over the narrowest range.
+            # Where a curve is steep, as beside a tangency, the chord still moves far over the narrowest
+            # range.
             steep = max(max(-low1, high1), max(-low2, high2)) * width > FARTHEST
             smallest = NARROWEST_DISC if steep else NARROWEST
-            # Where nothing is known of a curve's slopes, as beside a tangency, its chords themselves are bounded.
+            # Where nothing is known of a curve's slopes, as beside a tangency, its chords themselves are
+            # bounded.
             if width <= WIDEST_DISC and not (isfinite(bottom1) and isfinite(top1)):
                 bottom1, top1 = disc_bounds(low, high, one, features, curves, mode)
                 smallest = NARROWEST_DISC
             if width <= WIDEST_DISC and not (isfinite(bottom2) and isfinite(top2)):
                 bottom2, top2 = disc_bounds(low, high, two, features, curves, mode)
                 smallest = NARROWEST_DISC
-            # Where the errors are the larger part of what is known, splitting tells no more.
+            # Where the errors are the larger part of what is known, splitting gains nothing.
             doubt = 2.0 * (max(g1, q1) + max(g2, q2))
             vague = 2.0 * doubt >= highest - lowest and max(-lowest, highest) * width <= error
             bottom, top = bottom2 - top1 - error, top2 - bottom1 + error

@@ -1,12 +1,12 @@
 """Sliding pairs: chords that fit at one orientation only and slide there.
 
 Two pegs on parallel lines, or on arcs of equal radius whose centres lie exactly one chord apart, fix the
-orientation; the workpiece can still slide along the lines or around the arcs, and the other pegs stop it.
+orientation. The workpiece can still slide along the lines or around the arcs, and the other pegs stop it.
 Such a chord is not a curve over the orientation: it exists at one alone, and is met with the other chords by
 evaluating those there.
 
 Two sliding pairs at one orientation leave the workpiece a freedom that the contacts do not resist, so they
-never make a fixture together; nor does a sliding pair whose contacts share one line of action.
+never make a fixture together. Nor does a sliding pair whose contacts share one line of action.
 """
 
 from __future__ import annotations
@@ -63,7 +63,8 @@ ROUNDING = 4e-15
 
 @inner
 def line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
-    """Write the sliding pairs between two parallel lines as (from, to, alpha) rows; return their number."""
+    """Writes the sliding pairs between two parallel lines as (from, to, alpha) rows, and returns their
+    number."""
     nx, ny = a[AXIS_Y], -a[AXIS_X]
     cosine = (nx * (b[X] - a[X]) + ny * (b[Y] - a[Y])) / d
     if abs(cosine) >= 1.0 - SQUARE:
@@ -88,7 +89,8 @@ def line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
 
 @inner
 def arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
-    """Write the sliding pairs between equal arcs one chord apart as (from, to, alpha) rows; return their number."""
+    """Writes the sliding pairs between equal arcs one chord apart as (from, to, alpha) rows, and returns
+    their number."""
     if not are_one_chord_apart(a, b, d):
         return 0
     alpha = atan2(b[Y] - a[Y], b[X] - a[X])
@@ -132,7 +134,8 @@ def sliding_pairs_between(a: Array, b: Array, d: float) -> Array:
 
 @inner
 def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tuple[bool, float]:
-    """Whether a curve may exist at an orientation known to ``reach``, and psi moved by whole turns into its range.
+    """Whether a curve may exist at an orientation known to ``reach``, and psi moved by whole turns into its
+    range.
 
     Slivers around a coincidence, left out of the ranges, count as inside.
     """
@@ -145,11 +148,12 @@ def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tu
 def sliding_pair_reach(a: Array, b: Array, sliding_pair: Array) -> float:
     """How far in radians the orientation of a sliding pair may be off.
 
-    Between lines the distance h across gives the angle off square by cos = h / d, so an error of h counts by 1 / (d sin);
-    the sine is at least 8.9e-8 (``conventions.SQUARE``). Between arcs whose centres are a misfit m from one chord apart, and
-    whose radii differ by r, the chord whose contacts lie in the direction phi from the centres' line is (r + m cos phi) /
-    (d sin phi) off: no more than told where its lines of action are 15 degrees from the chord or more, and nearer to it with
-    the share of the closure that such contacts leave the others.
+    Between lines the distance h across gives the angle off square by cos = h / d, so an error of h counts by
+    1 / (d sin). The sine is at least 8.9e-8 (``conventions.SQUARE``). Between arcs whose centres are a misfit
+    m from one chord apart, and whose radii differ by r, the chord whose contacts lie in the direction phi
+    from the centres' line is (r + m cos phi) / (d sin phi) off: no more than stated where its lines of action
+    are 15 degrees from the chord or more, and nearer to it with the share of the closure that such contacts
+    leave the others.
     """
     d = sliding_pair[STEP_LENGTH]
     error = backward_error(a, b, d)
@@ -174,7 +178,8 @@ def place_sliding_pair(
     radius: float,
     reach: float,
 ) -> None:
-    """Write the pegs of a sliding pair to (2, 6) places, with its tail at (x, y) in row ``line`` of column 0."""
+    """Writes the pegs of a sliding pair to (2, 6) places, with its tail at (x, y) in row ``line`` of column
+    0."""
     alpha, d = sliding_pair[DIRECTION], sliding_pair[STEP_LENGTH]
     place_peg(pegs[0], x, y, whole[TAIL], 0.0, line, radius)
     place_peg(
@@ -215,8 +220,8 @@ def add_lines(
     space: WorkSpace,
     stats: IntArray,
 ) -> int:
-    """Append the fixtures of a sliding pair on one carrier and a curve's chord on the other: one for each line of holes in
-    which they meet.
+    """Appends the fixtures of a sliding pair on one carrier and a curve's chord on the other: one for each
+    line of holes in which they meet.
 
     Parameters
     ----------
@@ -287,8 +292,8 @@ def add_chords(
     space: WorkSpace,
     stats: IntArray,
 ) -> int:
-    """Append the fixtures of two and two pegs of a sliding pair and the curves, from the member at ``space.at`` on (see
-    ``work_space``)."""
+    """Appends the fixtures of two and two pegs of a sliding pair and the curves, from the member at
+    ``space.at`` on (see ``work_space``)."""
     at, loose = space.at, features.loose
     whole, sliding_pair = sliding_pairs.integers[pair], sliding_pairs.reals[pair]
     psi, reach = (
@@ -342,8 +347,8 @@ def add_third_pegs(
     space: WorkSpace,
     stats: IntArray,
 ) -> int:
-    """Append the fixtures of three and one peg of a sliding pair and the curves from its tail, from the member at
-    ``space.at`` on (see ``work_space``)."""
+    """Appends the fixtures of three and one peg of a sliding pair and the curves from its tail, from the
+    member at ``space.at`` on (see ``work_space``)."""
     at, loose, pegs = space.at, features.loose, space.pegs
     whole, sliding_pair = sliding_pairs.integers[pair], sliding_pairs.reals[pair]
     psi, tail = sliding_pair[ORIENTATION], whole[TAIL]
@@ -386,7 +391,8 @@ def sliding_two_and_two(
     counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All fixtures of two and two pegs that rest on one of the ``chosen`` sliding pairs and on a curve of ``members``.
+    """All fixtures of two and two pegs that rest on one of the ``chosen`` sliding pairs and on a curve of
+    ``members``.
 
     Parameters and result as for ``two_and_two_cells``.
     """
@@ -427,8 +433,8 @@ def sliding_three_and_one(
     counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All fixtures of three and one peg two of whose standing pegs form one of the ``chosen`` sliding pairs from the shared
-    tail.
+    """All fixtures of three and one peg two of whose standing pegs form one of the ``chosen`` sliding pairs
+    from the shared tail.
 
     Parameters and result as for ``two_and_two_cells``.
     """

@@ -57,7 +57,8 @@ def tail_curves(
     steps: IntArray,
     angles: Array,
 ) -> tuple[IntArray, Array, IntArray, Array, Array]:
-    """All chords whose tail is on one feature and whose head is on the same feature or one of a higher number.
+    """All chords whose tail is on one feature and whose head is on the same feature or one of a higher
+    number.
 
     Parameters
     ----------
@@ -72,8 +73,8 @@ def tail_curves(
     Returns
     -------
     (integers, reals, sliding pair integers, sliding pair reals, stretches)
-        See ``curves.columns``; the orientations of sliding pairs, alpha - shift, are still to be brought into range by the
-        caller, and the curves' stretches are counted from 0 for this tail.
+        See ``curves.columns``. The orientations of sliding pairs, alpha - shift, are still to be brought into
+        range by the caller, and the curves' stretches are counted from 0 for this tail.
     """
     integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
     whole, sliding_pairs = np.empty((16, CURVE_INTEGERS), np.int64), np.empty((16, SLIDING_PAIR_REALS))
@@ -132,7 +133,7 @@ def tail_curves(
 
 @inner
 def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
-    """Write the whole numbers of a curve or sliding pair."""
+    """Writes the whole numbers of a curve or sliding pair."""
     row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP], row[CENTER] = (
         tail,
         head,

@@ -77,7 +77,8 @@ from workhold.kernels.curves.two_and_two import (
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Points of an arc this far beyond its ends, in mm, count as points of it: more than ``END_SLACK`` and rounding.
+# Points of an arc this far beyond its ends, in mm, count as points of it: more than ``END_SLACK`` and
+# rounding.
 SPARE = 1e-6
 # Columns of a limb, one of the two chords of a triple: what the pairing of pieces looks at.
 LIMB_LOW, LIMB_HIGH, LIMB_VALUE_LEAST, LIMB_VALUE_MOST, LIMB_PIECE, LIMB_TAIL = range(6)
@@ -88,7 +89,7 @@ LIMB_LENGTH = 6
 def place_triple(
     pegs: Array, one: int, two: int, psi: float, reach: float, features: Array, curves: Curves
 ) -> None:
-    """Write the three standing pegs of two curves with a common tail; ``reach`` as for ``place_chord``."""
+    """Writes the three standing pegs of two curves with a common tail; ``reach`` as for ``place_chord``."""
     place_chord(pegs[:2], one, psi, reach, 0.0, features, curves)
     step, d, alpha = curves.integers[two], curves.reals[two, LENGTH], psi + curves.reals[two, SHIFT]
     x, y, radius = (
@@ -101,12 +102,14 @@ def place_triple(
 
 @inner
 def height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
-    """Lowest and highest value of a . q over a feature's points q; those up to ``SPARE`` beyond an arc's ends count."""
+    """Lowest and highest value of a . q over a feature's points q; those up to ``SPARE`` beyond an arc's
+    ends count."""
     if row[IS_ARC] == 0.0:
         middle, reach = ax * row[X] + ay * row[Y], row[HALF_EXTENT] * abs(ax * row[AXIS_X] + ay * row[AXIS_Y])
         return (middle - reach, middle + reach)
     half = row[HALF_EXTENT] + SPARE / row[RADIUS]
-    # Its two highest places, from the arc's middle: at the top of its circle, if that belongs to it, and at an end.
+    # Its two highest places, from the arc's middle: at the top of its circle, if that belongs to it, and at
+    # an end.
     along, across = ax * row[AXIS_X] + ay * row[AXIS_Y], row[AXIS_X] * ay - row[AXIS_Y] * ax
     top = atan2(across, along)
     if half >= pi:
@@ -125,7 +128,8 @@ def height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
 
 @inner
 def height_beside(row: Array, parameter: float, along: float, across: float) -> float:
-    """How far above its middle an arc's point at a parameter is, in a direction of parts along and square to it."""
+    """How far above its middle an arc's point at a parameter is, in a direction of parts along and square to
+    it."""
     sine = sin(parameter / 2.0)
     return row[RADIUS] * (sin(parameter) * across - 2.0 * sine * sine * along)
 
@@ -134,14 +138,16 @@ def height_beside(row: Array, parameter: float, along: float, across: float) -> 
 def row_meets(
     row: Array, ax: float, ay: float, height: float, error: float, side: float
 ) -> tuple[bool, float, float, float]:
-    """A point of a feature's carrier at a height y . q, with (ax, ay) = y; ``side`` picks one of an arc's two.
+    """A point of a feature's carrier at a height y . q, with (ax, ay) = y; ``side`` picks one of an arc's
+    two.
 
-    Where the feature runs square to the motion, a moving peg cannot push along it: the clamping force is at most
-    abs(n . x). Such points are left out.
+    Where the feature runs square to the motion, a moving peg cannot push along it: the clamping force is at
+    most abs(n . x). Such points are left out.
 
     Returns
     -------
-    (whether there may be one that clamps, x, y, how far in mm it may be off when the height is off by ``error``)
+    (whether there may be one that clamps, x, y, how far in mm it may be off when the height is off by
+    ``error``)
     """
     if row[IS_ARC] == 0.0:
         slope = ax * row[AXIS_X] + ay * row[AXIS_Y]
@@ -184,13 +190,14 @@ def row_meets_shallow(
 
 @inner
 def write_triple(triple: Array, pegs: Array, psi: float, features: Array, length: float) -> None:
-    """Write what moving pegs need of three standing pegs in place to (8, 3) rows, the last three of them work space.
+    """Writes what moving pegs need of three standing pegs in place to (8, 3) rows, the last three of them
+    work space.
 
-    With w_i = (n_i, t_i) the wrenches of the standing pegs and D their determinant, rows 0 to 2 hold the cross products of
-    two of them, cyclically, with the sign of D; the null vector's entries of the standing pegs for a moving peg of wrench w,
-    over that of the moving peg, are minus the scalar products of those rows with w, over abs(D). Row 3 holds the place along
-    x of the rightmost standing peg, the largest radius of the pegs, and the largest turn of a normal by that, in radians;
-    row 4 holds abs(D).
+    Let w_i = (n_i, t_i) be the wrenches of the standing pegs and D their determinant. Rows 0 to 2 hold the
+    cross products of two of them, cyclically, with the sign of D. Let a moving peg have the wrench w. The
+    null vector's entries of the standing pegs over that of the moving peg are minus the scalar products of
+    those rows with w, over abs(D). Row 3 holds the place along x of the rightmost standing peg, the largest
+    radius of the pegs, and the largest turn of a normal by that, in radians. Row 4 holds abs(D).
     """
     wrenches, first = triple[:3], triple[5:]
     rightmost = -np.inf
@@ -259,7 +266,8 @@ def may_close(
 
 @inner
 def faces_away(row: Array, cx: float, cy: float, clamping: float, doubt: float) -> bool:
-    """Whether a moving peg cannot clamp on a feature: it is straight and faces the way that the peg would push."""
+    """Whether a moving peg cannot clamp on a feature: it is straight and faces the way that the peg would
+    push."""
     return row[IS_ARC] == 0.0 and clamping * (row[AXIS_Y] * cx - row[AXIS_X] * cy) < -HAIR - doubt
 
 
@@ -276,7 +284,7 @@ def add_moving_pegs(
     space: WorkSpace,
     stats: IntArray,
 ) -> int:
-    """Try every moving peg for the three standing pegs in place; append the fixtures to ``out``.
+    """Tries every moving peg for the three standing pegs in place, and appends the fixtures to ``out``.
 
     Returns
     -------
@@ -326,8 +334,8 @@ def add_moving_pegs(
 
 @inner
 def farthest_right(features: Features, low: float, high: float) -> float:
-    """How far right in mm along x a moving peg that touches the part may stand, for psi in [low, high] (arcs as whole
-    circles)."""
+    """How far right in mm along x a moving peg that touches the part may stand, for psi in [low, high] (arcs
+    as whole circles)."""
     psi, half = (low + high) / 2.0, (high - low) / 2.0
     most = -np.inf
     for k in range(features.moving[0], features.moving[1]):
@@ -342,8 +350,8 @@ def farthest_right(features: Features, low: float, high: float) -> float:
 def write_limbs(
     pieces: Array, integers: IntArray, touched: tuple[int, int], farthest: float, out: Array
 ) -> int:
-    """Write the (N, 6) limbs, what their pairing looks at, of the pieces of standing pegs that leave room for a moving peg;
-    return their number."""
+    """Writes the (N, 6) limbs, what their pairing looks at, of the pieces of standing pegs that leave room
+    for a moving peg; return their number."""
     count = int(np.int64(0))
     for k in range(pieces.shape[0]):
         row = pieces[k]
@@ -373,8 +381,8 @@ def add_triples(
     space: WorkSpace,
     stats: IntArray,
 ) -> int:
-    """Try every moving peg at each of a ``number`` of crossings of two curves with a common tail; append the fixtures to
-    ``out``; result as for :func:`add_moving_pegs`."""
+    """Tries every moving peg at each of a ``number`` of crossings of two curves with a common tail, and
+    appends the fixtures to ``out``; result as for :func:`add_moving_pegs`."""
     for root in range(number):
         psi, reach = space.roots[root, ROOT_PSI], space.roots[root, ROOT_RADIUS]
         place_triple(space.pegs, one, two, psi, reach, features.rows, curves)
@@ -398,8 +406,8 @@ def add_limb_pairs(
     space: WorkSpace,
     stats: IntArray,
 ) -> int:
-    """Append what comes of the pairs of (N, 6) limbs with a common tail, from the one at ``space.at`` on (see
-    ``work_space``)."""
+    """Appends what comes of the pairs of (N, 6) limbs with a common tail, from the one at ``space.at`` on
+    (see ``work_space``)."""
     at, loose, integers = space.at, features.loose, curves.integers
     for i in range(at[0], limbs.shape[0]):
         if stats[STOPPED] != 0:
@@ -471,11 +479,12 @@ def three_and_one_cells(
     counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All fixtures of three and one peg with psi in some neighbouring cells whose chords from the shared tail are no sliding
-    pairs.
+    """All fixtures of three and one peg with psi in some neighbouring cells whose chords from the shared tail
+    are no sliding pairs.
 
-    Parameters and result as for ``two_and_two_cells``. The shared tail is on the feature of the lowest number, so that each
-    triple of pegs shows up once; the curves, and so the pieces, are in the order of their tails.
+    Parameters and result as for ``two_and_two_cells``. The shared tail is on the feature of the lowest
+    number, so that each triple of pegs shows up once. The curves, and so the pieces, are in the order of
+    their tails.
     """
     out = np.empty((64, RECORD_LENGTH))
     count = int(np.int64(0))

@@ -1,6 +1,7 @@
-"""Two pegs on each carrier: crossings of the heights of two chords, modulo the row pitch (the paper's Type I).
+"""Two pegs on each carrier: crossings of the heights of two chords, modulo the row pitch (the paper's Type
+I).
 
-Where a half turn swaps two equal carriers, half a turn of orientations is enough: each fixture shows up once,
+Where a half turn swaps two equal carriers, half a turn of orientations is enough. Each fixture shows up once,
 with the one chord or the other on the carrier that stands still.
 
 Before crossings are sought, three bounds of the pieces are compared, each by a few additions. The moving
@@ -59,8 +60,8 @@ from workhold.kernels.curves.roots import (
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought, four contacts
-# examined, and those that may be inside their features.
+# Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought,
+# four contacts examined, and those that may be inside their features.
 PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
 # Beside these is what another thread asks for: any number but 0 at STOPPED ends the work soon.
 STOPPED = 4
@@ -83,9 +84,9 @@ ROLE_LENGTH = 8
 def place_chord(
     pegs: Array, curve: int, psi: float, reach: float, line: float, features: Array, curves: Curves
 ) -> None:
-    """Write the pegs of a curve's chord to (2, 6) places, the tail in row ``line`` of column 0.
+    """Writes the pegs of a curve's chord to (2, 6) places, the tail in row ``line`` of column 0.
 
-    ``reach`` tells how far in radians psi may be off; the pegs' radii follow from it.
+    ``reach`` is how far in radians psi may be off; the pegs' radii follow from it.
     """
     step, reals = curves.integers[curve], curves.reals[curve]
     tail, head = step[TAIL], step[HEAD]
@@ -112,7 +113,7 @@ def write_roles(
     counting: bool,
     out: Array,
 ) -> int:
-    """Write the (N, 8) roles of the pieces that may be on one carrier; return their number."""
+    """Writes the (N, 8) roles of the pieces that may be on one carrier, and returns their number."""
     count = int(np.int64(0))
     for k in range(pieces.shape[0]):
         row = pieces[k]
@@ -131,7 +132,8 @@ def write_roles(
 
 @inner
 def sort_from_right(roles: Array, keys: Array, order: IntArray, out: Array) -> None:
-    """Write (N, 8) roles to ``out`` in the order of their places along x, the rightmost first (Shell's sort).
+    """Writes (N, 8) roles to ``out`` in the order of their places along x, the rightmost first (Shell's
+    sort).
 
     ``keys`` and ``order`` are (N,) work space.
     """
@@ -158,8 +160,8 @@ def sort_from_right(roles: Array, keys: Array, order: IntArray, out: Array) -> N
 def flat_slope(first: Array, second: Array) -> float:
     """A slope of the difference of heights below which two pieces do not clamp hard enough anywhere.
 
-    The forces of each carrier's pegs act together along the line through the instant centres, so of a force of size 1 the
-    part x . (P_B - P_A) / |P_B - P_A| clamps, and x . (P_B - P_A) is minus the slope.
+    The forces of each carrier's pegs act together along the line through the instant centres, so of a force
+    of size 1 the part x . (P_B - P_A) / |P_B - P_A| clamps, and x . (P_B - P_A) is minus the slope.
     """
     across = max(first[ACROSS_LEAST] - second[ACROSS_MOST], second[ACROSS_LEAST] - first[ACROSS_MOST])
     return 0.9 * LEAST_CLAMPING * max(across, 0.0)
@@ -167,7 +169,8 @@ def flat_slope(first: Array, second: Array) -> float:
 
 @inner
 def may_cross(standing: Array, moving: Array, lattice: Lattice, counting: bool) -> bool:
-    """Whether two roles far enough apart may make a fixture: their force directions and their heights allow it.
+    """Whether two roles far enough apart may make a fixture: their force directions and their heights allow
+    it.
 
     For ``counting`` it is asked only whether the four contacts may be simultaneous.
     """
@@ -185,8 +188,8 @@ def may_cross(standing: Array, moving: Array, lattice: Lattice, counting: bool) 
 
 @inner
 def counts_once(features: Features, lattice: Lattice) -> bool:
-    """Whether it makes no other contact when two chords change carriers: both touch the same features, and both signs of the
-    row offset mean the same rows."""
+    """Whether it makes no other contact when two chords change carriers: both touch the same features, and
+    both signs of the row offset mean the same rows."""
     offsets = 2.0 * lattice.row_offset / lattice.pitch_y
     return features.standing[0] == features.moving[0] and abs(floor(offsets + 0.5) - offsets) <= 1e-12
 
@@ -205,8 +208,8 @@ def add_crossings(
     space: WorkSpace,
     stats: IntArray,
 ) -> int:
-    """Examine the four contacts at each of a ``number`` of crossings of two curves; append those that are listed to ``out``,
-    which has room for all."""
+    """Examines the four contacts at each of a ``number`` of crossings of two curves, and appends those that
+    are listed to ``out``, which has room for all."""
     pegs, roots = space.pegs, space.roots
     for root in range(number):
         psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
@@ -238,7 +241,8 @@ def add_pairs(
     space: WorkSpace,
     stats: IntArray,
 ) -> int:
-    """Append what comes of the pairs of two lists of roles, from the one at ``space.at`` on (see ``work_space``).
+    """Appends what comes of the pairs of two lists of roles, from the one at ``space.at`` on (see
+    ``work_space``).
 
     Parameters
     ----------
@@ -311,14 +315,15 @@ def two_and_two_cells(
     counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All fixtures of two and two pegs with psi in some neighbouring cells, but those that rest on a sliding pair.
+    """All fixtures of two and two pegs with psi in some neighbouring cells, but those that rest on a sliding
+    pair.
 
     Parameters
     ----------
     edges : (K + 1,) edges of K cells, psi in radians.
     members : (M,) indices of the curves that exist in some of them, ascending.
-    counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only; those that are listed,
-        if any, are listed with either chord on the carrier that stands still.
+    counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only; those that
+        are listed, if any, are listed with either chord on the carrier that stands still.
     stats : (5,) counts to add to; once its entry ``STOPPED`` is not 0, what was found so far is returned.
 
     Returns

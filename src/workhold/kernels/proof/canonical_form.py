@@ -1,4 +1,5 @@
-"""Proven contacts as fixtures: where they are, with what forces, and in the one form each fixture is listed in."""
+"""Proven contacts as fixtures: where they are, with what forces, and in the one form each fixture is listed
+in."""
 
 from __future__ import annotations
 
@@ -37,10 +38,11 @@ def contacts_of(
     rows : (F, 12) of the features.
     points : (N, 4, 2) receives the pegs' centres in mm.
     gaps : (N,) receives the x distance from the rightmost standing to the leftmost moving peg.
-    nulls : (N, 4) receives the null vectors scaled to sizes of sum 1, their sum not negative; all -1 where the wrenches do
-        not span the space.
+    nulls : (N, 4) receives the null vectors scaled to sizes of sum 1, their sum not negative; all -1 where
+        the wrenches do not span the space.
     forces : (N, 4) receives the forces per unit of clamping force.
-    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null vectors.
+    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null
+        vectors.
     """
     length, null = setting.limits.wrench_length, w[NULL]
     for n in range(records.shape[0]):
@@ -69,11 +71,11 @@ def to_canonical_form(
     swapped: int,
     hair: float,
 ) -> None:
-    """Bring fixtures to the form they are listed in, in place.
+    """Brings fixtures to the form they are listed in, in place.
 
-    Orientations are in [0, 2 pi), or in [0, pi) where the half turn that swaps the carriers leaves the arrangement as it is,
-    up to a hair; columns count from the leftmost peg of each carrier, rows from the lowest of all; pegs of a carrier are in
-    the order of columns and rows.
+    Orientations are in [0, 2 pi), or in [0, pi) where the half turn that swaps the carriers leaves the
+    arrangement as it is, up to a hair. Columns count from the leftmost peg of each carrier, rows from the
+    lowest of all. Pegs of a carrier are in the order of columns and rows.
 
     Parameters
     ----------
@@ -81,7 +83,8 @@ def to_canonical_form(
     theta : (N,) orientation of the workpiece in radians.
     columns, rows : (N, 4) lattice places.
     orders : (N, 4) receives the order of the pegs.
-    swapped : how many pegs stand on each carrier of the arrangement that such a half turn leaves as it is; 0 for none.
+    swapped : how many pegs stand on each carrier of the arrangement that such a half turn leaves as it is; 0
+        for none.
     hair : orientations nearer than this, in radians, are one.
     """
     for n in range(len(standing)):

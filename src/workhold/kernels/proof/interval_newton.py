@@ -1,18 +1,20 @@
 r"""Boxes about nearly double solutions, contracted by the interval Newton method in double precision.
 
-A box is z0 + V s with \|s_j\| <= w_j: V has the right singular vectors of the Jacobian J at the first middle as columns, U
-the left ones, for there is a direction that is badly determined. With m the middle of a part of the box and F the distances
-of the pegs from their lines and circles, every solution there has, for each k,
+A box is z0 + V s with \|s_j\| <= w_j: V has the right singular vectors of the Jacobian J at the first middle
+as columns, U the left ones. A direction may be badly determined. With m the middle of a part of the box and F
+the distances of the pegs from their lines and circles, every solution there has, for each k,
 
     0 = (U'F(m))_k + sum_j S_kj s_j,     \|S - U'J(m)V\| <= D,
 
-by the mean value theorem. A part in which this or a rule (``contact.rules``) cannot hold is dropped; one that the step of
-Hansen and Sengupta maps into its own inside holds exactly one solution; others are made smaller, or halved.
+by the mean value theorem. A part in which this or a rule (``contact.rules``) cannot hold is dropped. One that
+the step of Hansen and Sengupta maps into its own inside holds exactly one solution; others are made smaller,
+or halved.
 
 How much contacts vary over a part, ``variation`` bounds.
 
-References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT 21 (1981)
-203-211; A. Neumaier, *Interval Methods for Systems of Equations*, Cambridge 1990, sections 1.6 and 5.2.
+References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT
+21 (1981) 203-211; A. Neumaier, *Interval Methods for Systems of Equations*, Cambridge 1990, sections 1.6 and
+5.2.
 """
 
 from __future__ import annotations
@@ -57,7 +59,8 @@ from workhold.kernels.proof.variation import (
 Array = NDArray[np.float64]
 Verdicts = NDArray[np.int8]
 
-# A box is given up after so many parts; the sides of what remains of one are made larger by this part, for rounding.
+# A box is given up after so many parts; the sides of what remains of one are made larger by this part, for
+# rounding.
 MOST_PARTS = 200_000
 WIDER = 1e-12
 DEPTH = 256
@@ -112,8 +115,11 @@ def work_space() -> WorkSpace:
 
 @inner
 def combine(frame: Array, size: float, length: float, w: Array, b: Array, slopes: Array) -> None:
-    """Fill in ``slopes`` (4, 4, 4): the Jacobian in the frame, how much each entry varies over a part, and of the combined
-    values (row 0) and their errors (row 1); the last is work space."""
+    """Fills in ``slopes`` (4, 4, 4).
+
+    They are the Jacobian in the frame, how much each entry varies over a part, and of the combined values
+    (row 0) and their errors (row 1). The last is work space.
+    """
     for k in range(4):
         tilt, moment, push = b[TILT, k], b[MOMENT_BAND, k], w[MOVING, k] * b[FORCE_BAND, k]
         for j in range(4):
@@ -201,7 +207,8 @@ def begin(record: Array, frame: Array, length: float, place: Array) -> None:
 
 @inner
 def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Array, root: Array) -> None:
-    """Write a part with exactly one solution as a record: its middle, and how far the solution may be from there."""
+    """Writes a part with exactly one solution as a record: its middle, and how far the solution may be from
+    there."""
     for k in range(PSI):
         root[k] = record[k]
     root[PSI], root[TAIL_X] = w[UNKNOWNS, 0], w[UNKNOWNS, 1]
@@ -217,8 +224,8 @@ def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Arr
 
 @inner
 def push_parts(stack: Array, waiting: int, place: Array, bounds: Array, least: float, whole: bool) -> int:
-    """Put what remains of a part on the stack: ``whole`` or when it became much smaller in a direction where it was more
-    than ``least`` mm wide, else in halves; the new height."""
+    """Puts what remains of a part on the stack: ``whole`` or when it became much smaller in a direction where
+    it was more than ``least`` mm wide, else in halves. Returns the new height."""
     longest, smaller = 0, False
     for j in range(4):
         side = bounds[1, j] - bounds[0, j]
@@ -248,7 +255,7 @@ def solutions_in(
     space: WorkSpace,
     roots: Array,
 ) -> int:
-    """Find every solution of a box that may be a fixture.
+    """Finds every solution of a box that may be a fixture.
 
     Parameters
     ----------
@@ -313,7 +320,8 @@ def solutions_in_all(
     verdicts: Verdicts,
     roots: Array,
 ) -> int:
-    """Write the verdict on each box and the roots of all, see :func:`interval_newton`; return how many there are."""
+    """Writes the verdict on each box and the roots of all, see :func:`interval_newton`, and returns how many
+    there are."""
     count = int(np.int64(0))
     for n in range(records.shape[0]):
         found = solutions_in(records[n], features, setting, frames[n], space, roots[count : count + ROOTS])
@@ -336,7 +344,8 @@ def interval_newton(
 
     Returns
     -------
-    ((N,) verdicts, open for boxes that are given up; (M, 19) boxes in place of the others, with exactly one solution each)
+    ((N,) verdicts, open for boxes that are given up; (M, 19) boxes in place of the others, with exactly one
+    solution each)
     """
     verdicts = np.empty(records.shape[0], np.int8)
     roots = np.empty((ROOTS * records.shape[0], records.shape[1]))
@@ -348,7 +357,7 @@ def interval_newton(
 def write_jacobians(
     records: Array, features: Array, setting: Setting, w: Array, points: Array, out: Array
 ) -> None:
-    """Write the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
+    """Writes the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
     for n in range(records.shape[0]):
         take_pegs(records[n], setting.lattice, w)
         touch(records[n], features, setting.limits.wrench_length, w, points)

@@ -1,17 +1,20 @@
-r"""A certificate for every fixture: that its contact equations have exactly one solution near the computed one, and that
-the rules hold there.
+r"""A certificate for every fixture: that its contact equations have exactly one solution near the computed
+one, and that the rules hold there.
 
-Theorem (Newton-Kantorovich, in the form of radii polynomials): let F be the four contact equations in the unknowns
-z = (L psi, tail x, tail y, separation), all in mm, A an approximate inverse of the Jacobian J at z, and
+Theorem (Newton-Kantorovich, in the form of radii polynomials): let F be the four contact equations in the
+unknowns z = (L psi, tail x, tail y, separation), all in mm. Let A be an approximate inverse of the Jacobian J
+at z, and
 
     Y >= \|A F(z)\|,   Z >= \|I - A J\|,   K >= \|A\| \|second derivatives of F\|      (largest absolute row sums).
 
-When (1 - Z)^2 > 2 K Y there is exactly one solution within r+ = (1 - Z) / K of z, and it lies within
-r = 2 Y / (1 - Z + sqrt((1 - Z)^2 - 2 K Y)).
-Reference: J. B. van den Berg, J.-P. Lessard, "Rigorous numerics in dynamics", Notices of the AMS 62 (2015) 1057-1061.
+When (1 - Z)^2 > 2 K Y there is exactly one solution within r+ = (1 - Z) / K of z. It lies within r = 2 Y / (1
+- Z + sqrt((1 - Z)^2 - 2 K Y)).
 
-The search tells how far the exact contacts may be from the computed ones. When that is within r+, the solution here is the
-one the search isolated, and no other hides beside it.
+Reference: J. B. van den Berg, J.-P. Lessard, "Rigorous numerics in dynamics", Notices of the AMS 62 (2015)
+1057-1061.
+
+The search states how far the exact contacts may be from the computed ones. When that is within r+, the
+solution here is the one the search isolated, and no other hides beside it.
 
 Glossary
 --------
@@ -66,15 +69,17 @@ ROUNDS = 3
 # Determinants this small are singular; steps of more than this many mm lead to another contact.
 SINGULAR = 1e-300
 FARTHEST = 1.0
-# Roundings of half a unit in the last place in a contact equation, generously counted, and relative to its terms.
+# Roundings of half a unit in the last place in a contact equation, generously counted, and relative to its
+# terms.
 ROUNDINGS = 16.0 * 1.2e-16
-# Where an engine tells nothing better, the exact contact is this near, in mm.
+# Where an engine states nothing better, the exact contact is this near, in mm.
 LEAST_REACH = 1e-9
 
 
 @inner
 def polish(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
-    """Newton's method from the unknowns in place, to the last digits; leaves the contacts there (see ``contacts``)."""
+    """Newton's method from the unknowns in place, to the last digits; leaves the contacts there (see
+    ``contacts``)."""
     for _ in range(ROUNDS):
         touch(record, features, length, w, points)
         if invert(w) > SINGULAR:
@@ -94,7 +99,8 @@ def sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
 
     Returns
     -------
-    (size in mm of the numbers in the contact equations, radius of the smallest arc touched, infinite for lines)
+    (size in mm of the numbers in the contact equations, radius of the smallest arc touched, infinite for
+    lines)
     """
     place = carrier = 0.0
     smallest = inf
@@ -113,9 +119,9 @@ def certificate(
 ) -> tuple[float, float]:
     """Certify the contacts in place.
 
-    The second derivatives of the contact equations are bounded so: a peg's centre moves by at most (sqrt 2 + 2 + 1) per unit
-    of the unknowns, and its second derivative is at most 4 / L. A distance from a line has no curvature, one from a point
-    about R away has at most 2 / R.
+    The second derivatives of the contact equations are bounded as follows. A peg's centre moves by at most
+    (sqrt 2 + 2 + 1) per unit of the unknowns, and its second derivative is at most 4 / L. A distance from a
+    line has no curvature, one from a point about R away has at most 2 / R.
 
     Parameters
     ----------
@@ -142,15 +148,16 @@ def certificate(
         norm, defect, step = max(norm, row), max(defect, rest), max(step, abs(w[NEWTON, i]))
     step += norm * error
     second_derivative = 2.0 * 4.42**2 / smallest + 4.0 / length
-    # The computed Jacobian is off by the rounding of a row's four entries, by eight half units of an arm over L and six of a
-    # direction, and by that of the places times the second derivatives.
+    # The computed Jacobian is off by the rounding of a row's four entries, by eight half units of an arm over
+    # L and six of a direction, and by that of the places times the second derivatives.
     defect += norm * (ROUNDINGS * (1.0 + size / length) + error * second_derivative)
     rest, curve = 1.0 - defect, norm * second_derivative
     inside = rest * rest - 2.0 * curve * step
     if not (rest > 0.0 and inside > 0.0):
         return (inf, 0.0)
     radius = 1.01 * 2.0 * step / (rest + sqrt(inside))
-    # Points of the part's frame more than half a radius from an arc are outside the bound of the second derivatives.
+    # Points of the part's frame more than half a radius from an arc are outside the bound of the second
+    # derivatives.
     unique = min(0.99 * rest / curve, smallest / 16.0)
     return (radius, unique) if radius < unique else (inf, 0.0)
 
@@ -170,7 +177,8 @@ def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, f
 
     Returns
     -------
-    (gap, the x distance in mm from the rightmost standing to the leftmost moving peg; push of the standing pegs along x)
+    (gap, the x distance in mm from the rightmost standing to the leftmost moving peg; push of the standing
+    pegs along x)
     """
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
     standing, moving, push = -inf, inf, 0.0
@@ -194,7 +202,8 @@ def sign_of(middle: float, doubt: float) -> int:
 
 @inner
 def wrenches(record: Array, features: Array, length: float, pairs: Array, null: Array) -> float:
-    """Fill in the normals, at ``pairs[1]``, and the null vector, not scaled, of the contacts in place; its sum of sizes."""
+    """Fills in the normals, at ``pairs[1]``, and the null vector, not scaled, of the contacts in place, and
+    returns its sum of sizes."""
     for k in range(4):
         row = features[int(record[FEATURES + k])]
         pairs[1, k, 0], pairs[1, k, 1] = outward_normal(row, pairs[0, k, 0], pairs[0, k, 1])
@@ -212,8 +221,9 @@ def judged(
     pairs: Array,
     null: Array,
 ) -> int:
-    """Decide contacts in place by the signs of enclosures of five numbers that must all be positive: ends, gap, span,
-    closure, clamping; of one of two clamps ends, the determinant of the standing pegs' wrenches, and its push.
+    """Decides contacts in place by the signs of enclosures of five numbers that must all be positive: ends,
+    gap, span, closure, clamping. Those of one of two clamps are ends, the determinant of the standing pegs'
+    wrenches, and its push.
 
     Parameters
     ----------
@@ -242,14 +252,16 @@ def judged(
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
     verdict = min(verdict, sign_of(gap - (setting.limits.gap - GAP_SLACK), 1.5 * radius + 1e-12))
     verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))
-    # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; at most three forces push.
+    # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; at most three forces
+    # push.
     verdict = min(verdict, sign_of(closure - LEAST_CLOSURE * size, 1.1 * band))
     doubt = 3.1 * band + size * (swing + radius / length)
     return min(verdict, sign_of(sign * setting.limits.clamping * push - LEAST_CLAMPING * size, doubt))
 
 
 def discs_around(outline: Array, margin: float) -> Array:
-    """Centres and squared radii (S, 3) in mm of discs that hold (S, 10) segments and what is ``margin`` around them."""
+    """Centres and squared radii (S, 3) in mm of discs that hold (S, 10) segments and what is ``margin``
+    around them."""
     half, radius = outline[:, HALF_EXTENT], outline[:, RADIUS]
     # The disc on the chord, for an arc up to a half circle.
     short = np.where(outline[:, IS_ARC] == 0.0, 0.0, np.minimum(half, pi / 2.0))
@@ -267,7 +279,8 @@ def discs_around(outline: Array, margin: float) -> Array:
 
 @inner
 def is_clear(points: Array, moves: Array, outline: Array, discs: Array, setting: Setting) -> bool:
-    """Whether four pegs, of which some move (4,), are clear of all of (S, 10) segments, to within ``TOUCHING``."""
+    """Whether four pegs, of which some move (4,), are clear of all of (S, 10) segments, to within
+    ``TOUCHING``."""
     for k in range(4):
         x, y = points[k, 0], points[k, 1]
         least = (setting.standing_radius if moves[k] == 0.0 else setting.moving_radius) - TOUCHING
@@ -290,7 +303,7 @@ def certified(
     w: Array,
     pairs: Array,
 ) -> None:
-    """Decide records one by one.
+    """Decides records one by one.
 
     Parameters
     ----------
@@ -299,7 +312,8 @@ def certified(
     outline, discs : (S, 10) the part's faces, and :func:`discs_around` these and the pegs that touch them.
     solutions : (N, 4) receives the unknowns.
     verdicts : (N,) receives the verdicts; open where another solution may be in the record's box.
-    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null vectors.
+    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null
+        vectors.
     """
     length, points, null = setting.limits.wrench_length, pairs[0], w[NULL]
     for n in range(records.shape[0]):

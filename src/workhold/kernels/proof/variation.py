@@ -1,8 +1,9 @@
-"""How much contacts vary over a part of a box, and whether some rule is broken everywhere in it (see ``interval_newton``).
+"""How much contacts vary over a part of a box, and whether some rule is broken everywhere in it (see
+``interval_newton``).
 
-How much numbers vary is bounded by norms: a peg's centre moves by at most its ``variation``, its unit normal turns by
-at most variation / (R - variation) on an arc and not at all on a line, and products vary by the sum of what their
-factors do.
+How much numbers vary is bounded by norms. A peg's centre moves by at most its ``variation``. Its unit normal
+turns by at most variation / (R - variation) on an arc and not at all on a line. Products vary by the sum of
+what their factors do.
 """
 
 from __future__ import annotations
@@ -34,17 +35,18 @@ Array = NDArray[np.float64]
 HALF_UNIT = 1.2e-16
 HAIR = 1e-12
 
-# Rows of the numbers (10, 4) of a part, one for each peg: how far its centre moves, how much its normal turns, how much its
-# arm from the first peg varies, its moment and how much that varies, the part of its normal along x and how much
-# that varies, the error of its contact equation, and how much the minor without it varies. How much the turn and the
-# separation vary comes last.
+# Rows of the numbers (10, 4) of a part, one for each peg: how far its centre moves, how much its normal
+# turns, how much its arm from the first peg varies, its moment and how much that varies, the part of its
+# normal along x and how much that varies, the error of its contact equation, and how much the minor without
+# it varies. How much the turn and the separation vary comes last.
 VARIATION, TILT, ARM_BAND, MOMENT, MOMENT_BAND, ALONG_X, FORCE_BAND, ERROR, MINOR_BAND, OTHERS = range(10)
 NUMBERS = 10
 
 
 @inner
 def move_to(z: Array, place: Array, frame: Array, length: float, w: Array) -> None:
-    """Bring the unknowns to the middle of a part, z0 + V s, with what rounding leaves of the sum, in mm, at NEWTON."""
+    """Brings the unknowns to the middle of a part, z0 + V s, with what rounding leaves of the sum, in mm, at
+    NEWTON."""
     for i in range(4):
         step = 0.0
         for j in range(4):
@@ -69,8 +71,8 @@ def spread(
     pairs: Array,
     b: Array,
 ) -> None:
-    """Fill in how much the contacts in place vary over a part: variations, tilts and arms, with the arms and normals
-    themselves in ``pairs`` (3, 4, 2) behind the centres."""
+    """Fills in how much the contacts in place vary over a part: variations, tilts and arms, with the arms and
+    normals themselves in ``pairs`` (3, 4, 2) behind the centres."""
     length, backward_error = setting.limits.wrench_length, setting.backward_error
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
     turn = separation = 0.0
@@ -93,8 +95,8 @@ def spread(
         tilt, sign = 0.0, 1.0
         ray = abs(pairs[0, k, 0]) + abs(pairs[0, k, 1])
         ray += local_size(row) if is_shallow(row) else abs(row[X]) + abs(row[Y])
-        # Seven roundings of each coordinate of the arm, one of the sum with the tail's, one of the difference from the
-        # feature's middle, and four of products and root.
+        # Seven roundings of each coordinate of the arm, one of the sum with the tail's, one of the difference
+        # from the feature's middle, and four of products and root.
         b[ERROR, k] = HALF_UNIT * (10.0 * arm + 6.0 * ray) + backward_error
         if row[IS_ARC] != 0.0:
             ray = row[RADIUS] + w[OFF, k]
@@ -132,8 +134,8 @@ def turned_by(
 def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array) -> float:
     """How much the cross product of the normals of two arcs varies over a part; infinite for others.
 
-    Only the difference of the rays from their centres counts, which depends on the orientation alone where both pegs are on
-    one carrier: parallel normals stay so wherever the part slides.
+    Only the difference of the rays from their centres counts, which depends on the orientation alone where
+    both pegs are on one carrier. Parallel normals stay so wherever the part slides.
     """
     one, two = features[int(record[FEATURES + i])], features[int(record[FEATURES + j])]
     if one[IS_ARC] == 0.0 or two[IS_ARC] == 0.0:
@@ -146,10 +148,11 @@ def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array,
 
 @inner
 def face_one_way(pairs: Array, b: Array) -> bool:
-    """Whether all normals have a part along the first one everywhere in a part: no forces of such contacts add up to none.
+    """Whether all normals have a part along the first one everywhere in a part: no forces of such contacts
+    add up to none.
 
-    So it is where pegs in one row of holes touch a line and the arcs beside it at tangent joints, along which the workpiece
-    seems to slide: these contacts hardly tell where it is, but which way they face.
+    So it is where pegs in one row of holes touch a line and the arcs beside it at tangent joints, along which
+    the workpiece seems to slide. These contacts hardly determine where it is, but only which way they face.
     """
     for k in range(4):
         along = pairs[2, 0, 0] * pairs[2, k, 0] + pairs[2, 0, 1] * pairs[2, k, 1]
@@ -201,8 +204,8 @@ def is_broken(
 
 @inner
 def may_clamp(sign: float, clamping: float, size: float, w: Array, null: Array, b: Array) -> bool:
-    """Whether forces of one sign may close and clamp; the force is the push of the standing pegs, and as well what the
-    moving pegs take up. ``size`` is the least that the sizes of the minors add up to."""
+    """Whether forces of one sign may close and clamp; the force is the push of the standing pegs, and as well
+    what the moving pegs take up. ``size`` is the least that the sizes of the minors add up to."""
     standing = moving = 0.0
     for k in range(4):
         band = b[MINOR_BAND, k]

@@ -44,7 +44,8 @@ EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
 @inner
 def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
-    """The clearance of a peg in mm in a configuration (4,); -inf where it is off a piece that it has to touch.
+    """The clearance of a peg in mm in a configuration (4,); -inf where it is off a piece that it has to
+    touch.
 
     Piece -1 is none.
 

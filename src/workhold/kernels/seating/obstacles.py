@@ -3,7 +3,7 @@
 Corners of the part's hull, and convex arcs on it, come no nearer to a wall than they may. A row of a hull has
 the centre x and y of a piece about the centre of the part's box, and its radius. Then follow the unit vector
 to its middle, and the cosine of half its sweep. The cosine is -2 for a corner, which supports in every
-direction. See ``geometry.hull``. Whether a part covers the place that it covers elsewhere is told by
+direction. See ``geometry.hull``. Whether a part covers the place that it covers elsewhere is seen from
 its outline.
 """
 

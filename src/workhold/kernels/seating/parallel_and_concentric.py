@@ -95,7 +95,8 @@ def tangent_chords(rows: Array, first: int, end: int, d: float, out: Array) -> i
 def separation_on(
     theta: float, line: Array, other: Array, first: int, third: int, given: Given
 ) -> tuple[bool, float]:
-    """Whether parallel lines are not level at an orientation, and S at which pegs of both jaws lie on them."""
+    """Whether parallel lines are not level at an orientation, and S at which pegs of both jaws lie on
+    them."""
     nx = cos(theta) * line[AXIS_Y] + sin(theta) * line[AXIS_X]
     ny = sin(theta) * line[AXIS_Y] - cos(theta) * line[AXIS_X]
     moving = nx * (given.right[third] - given.right[first])

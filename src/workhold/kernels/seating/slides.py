@@ -1,4 +1,5 @@
-"""Equilibria of parts that slide on two pegs of one jaw, on parallel faces or equal arcs, until pegs block them.
+"""Equilibria of parts that slide on two pegs of one jaw, on parallel faces or equal arcs, until pegs block
+them.
 
 Columns of a slide: the pegs SLIDE_FIRST and SLIDE_SECOND, the pieces SLIDE_ONE and SLIDE_TWO that they touch,
 and the parameters SLIDE_LOW and SLIDE_HIGH of the first on its piece. SLIDE_PSI is the orientation of the

@@ -1,4 +1,5 @@
-"""Two contacts of one jaw over the orientation: places, instant centres, cells, rays, and functions with roots.
+"""Two contacts of one jaw over the orientation: places, instant centres, cells, rays, and functions with
+roots.
 
 The ray of a pair leads from its first contact along the normal there, and the instant centre P lies on it.
 With r_a and r_b the unit normals at both contacts, w from the first contact u to the second, of length d,

@@ -1,13 +1,15 @@
-"""A part that stands on a piece of its hull on a wall, between a locator and a tip: where three forces balance.
+"""A part that stands on a piece of its hull on a wall, between a locator and a tip: where three forces
+balance.
 
 The part turns about the centre of that piece, which keeps its distance from the wall. The separation S
 follows from the orientation, and the forces balance where S' = 0, enclosed with S'' by intervals
 (``turning``). Ranges in which S' cannot vanish, or a force cannot press, are dropped, and the roots isolated
 in the others.
 
-With the tip in a pocket the distance of the locator from another piece, or from its circle by squares, is a
-trigonometric polynomial of second degree, whose derivatives are bounded by its coefficients. Where the wall
-is along the tip's travel, the orientation follows from the tip's height alone, by one of the first degree.
+Let the tip be in a pocket. The distance of the locator from another piece, or from its circle by squares, is
+then a trigonometric polynomial of second degree. Its derivatives are bounded by its coefficients. Where the
+wall is along the tip's travel, the orientation follows from the tip's height alone, by one of the first
+degree.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """The rules of a toolkit, put together as its carriers say, and those about its holes.
 
-A carrier is asked what it is: whether it stands still or slides, has holes of its own or is bolted in one, or
-is a wall. Of two clamps, where one pair stands for all of its seat, fixtures of one seat and pair of
+Each carrier says whether it stands still or slides, and which kind of contact it makes. That is a peg in a
+hole of its own, the tip of a clamp bolted in a hole of another carrier, or an end of a wall. With two clamps
+one pair may be listed for all pairs of its seat. Then fixtures of one seat and pair of
 directions are the same.
 """
 
@@ -17,6 +18,7 @@ from attrs import evolve, field, frozen
 from flint import arb
 
 from workhold.errors import InputError
+from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
@@ -68,17 +70,32 @@ class ToolkitRules:
     @cached_property
     def lattices(self) -> list[Carrier]:
         """The carriers with holes of their own, those that stand still first."""
-        return [one for one in self.carriers.values() if one.on is None and not one.is_wall]
+        return [one for one in self.carriers.values() if one.has_lattice]
 
     @cached_property
     def tips(self) -> dict[str, Carrier]:
         """The clamps by the directions in which they push."""
-        return {one.name.rpartition(" ")[2]: one for one in self.carriers.values() if one.on is not None}
+        return {one.direction: one for one in self.carriers.values() if one.contact is CLAMP_TIP}
 
     @cached_property
-    def wall(self) -> Carrier | None:
-        """The wall that the part lies flush on."""
-        return next((one for one in self.carriers.values() if one.is_wall), None)
+    def walls(self) -> list[Carrier]:
+        """What the part lies flush on: a wall, or nothing."""
+        return [one for one in self.carriers.values() if one.contact is WALL_END]
+
+    @cached_property
+    def wall_noun(self) -> str:
+        """What the wall is called; empty where there is none."""
+        return next((one.noun for one in self.walls), "")
+
+    @property
+    def half_turns(self) -> bool:
+        """Whether half a turn leaves the toolkit as it is, which with a wall nothing does."""
+        return not self.walls
+
+    @property
+    def keeps_rows(self) -> bool:
+        """Whether rows count from a wall, beside which their lattice stands still."""
+        return bool(self.walls) and self.lattices[0].travel is None
 
     @cached_property
     def groups(self) -> list[tuple[Carrier, int]]:
@@ -96,12 +113,12 @@ class ToolkitRules:
         """What each clamp has to keep; a travel of minus its stroke puts it at its hole."""
         travel = next((tip.travel for tip in self.tips.values()), None)
         span = None if travel is None or travel.most is None else (-travel.most, -travel.least)
-        return Stroke(span, None if self.wall is None else self.wall.noun)
+        return Stroke(span, self.wall_noun)
 
     @cached_property
     def from_lowest(self) -> tuple[str, ...]:
-        """Of columns and rows, those that count from the lowest in use: rows beside a wall count from there."""
-        if self.wall is not None:
+        """Which of columns and rows count from the lowest in use; rows beside a wall count from the wall."""
+        if self.walls:
             return ("column",)
         return ("column", "row") if self.tips else ()
 
@@ -111,19 +128,13 @@ class ToolkitRules:
         total, seen, out = Counter[str](), Counter[str](), list[str]()
         for carrier, count in self.groups:
             total[carrier.peg] += count
-        for carrier, count in self.groups:
-            for _ in range(count):
-                seen[carrier.peg] += 1
-                if carrier.is_wall:
-                    out.append(
-                        f"the {carrier.noun} at its {'left' if seen[carrier.peg] == 1 else 'right'} end"
-                    )
-                else:
-                    out.append(
-                        f"the {carrier.peg}"
-                        if total[carrier.peg] == 1
-                        else f"{carrier.peg} {seen[carrier.peg]}"
-                    )
+        for carrier in (carrier for carrier, count in self.groups for _ in range(count)):
+            seen[carrier.peg] += 1
+            number = seen[carrier.peg]
+            if carrier.is_wall:
+                out.append(f"the {carrier.noun} at its {'left' if number == 1 else 'right'} end")
+            else:
+                out.append(f"the {carrier.peg}" if total[carrier.peg] == 1 else f"{carrier.peg} {number}")
         return tuple(out)
 
     @property
@@ -143,7 +154,7 @@ class ToolkitRules:
     @property
     def same_words(self) -> str:
         """What is said of a fixture that an earlier one already is."""
-        is_one = self.every or not self.toolkit.needs_pairs
+        is_one = self.every or self.clamps < 2
         return "it is the same as" if is_one else "it has the seat and the directions of"
 
     @property
@@ -151,33 +162,36 @@ class ToolkitRules:
         """What is wrong where the clamping force is none."""
         if self.clamps:
             return "the clamp does not push the part"
-        return (
-            f"{'closing' if self.toolkit.clamping > 0 else 'opening'} the {self.toolkit.noun} does not clamp"
-        )
+        moving = "closing" if self.toolkit.clamping > 0 else "opening"
+        return f"{moving} the {self.toolkit.noun} does not clamp"
 
     @property
     def wider_words(self) -> str:
         """What queries there are that a listing also meets."""
+        fewer = "fewer restrictions or more"
         if not self.clamps:
-            return "a smaller gap or contact margin, a larger opening, more rows, fewer restrictions or more types"
+            return f"a smaller gap or contact margin, a larger opening, more rows, {fewer} types"
         more = "directions" if self.clamps == 1 else "pairs of directions"
-        return f"a smaller contact margin, a longer stroke, more columns or rows, fewer restrictions or more {more}"
+        return f"a smaller contact margin, a longer stroke, more columns or rows, {fewer} {more}"
 
     @property
     def largest_radius(self) -> float:
-        """Of pegs and tips, in mm."""
+        """The largest radius of pegs and tips, in mm."""
         return max(one.peg_radius for one in self.carriers.values())
+
+    def placed(self, fixture: Fixture) -> list[tuple[str, Peg]]:
+        """The pegs and clamps of a fixture by name, without the ends of the contact with a wall."""
+        named = zip(self.names, fixture.pegs, strict=False)
+        return [(name, peg) for name, peg in named if not peg.is_on_wall]
 
     def travels(self, fixture: Fixture) -> dict[str, float]:
         """How far in mm what moves has travelled, by what each travel is called."""
-        if fixture.pair is not None:
-            named = zip(self.names[-2:], fixture.pair.travels, strict=True)
-            return {f"place of the tip of {name} on its line": travel for name, travel in named}
-        return {
-            f"place of {self.names[-1]}'s tip on its line"
-            if self.clamps
-            else "opening": fixture.jaw_separation
-        }
+        if not self.clamps:
+            return {"opening": fixture.jaw_separation}
+        if self.clamps == 1:
+            return {f"place of {self.names[-1]}'s tip on its line": fixture.jaw_separation}
+        named = zip(self.names[-self.clamps :], fixture.travels, strict=True)
+        return {f"place of the tip of {name} on its line": travel for name, travel in named}
 
     def has_its_pegs(self, fixture: Fixture) -> bool:
         """Whether the pegs of a fixture are those of its type and directions, in their order but for jaws."""
@@ -234,7 +248,7 @@ class ToolkitRules:
         """The contacts of all pegs of a fixture, in their order; each of two clamps has its own travel."""
         sides = [outline.faces[peg.face] for peg in fixture.pegs]
         ends: Iterator[WallContact] = iter(())
-        if self.wall is not None:
+        if self.walls:
             on_wall = [side for peg, side in zip(fixture.pegs, sides, strict=True) if peg.is_on_wall]
             ends = iter(wall_contacts(on_wall, outline, BallPose.written(fixture.pose)))
         out: list[BallContact] = []
@@ -300,7 +314,7 @@ class ToolkitRules:
 
     def number_findings(self, fixture: Fixture) -> Iterator[Finding]:
         """Whether there are the columns and rows in which the pegs stand, counted as they are to be."""
-        standing = [pair for pair in zip(self.names, fixture.pegs, strict=False) if not pair[1].is_on_wall]
+        standing = self.placed(fixture)
         for noun in ("column", "row"):
             numbers = []
             for name, peg in standing:
@@ -326,8 +340,8 @@ class ToolkitRules:
         is_bolted = self.stroke.span is not None
         place = clamp_place(self.lattices[0].name, direction_of(clamp), clamp.column, clamp.row, is_bolted)
         if clamp.place != place:
-            told = "hole in which it is bolted" if is_bolted else "line alone, since it has no travel"
-            yield Finding(True, f"{name} is not told by the {told}")
+            named_by = "hole in which it is bolted" if is_bolted else "line alone, since it has no travel"
+            yield Finding(True, f"{name} is not named by the {named_by}")
         if not is_bolted and (clamp.column if is_along_x(clamp) else clamp.row):
             yield Finding(True, f"the place of {name} on its line is not counted from the plate's first hole")
 
@@ -336,13 +350,13 @@ class ToolkitRules:
     ) -> Iterator[Finding]:
         """Whether everything can stand as it does at a proven pose."""
         named = list(zip(self.names, fixture.pegs, contacts, strict=True))
-        if self.wall is not None:
+        if self.walls:
             ends = [(name, peg, end) for name, peg, end in named if isinstance(end, WallContact)]
-            yield from flush_findings(self.wall.noun, ends, pose, outline)
+            yield from flush_findings(self.wall_noun, ends, pose, outline)
         for jaw in self.lattices:
             if jaw.travel is not None:
                 yield from opening_findings(jaw, pose.travels[0])
-                if self.wall is not None:
+                if self.walls:
                     lowest = min(peg.row for peg in fixture.pegs if peg.carrier == jaw.name)
                     yield from nearest_row_findings(jaw, lowest, pose.travels[0])
         locators = [(name, contact) for name, peg, contact in named if peg.carrier == self.lattices[0].name]

@@ -1,16 +1,16 @@
 """Carriers that travel: how far jaws open and close, and the stroke and bodies of clamps bolted in a hole.
 
-A jaw has holes of its own and slides. Its separation is counted from the column of the other jaw that is next
-to the opening, or from a wall, so that no peg is nearer to what stands still.
+A jaw has holes of its own and slides. Its separation is counted from a wall, or from the column of the other
+jaw that is next to the opening. So no peg is nearer to what stands still.
 
 A clamp travels along a line of holes. One with a stroke is bolted in the nearest hole behind its tip that
 fits everything. Its body, all that is within its radius of the piece from hole to tip, contains that of the
 same clamp in a nearer hole. Where it clears locators and part, it would from there as well. So a nearer hole
 is left out only because it is off the plate or too near.
 
-The distance of a piece from a side is least at an end of either, where they cross, or, from an arc's outside,
-at the foot of the perpendicular from its centre. From inside a circle it has no minimum between the ends of a
-piece.
+The distance of a straight piece from a side is least at an end of either or where they cross. From an arc's
+outside it may also be least at the foot of the perpendicular from the arc's centre. From inside a circle it
+has no minimum between the ends of a piece.
 """
 
 from __future__ import annotations
@@ -149,11 +149,11 @@ class Stroke:
     Parameters
     ----------
     span : least and most in mm from its hole to its tip; None of one that is its tip alone.
-    wall : what the wall is called that it keeps clear of; None where there is none.
+    wall : what the wall is called that it keeps clear of; empty where there is none.
     """
 
     span: tuple[float, float] | None
-    wall: str | None
+    wall: str
 
     def findings(
         self,
@@ -165,7 +165,7 @@ class Stroke:
     ) -> Iterator[Finding]:
         """Whether a clamp, bolted in its hole, reaches its place and clears wall, locators and part."""
         tip, stroke = clamp.place(pose), -pose.travels[clamp.travel]
-        if self.wall is not None:
+        if self.wall:
             above = tip[1] - clamp.radius
             words = f"{name} enters the {self.wall} by {number(-above)} mm"
             at = f"{name} touches the {self.wall} exactly at the edge of what is allowed"
@@ -185,7 +185,8 @@ class Stroke:
         least, most = self.span
         yield from rule(
             stroke - least + HAIR,
-            f"{name} is bolted {number(stroke)} mm behind its tip, nearer than the {least:g} mm of its stroke",
+            f"{name} is bolted {number(stroke)} mm behind its tip, nearer than the {least:g} mm of its "
+            "stroke",
             f"{name} is bolted exactly at the edge of the least of its stroke",
         )
         yield from rule(
@@ -199,7 +200,8 @@ class Stroke:
             yield from rule(
                 clear + BODY_SLACK,
                 f"{name} enters the workpiece between its hole and its tip by {number(-clear)} mm",
-                f"{name} touches the workpiece between its hole and its tip exactly at the edge of what is allowed",
+                f"{name} touches the workpiece between its hole and its tip exactly at the edge of what is "
+                "allowed",
             )
 
     def nearer_findings(self, name: str, stroke: arb, pitch: float) -> Iterator[Finding]:

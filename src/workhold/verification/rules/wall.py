@@ -1,7 +1,7 @@
 """A straight wall that the part lies flush on, as two contacts at the ends of a hull edge.
 
-What touches the wall, which runs along x at y = 0 with the part above it, is derived from the outline at the
-written pose: the lowest joints and convex arcs. Then its two ends are contacts like any other, each with an
+The wall runs along x at y = 0 with the part above it. What touches it is derived from the outline at the
+written pose: the lowest joints and convex arcs. The two ends are contacts like any other, each with an
 equation of its own: its lowest point is at y = 0.
 """
 
@@ -46,7 +46,7 @@ class Support:
     faces: tuple[int, ...]
 
     def lowest(self, pose: BallPose) -> Point:
-        """Its lowest point in the toolkit's frame, in mm."""
+        """The lowest point in the toolkit's frame, in mm."""
         x, y = turned(self.center, pose.cosine, pose.sine)
         return x + pose.x, y + pose.y - self.bow
 
@@ -146,7 +146,7 @@ def along_wall(end: Support, outline: BallOutline, pose: BallPose) -> tuple[int,
 def flush_findings(
     noun: str, ends: Sequence[tuple[str, Peg, WallContact]], pose: BallPose, outline: BallOutline
 ) -> Iterator[Finding]:
-    """Whether the part lies flush on a wall called ``noun``, with its two named ends where they are written."""
+    """Whether the part lies flush on a wall called ``noun``, its two named ends where they are written."""
     (left, _), (right, _) = places = [contact.place(pose) for _, _, contact in ends]
     words = f"the part does not lie flush on the {noun}"
     yield from rule(right - left - LEAST_FLUSH, words, words)
@@ -156,7 +156,7 @@ def flush_findings(
         yield from rule(low + 2 * FLUSH, words, words)
         beyond = (left - x).max(x - right) - 2 * FLUSH
         if not (low > FLUSH / 2 or beyond < 0):
-            words = f"the part lies on the {noun} at face {face}, beyond the ends that are told"
+            words = f"the part lies on the {noun} at face {face}, beyond its stated ends"
             yield Finding(bool(low < -FLUSH), words)
     for (name, peg, contact), place in zip(ends, places, strict=True):
         if peg.face != min(contact.faces):
