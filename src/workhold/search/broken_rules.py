@@ -281,8 +281,8 @@ def short_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int, str
     """The contact whose pegs are farthest from the ends of their faces."""
     index = int(c.end_distance.argmax())
     return index, (
-        f"a peg touches {unit.text(c.end_distance[index])} from where its face ends for it; the contact margin is "
-        f"{unit.figure(margin)} {unit.abbreviation}."
+        f"a peg touches {unit.text(c.end_distance[index])} from where its face ends for it; "
+        f"the contact margin is {unit.figure(margin)} {unit.abbreviation}."
     )
 
 
@@ -293,8 +293,8 @@ def too_near(frame: Frame, unit: Unit, c: ContactSets) -> tuple[int, str]:
     beyond = BESIDE[frame.quarters if gap >= 0 else (frame.quarters + 2) % 4]
     least = f"{unit.figure(frame.gap)} {unit.abbreviation}"
     return index, (
-        f"the {frame.moving.name} pegs would stand {unit.text(abs(gap))} {beyond} the {frame.standing.name} ones; the "
-        f"smallest gap is {least}."
+        f"the {frame.moving.name} pegs would stand {unit.text(abs(gap))} {beyond} "
+        f"the {frame.standing.name} ones; the smallest gap is {least}."
     )
 
 
@@ -304,7 +304,8 @@ def open_contact(c: ContactSets) -> tuple[int, str]:
     if c.margin[index] > -ROUNDING:
         return (
             index,
-            "the lines of force of the pegs meet in one point or are parallel, so one peg would not press at all.",
+            "the lines of force of the pegs meet in one point or are parallel, "
+            "so one peg would not press at all.",
         )
     pulls = int((c.null[index] < 0).sum())
     many = "one peg" if pulls == 1 else f"{pulls} pegs"

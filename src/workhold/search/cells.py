@@ -23,7 +23,7 @@ Records = NDArray[np.float64]
 
 # Orientations are counted from here, so that no aligned part has its coincidences at the edge of a cell.
 FIRST_ORIENTATION = -0.7320508075688772
-# A block is told the closure margin known so many blocks before it; as many may run at the same time.
+# A block is given the closure margin known so many blocks before it; as many may run at the same time.
 LAG = 8
 # Seconds in which threads are left alone: waking for every small block takes the interpreter from them, and
 # time to wake up.
@@ -90,8 +90,8 @@ def run_blocks(
     Parameters
     ----------
     receive : called from this thread with the records of each block, in the order of the blocks; they are
-        then not kept. It returns the closure margin that further fixtures must reach, which is told to the
-        block ``LAG`` places later: so what a block leaves out does not depend on how fast the others are.
+        then not kept. It returns the closure margin that further fixtures must reach. The block ``LAG``
+        places later is given it, so what a block leaves out does not depend on how fast the others are.
     look : called from this thread with the records of each block as it finishes, in any order.
     stop : called once when the work is cancelled or given up: blocks that run then end soon, with what they
         have found.
@@ -146,11 +146,11 @@ def finished_blocks(
         for no margins.
     """
     first, running, whole = 0, dict[Future[Records], int](), True
-    # Other work in the pool is not to wait behind many blocks, and margins are told to blocks as they are
+    # Other work in the pool is not to wait behind many blocks, and blocks are given margins as these become
     # known.
     alone = pool is None and margins is None
     most = threads * (AHEAD if alone else 2)
-    # Told by the threads themselves: asking each future what has become of it takes longer than a small
+    # The threads report it themselves: asking each future what has become of it takes longer than a small
     # block.
     ended = SimpleQueue[Future[Records]]()
     with ThreadPoolExecutor(max_workers=threads) if pool is None else nullcontext(pool) as workers:

@@ -39,8 +39,8 @@ from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch, contacts
 
 __all__ = ["Sink", "answer", "design"]
 
-# The part of the work, as progress tells it, that finding records is; the rest is deciding which of them are
-# fixtures.
+# The share of the work, as progress reports it, that goes into finding records. The rest decides which of
+# them are fixtures.
 SEARCH = 0.9
 
 
@@ -165,7 +165,10 @@ def answer(
 
 
 def shares_beside_wall(query: Query, cancel: Event | None) -> Locating:
-    """The search beside a wall: of what slides in holes of its own, or of a locator with clamps in the same holes."""
+    """The search beside a wall.
+
+    It is of what slides in holes of its own, or of a locator with clamps in the same holes.
+    """
     # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
     from workhold.search.wall_shares import LatticePairShares, WallShares
 

@@ -32,8 +32,10 @@ __all__ = ["explain", "removals_beside_wall"]
 
 
 def removals_beside_wall(query: Query, alone: bool) -> Removals:
-    """How many pairs of contacts of locator and clamp there are in a toolkit of which one clamp moves, before
-    any rule; what each rule takes away of them; and what comes nearest.
+    """What the rules leave of the pairs of contacts in a toolkit of which one clamp moves.
+
+    It says how many pairs of contacts of locator and clamp there are before any rule, what each rule takes
+    away of them, and what comes nearest.
 
     Parameters
     ----------
@@ -192,8 +194,11 @@ def nearest_turn(query: Query, result: Result) -> str:
 
 
 def changes(query: Query, unit: Unit) -> Iterator[tuple[str, Callable[[], Query], Mapping[str, Any] | None]]:
-    """Changes of a query to try, one at a time: in words; what makes the query, or finds that there is none
-    such; and the fields of the toolkit that it changes, if it does."""
+    """Changes of a query to try, one at a time.
+
+    Each is given in words, then as what makes the query or finds that there is none such. Last come the
+    fields of the toolkit that it changes, if it does.
+    """
     asked, toolkit = query.restrictions, query.toolkit
     if asked.avoid:
         if len(asked.avoid) > 1:

@@ -1,17 +1,18 @@
-"""Two pegs of one lattice that touch a part lying flush on a wall: where they stand, and whether they press it there.
+"""Two pegs of one lattice that touch a part flush on a wall: where they stand, and whether they press it.
 
-On a hull edge the part's orientation and height are fixed. A lattice that slides toward the wall leaves two unknowns, its
-place along the wall and its distance, and each pair of pegs gives two equations: the first peg's centre lies on the offset
-curve of the face it touches, and on that of the second peg's face moved back by the difference of their holes. So pairs are
-the crossings of one curve with the other, moved by a step of the lattice: one of two lines, two of a line and a circle or
-of two circles.
+On a hull edge the part's orientation and height are fixed. A lattice that slides toward the wall leaves two
+unknowns, its place along the wall and its distance. Each pair of pegs gives two equations. The first peg's
+centre lies on the offset curve of the face it touches. It also lies on that of the second peg's face, moved
+back by the difference of their holes. So pairs are the crossings of one curve with the other, moved by a step
+of the lattice. Two lines have one crossing; a line and a circle, or two circles, have two.
 
-Where two curves have a common stretch (parallel lines, equal arcs about one centre) or only graze each other, both normals
-are parallel there. With the wall's they then span no space, so nothing closes (``closure_of``).
+Where two curves have a common stretch (parallel lines, equal arcs about one centre) or only graze each other,
+both normals are parallel there. With the wall's they then span no space, so nothing closes (``closure_of``).
 
-Bounds of the error. Places in the wall's frame are exact to ``off`` mm and directions to ``turn`` radians (``PartOnWall``).
-A crossing is off by ``off`` over the sine of the angle between both normals, as long as that turns no normal by a tenth of
-the angle; elsewhere there is no bound, and the pair is decided in balls.
+Bounds of the error. Places in the wall's frame are exact to ``off`` mm and directions to ``turn`` radians
+(``PartOnWall``). A crossing is off by ``off`` over the sine of the angle between both normals. This holds as
+long as that turns no normal by a tenth of the angle. Elsewhere there is no bound, and the pair is decided in
+balls.
 """
 
 from __future__ import annotations
@@ -61,13 +62,16 @@ class LatticePairs:
 
     Parameters
     ----------
-    feature : (N, 2) touched by the first peg, whose hole has the lower column or, in one column, row, and by the second.
+    feature : (N, 2) touched by the first peg, whose hole has the lower column or, in one column, row, and by
+        the second.
     step : (N, 2) columns and rows from the first peg's hole to the second's.
     branch : (N,) -1 or 1, which of two crossings it is; 1 of two lines.
     point : (N, 2, 2) centres of both pegs, in mm along the hull edge from its start and above it.
     normal : (N, 2, 2) outward unit normals of the part there.
-    slack : (N,) by how many mm the contact nearer to an end of its feature is inside it; infinite on whole circles.
-    reach, swing : (N,) by how many mm places and by how many radians normals may be off; infinite where that is not known.
+    slack : (N,) by how many mm the contact nearer to an end of its feature is inside it; infinite on whole
+        circles.
+    reach, swing : (N,) by how many mm places and by how many radians normals may be off; infinite where that
+        is not known.
     null : (N, 4) forces of the wall's two ends and both pegs, not scaled.
     """
 
@@ -89,24 +93,24 @@ class LatticePairs:
         return len(self.branch)
 
     def take(self, order: IntArray | BoolArray) -> LatticePairs:
-        """Return the pairs of an index array or mask, in its order."""
+        """The pairs of an index array or mask, in its order."""
         return LatticePairs(*(getattr(self, one.name)[order] for one in fields(LatticePairs)))
 
     def candidate(self, number: int, edge: int) -> LatticePair:
-        """Return a pair on a hull edge as balls decide it."""
+        """A pair on a hull edge as balls decide it."""
         features, step = (tuple(values[number].tolist()) for values in (self.feature, self.step))
         return LatticePair(edge, features, step, int(self.branch[number]))
 
     @classmethod
     def joined(cls, parts: list[LatticePairs]) -> LatticePairs:
-        """Return all pairs of several, at least one."""
+        """All pairs of several, at least one."""
         return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
 
 
 def pairs_on(
     lying: PartOnWall, pitch: tuple[float, float], most: tuple[float, float], margin: float
 ) -> Iterator[LatticePairs]:
-    """Yield the pairs of pegs that touch a part on a wall, nearly ``margin`` mm inside their features or farther.
+    """The pairs of pegs that touch a part on a wall, nearly ``margin`` mm inside their features or farther.
 
     Parameters
     ----------
@@ -145,7 +149,7 @@ def pairs_on(
 
 
 def extents(rows: Array) -> tuple[Array, Array]:
-    """Return the least and largest coordinates (F, 2) in mm of features (F, 12), and of ``LOOSE`` past ends of arcs."""
+    """Least and largest coordinates (F, 2) in mm of features (F, 12), and of ``LOOSE`` past ends of arcs."""
     center, axis, is_arc = rows[:, [X, Y]], rows[:, [AXIS_X, AXIS_Y]], rows[:, IS_ARC] != 0.0
     along = np.abs(axis) * rows[:, [HALF_EXTENT]]
     radius = np.where(is_arc, rows[:, RADIUS], 1.0)
@@ -164,7 +168,10 @@ def extents(rows: Array) -> tuple[Array, Array]:
 
 
 def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array) -> Iterator[LatticePairs]:
-    """Yield where the first features of pairs (M, 2) cross the second ones, moved back by steps (M, 2) of a lattice."""
+    """Where the first features of pairs (M, 2) cross the second ones.
+
+    The second ones are moved back by steps (M, 2) of a lattice.
+    """
     rows = lying.rows
     is_arc = rows[feature, IS_ARC] != 0.0
     shift = step * pitch
@@ -198,7 +205,7 @@ def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array
 
 
 def of_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
-    """Return which pairs (M,) of lines cross, the branch, and the place (K, 2) from the middle of the first.
+    """Which pairs (M,) of lines cross, the branch, and the place (K, 2) from the middle of the first.
 
     Parameters
     ----------
@@ -214,7 +221,9 @@ def of_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
 def of_line_and_circle(
     between: Array, axis: Array, radius: Array, off: float
 ) -> tuple[IntArray, Array, Array]:
-    """Return which pairs (M,) of a line and a circle cross, at which branch, and the place (K, 2) from the line's middle.
+    """Which pairs (M,) of a line and a circle cross, at which branch, and the place (K, 2) in mm.
+
+    The place is from the line's middle.
 
     Parameters
     ----------
@@ -228,7 +237,7 @@ def of_line_and_circle(
 
 
 def of_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray, Array, Array]:
-    """Return which pairs (M,) of circles cross, at which branch, and the place (K, 2) from the middle of the first.
+    """Which pairs (M,) of circles cross, at which branch, and the place (K, 2) from the middle of the first.
 
     Parameters
     ----------
@@ -250,7 +259,10 @@ def of_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray,
 def both_of(
     square: Array, size: Array, off: Array | float, foot: Array | float, axis: Array
 ) -> tuple[IntArray, Array, Array]:
-    """Return the pairs (M,) whose half chord has a square (M,) that may be positive, each twice: branch and place (K, 2)."""
+    """The pairs (M,) whose half chord has a square (M,) that may be positive.
+
+    Each comes twice, with its branch and its place (K, 2).
+    """
     met = np.flatnonzero(square > -16.0 * off * size)
     half = np.sqrt(np.maximum(square[met], 0.0))
     foot = np.broadcast_to(foot, square.shape)[met]
@@ -262,7 +274,7 @@ def both_of(
 def touching(
     lying: PartOnWall, feature: IntArray, step: IntArray, branch: Array, point: Array
 ) -> LatticePairs:
-    """Return pairs of pegs with centres (N, 2, 2), which touch features (N, 2), as far as these reach."""
+    """Pairs of pegs with centres (N, 2, 2), which touch features (N, 2), as far as these reach."""
     rows = lying.rows[feature]
     is_arc, radius, half = (rows[:, :, k] for k in (IS_ARC, RADIUS, HALF_EXTENT))
     is_arc = is_arc != 0.0
@@ -287,23 +299,24 @@ def touching(
 
 
 def cross(one: Array, other: Array) -> Array:
-    """Return cross products of vectors (..., 2)."""
+    """Cross products of vectors (..., 2)."""
     return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
 
 
 def perpendicular(vectors: Array) -> Array:
-    """Return vectors (..., 2) turned by a quarter turn, counter-clockwise."""
+    """Vectors (..., 2) turned by a quarter turn, counter-clockwise."""
     return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
 def closure_of(
     pairs: LatticePairs, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, BoolArray, BoolArray]:
-    """Return pairs with the forces of wall and pegs, which (N,) press the part on the wall, and of which that is open.
+    """Pairs with the forces of wall and pegs, which (N,) press the part on the wall, and of which it is open.
 
-    With normals a, b of the part at the pegs and moments m, M about the start of the hull edge of length l, the null vector
-    of the four wrenches is (l (p a_v + q b_v) - t, t, p l, q l) with p = -b_u sign a_u, q = |a_u| and t = p m + q M. Its
-    first two add up to l times the sine of the angle between both normals.
+    Let a, b be the normals of the part at the pegs, and m, M their moments about the start of the hull edge
+    of length l. Let p = -b_u sign a_u, q = |a_u| and t = p m + q M. The null vector of the four wrenches is
+    then (l (p a_v + q b_v) - t, t, p l, q l). Its first two add up to l times the sine of the angle between
+    both normals.
     """
     length = problem.wrench_length
     a, b = pairs.normal[:, 0], pairs.normal[:, 1]
@@ -329,7 +342,7 @@ def closure_of(
 def are_pressed(
     pairs: LatticePairs, edge: int, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, IntArray, int]:
-    """Return the pairs that press the part on a hull edge, the numbers of those left open, and how many needed balls.
+    """Pairs that press the part on a hull edge, the numbers of those left open, and how many needed balls.
 
     Pairs whose doubles are too coarse are decided in balls, and their places and forces taken from there.
     """

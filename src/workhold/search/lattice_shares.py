@@ -111,8 +111,10 @@ class LatticeShares:
         return self.seats(found, (low, high)), is_whole
 
     def seats(self, records: Sequence[Array], within: tuple[float, float]) -> Iterator[Seats]:
-        """The seats of contacts (N, 19) of each direction; where only the best are asked for, those first that
-        may be at them, and none that cannot."""
+        """The seats of contacts (N, 19) of each direction.
+
+        Where only the best are asked for, those that may be at them come first, and none that cannot.
+        """
         query, total = self.collector.query, sum(map(len, records))
         if query.best is None or (self.shares == 1 and total <= COUNTED_WHOLE):
             yield self.seats_among(records, within)

@@ -1,9 +1,9 @@
 """The first fixtures of a list with their seating, ordered anew by it.
 
-A search finds and ranks fixtures by figures that do without seating. The seating of the first of them, as many
-as a query asks for, is worked out, each pattern of pegs once. Then they are ordered by the query's ranking, in
-which the warnings of the seating count as those of quality do. Equal fixtures keep their order. Those whose
-seating is not as asked are left out, and so are then all whose seating was not worked out.
+A search finds and ranks fixtures by figures that do without seating. The seating of the first of them, as
+many as a query asks for, is worked out, each pattern of pegs once. Then they are ordered by the query's
+ranking, in which the warnings of the seating count as those of quality do. Equal fixtures keep their order.
+Those whose seating is not as asked are left out, and so are then all whose seating was not worked out.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from workhold.seating.pattern import refuse_unseated
 
 __all__ = ["Sink", "deliver_seated", "refuse_unasked", "seated_answer"]
 
-# The part of the work, as progress tells it, that is the search.
+# The share of the work, as progress reports it, that is the search.
 SEARCHED = 0.3
 
 
@@ -137,7 +137,10 @@ def deliver_seated(
 
 
 def is_put_in_by_hand(query: Query) -> bool:
-    """Whether the part is pushed against its locators by hand, as with two clamps, of which none brings it home."""
+    """Whether the part is pushed against its locators by hand.
+
+    So it is with two clamps, of which none brings it home.
+    """
     return not query.toolkit.closes_at_once
 
 
@@ -153,8 +156,8 @@ def refuse_unasked(query: Query) -> None:
         refuse_unseated(query.toolkit)
     elif query.has_seating_rules or not SEATING_KEYS.isdisjoint(query.ranking):
         raise InputError(
-            "with two clamps the part is put against its locators by hand, so no opening, reading or other figure of "
-            "seating can choose or rank fixtures: ask for the seating alone."
+            "with two clamps the part is put against its locators by hand, so no opening, reading "
+            "or other figure of seating can choose or rank fixtures: ask for the seating alone."
         )
 
 

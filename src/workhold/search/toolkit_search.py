@@ -1,6 +1,6 @@
 """The search of a toolkit: its lattice steps, its blocks of work, and the count of simultaneous contacts.
 
-Two pegs of one carrier are a lattice step apart; two carriers share the direction of rows and differ by the
+Two pegs of one carrier are a lattice step apart. Two carriers share the direction of rows and differ by the
 travel of the one that moves, along x in the frame of the search. What is particular to a toolkit is data
 (``fixels.toolkit``); which kernels seek an arrangement of pegs is said in ``KERNELS``. The number of
 simultaneous contacts is the measure of how much there is to search (paper, section 5).
@@ -140,10 +140,9 @@ def tables_of(problem: Problem, loose: Array, threads: int, cancel: Event | None
 def may_lie_at(
     edges: Array, angles: Collection[tuple[float, float]], half_turns: int, turned: float = 0.0
 ) -> NDArray[np.bool_]:
-    """Which cells (K,) between edges (K + 1,) of psi hold orientations of the part in one of some ranges in
-    degrees.
+    """Which cells (K,) between edges (K + 1,) of psi hold orientations of the part in some ranges in degrees.
 
-    The part's angle is -psi, and ``turned`` degrees more in the toolkit than in the frame of the search; over
+    The part's angle is -psi, and ``turned`` degrees more in the toolkit than in the frame of the search. Over
     one half turn of cells an angle stands for its opposite as well.
     """
     wanted = np.full(len(edges) - 1, not angles)
@@ -223,7 +222,7 @@ class ToolkitSearch:
 
     @property
     def statistics(self) -> dict[str, int]:
-        """Counts that tell how much work the search was (see ``Result.statistics``)."""
+        """Counts that show how much work the search was (see ``Result.statistics``)."""
         totals = self.totals
         return {
             "features": len(self.problem.rows),
@@ -242,9 +241,11 @@ class ToolkitSearch:
     def blocks(
         self, types: Collection[str], least: int = LEAST_BLOCKS, within: tuple[float, float] | None = None
     ) -> list[Block]:
-        """Blocks of work that together find all fixtures of the arrangements of given names, about ``least``
-        or more for a half turn; or all those ``within`` a range of orientations of the workpiece, in degrees,
-        and some near it."""
+        """Blocks of work that together find all fixtures of the arrangements of given names.
+
+        There are about ``least`` or more for a half turn. With ``within``, a range of orientations of the
+        workpiece in degrees, they find all fixtures in it, and some near it.
+        """
         # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot
         # cross.
         cells = int(
@@ -345,7 +346,7 @@ def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | Non
 
     Nothing else is asked of them: neither the gap between the jaws nor closure nor clamping. Sets that rest
     on a chord of parallel faces and right pegs on faces square to the jaws' motion count only where they can
-    be told apart.
+    be distinguished.
 
     Parameters
     ----------

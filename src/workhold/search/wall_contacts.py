@@ -5,11 +5,11 @@ along it from its start, v up from it. The lines are rows, of one v each, or col
 meets a straight feature in one point at most and an arc in two. A locator and a clamp press the part against
 the wall where the null vector of the four wrenches, in doubles, says so.
 
-Bounds of the error. Everything is exact but for the rounding of the tangent of the hull edge, by ``turn``
-radians, and of sums and products of lengths up to ``size`` mm, by ``off`` mm together. A contact is then off
-by ``off`` over the sine of the angle at which its line meets the feature. Its normal is off by ``turn`` and,
-on an arc, by the contact's error over the radius; the factors below are generous. Where a line only grazes an
-arc there is no bound, and the contact is decided in balls.
+Bounds of the error. Everything is exact but for two roundings. The tangent of the hull edge is off by
+``turn`` radians; sums and products of lengths up to ``size`` mm are off by ``off`` mm together. A contact is
+then off by ``off`` over the sine of the angle at which its line meets the feature. Its normal is off by
+``turn`` and, on an arc, by the contact's error over the radius; the factors below are generous. Where a line
+only grazes an arc there is no bound, and the contact is decided in balls.
 """
 
 from __future__ import annotations
@@ -203,8 +203,8 @@ def on_arcs(
     some = rows[round_]
     radius, place = some[:, RADIUS], some[:, along[1]]
     # Beside a grazing line the square root below is of what rounding leaves: the place is off by no more than
-    # both roots. Its normal is across the line to within its swing, so no contact there is told to press, but
-    # by balls.
+    # both roots. Its normal is across the line to within its swing, so only balls decide that a contact there
+    # presses.
     least = 16.0 * lying.off * radius
     low, high = heights(some, across, 3.0 * np.sqrt(least) + PAST_END)
     line, which = np.nonzero(np.abs(levels[:, None] - (place + (low + high) / 2.0)) <= (high - low) / 2.0)
@@ -255,9 +255,11 @@ def least_ahead(rows: Array) -> Array:
 
 
 def heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
-    """Least and largest coordinates (F,) in mm from their centres of contacts with arcs (F, 12) that are not
-    far past the ends, and ``spare`` (F,) mm more; ``across`` are the columns of their axes' parts across the
-    coordinate and along it."""
+    """Least and largest coordinates (F,) in mm of contacts with arcs (F, 12), from the arcs' centres.
+
+    The contacts are not far past the ends, and the range is ``spare`` (F,) mm wider on both sides. ``across``
+    are the columns of the axes' parts across the coordinate and along it.
+    """
     turn, half = np.arctan2(np.abs(rows[:, across[0]]), rows[:, across[1]]), half_angles(rows)
     low = -np.cos(np.maximum(np.pi - turn - half, 0.0))
     return rows[:, RADIUS] * low - spare, rows[:, RADIUS] * np.cos(np.maximum(turn - half, 0.0)) + spare
@@ -290,9 +292,11 @@ class ContactPairs:
 
 
 def may_oppose(lying: PartOnWall, one: PinContacts, clamps: ContactPairs, problem: Problem) -> BoolArray:
-    """Which pairs (M,) :func:`closure` may find to press the part: those of whose normals a, b the parts
-    along the wall are opposed, for the locator's force is -b_u sign a_u times the length of the hull edge;
-    about half of all."""
+    """Which pairs (M,) :func:`closure` may find to press the part, about half of all.
+
+    Of their normals a, b the parts along the wall are opposed, for the locator's force is -b_u sign a_u times
+    the length of the hull edge.
+    """
     length, two = problem.wrench_length, clamps.places
     reach, swing = (
         max(x.max(initial=0.0), y.max(initial=0.0))
@@ -368,13 +372,15 @@ def closure(
     push: tuple[float, float] | None,
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled; how much (M,) of its force
-    the clamp passes on in its direction; which pairs (M,) press the part, and of which that is open.
+    """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled, and what follows from them.
 
-    Where both pegs move towards the wall, ``push`` is None: they pass on what the wall takes up, in parts of
-    the second one's force. With normals a, b and moments m, M of locator and clamp about the start of the
-    hull edge of length l, lengths in parts of L, and p = -b_u sign a_u, q = |a_u|, the null vector is (l (p
-    a_v + q b_v) - t, t, p l, q l) with t = p m + q M.
+    These are how much (M,) of its force the clamp passes on in its direction, which pairs (M,) press the
+    part, and of which that is open. Where both pegs move towards the wall, ``push`` is None: they pass on
+    what the wall takes up, in parts of the second one's force.
+
+    Let a, b be the normals and m, M the moments of locator and clamp about the start of the hull edge of
+    length l, lengths in parts of L. With p = -b_u sign a_u, q = |a_u| and t = p m + q M, the null vector is
+    (l (p a_v + q b_v) - t, t, p l, q l).
     """
     length = problem.wrench_length
     a, b = one.normal[locator], two.normal

@@ -55,7 +55,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Forces that may be off by more are told by balls: whether two clamps close is often a matter of an exact
+# Forces that may be off by more are computed in balls: whether two clamps close is often a matter of an exact
 # zero.
 DOUBTFUL = 1e-10
 # Pairs of locator and clamp looked at together.
@@ -69,15 +69,15 @@ class WallSearch:
     Parameters
     ----------
     problem : what is searched.
-    explains : whether it is to tell what comes nearest.
+    explains : whether it is to say what comes nearest.
     plate, clamp : in whose holes the locator stands, and the clamp.
     push : unit vector along which the clamp moves as it clamps.
     locators, examined, verified, escalated : how many contacts of the locator and pairs there were, how many
         pairs were proven to press the part, and how many needed balls.
     undecided : the pairs that not even they decide, with the number of their hull edge.
     is_square : whether every face that was offered is parallel or square to the wall.
-    nearest : where it is asked for, and as long as none is proven, the smallest share of the four contacts in
-        the pair in which it is the largest, and that pair.
+    nearest : the smallest share of the four contacts in the pair in which it is the largest, and that pair.
+        It is known where it is asked for, and as long as none is proven.
     """
 
     problem: Problem
@@ -109,7 +109,7 @@ class WallSearch:
         return (part for _, part in fixtures_on([self], edge))
 
     def tables(self, edge: int) -> Iterator[FixtureTable]:
-        """Those whose clamps have a place, some at a time."""
+        """Tables of the fixtures whose clamps have a place, some at a time."""
         return (placed_on_wall(part, self.problem) for part in self.fixtures(edge))
 
     def nearest_alone(self) -> tuple[FixtureTable, Problem]:
@@ -120,7 +120,7 @@ class WallSearch:
         return wall_table(self.nearest[1], np.zeros(1, np.int64), problem), problem
 
     def on_rows(self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array) -> PinContacts:
-        """Contacts of pegs in rows of holes, those where a row grazes an arc told by balls."""
+        """Contacts of pegs in rows of holes; balls decide those where a row grazes an arc."""
         problem = self.problem
         places = pin_contacts_on(lying, chosen, rows, False, problem.contact_margin)
         near = np.flatnonzero(places.reach > SAME_PLACE / 2)
@@ -219,7 +219,7 @@ class WallSearch:
         if self.explains and self.verified == 0:
             size = np.abs(null).sum(axis=1)
             share = np.where(size > LEAST_SPAN, null.min(axis=1) / np.maximum(size, LEAST_SPAN), -inf)
-            # Forces are told per clamp force, which there has to be.
+            # Forces are given per clamp force, which there has to be.
             least = np.minimum(np.abs(null.sum(axis=1)), np.abs(null[:, 3] * push))
             share[least < LEAST_CLAMPING * size] = -inf
             best = int(share.argmax())
@@ -236,8 +236,10 @@ class WallSearch:
         two: PinContacts,
         locator: IntArray,
     ) -> WallFixtures:
-        """Pairs told by balls where doubles do not tell well enough: of two clamps how far their forces may
-        be off, too."""
+        """Pairs computed in balls where doubles are too coarse.
+
+        Of two clamps this gives how far their forces may be off, too.
+        """
         places = self.placed(pressed, edge, one, two, locator)
         if not self.problem.pairing:
             return places
@@ -255,8 +257,10 @@ class WallSearch:
     def placed(
         self, pressed: WallFixtures, edge: int, one: PinContacts, two: PinContacts, locator: IntArray
     ) -> WallFixtures:
-        """Contacts where doubles may not tell well enough where they are, or how they press, told by balls:
-        near a row or a column that grazes an arc."""
+        """Contacts computed in balls where doubles may not say well enough where they are, or how they press.
+
+        Such contacts are near a row or a column that grazes an arc.
+        """
         far = np.flatnonzero(np.maximum(one.reach[locator], two.reach) > SAME_PLACE / 2)
         places, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
         for k in far.tolist():
@@ -282,8 +286,11 @@ class WallSearch:
 
 
 def allowed_edges(problem: Problem) -> list[int]:
-    """The numbers of the hull edges on which a part may lie: at an angle that is allowed, on faces that may be
-    touched, and with no keep-out zone reaching into the wall."""
+    """The numbers of the hull edges on which a part may lie.
+
+    There it is at an angle that is allowed, on faces that may be touched, and no keep-out zone reaches into
+    the wall.
+    """
     part, asked = problem.workpiece, problem.restrictions
     avoided = {face.number for face in part.faces if not set(face.segments).isdisjoint(asked.avoid)}
     out = []

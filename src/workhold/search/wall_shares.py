@@ -161,12 +161,12 @@ class LatticePairSearch:
     Parameters
     ----------
     problem : what is searched.
-    explains : whether it is to tell what comes nearest.
-    examined, verified, escalated : how many pairs touch the part, how many are proven to press it, and how many needed
-        balls.
+    explains : whether it is to say what comes nearest.
+    examined, verified, escalated : how many pairs touch the part, how many are proven to press it, and how
+        many needed balls.
     undecided : pairs that not even these decide, for the account.
-    nearest : where it is asked for and none is proven, the largest share that the least contact of a pair has in its forces,
-        and that pair with its hull edge.
+    nearest : the largest share that the least contact of a pair has in its forces, and that pair with its
+        hull edge. It is known where it is asked for and none is proven.
     """
 
     problem: Problem
@@ -188,7 +188,7 @@ class LatticePairSearch:
         return self.problem.toolkit.moving
 
     def fixtures(self, edge: int) -> Iterator[LatticePairs]:
-        """Yield the pairs that press the part as it lies on a hull edge, some at a time."""
+        """The pairs that press the part as it lies on a hull edge, some at a time."""
         problem, lying = self.problem, lying_on(self.problem, edge)
         for pairs in pairs_on(lying, self.lattice.pitch, last_holes(self.lattice), problem.contact_margin):
             good, open_, sharpened = are_pressed(pairs, edge, lying, problem)
@@ -201,20 +201,20 @@ class LatticePairSearch:
             yield good
 
     def tables(self, edge: int) -> Iterator[FixtureTable]:
-        """Yield those that have a place, some at a time."""
+        """Tables of the pairs that have a place, some at a time."""
         return (self.placed(pairs, edge) for pairs in self.fixtures(edge))
 
     def nearest_alone(self) -> tuple[FixtureTable, Problem]:
-        """Return the pair that comes nearest, as a table, and its search."""
+        """The pair that comes nearest, as a table, and its search."""
         assert self.nearest is not None
         return self.nearest[1], self.problem
 
     def look_nearer(self, pairs: LatticePairs, edge: int) -> None:
-        """Keep the pair that is nearest to pressing the part."""
+        """Keeps the pair that is nearest to pressing the part."""
         null = pairs.null
         size = np.abs(null).sum(axis=1)
         share = np.where(size > LEAST_SPAN, null.min(axis=1) / np.maximum(size, LEAST_SPAN), -inf)
-        # Forces are told per unit of the lattice's, which there has to be.
+        # Forces are given per unit of the lattice's, which there has to be.
         share[np.abs(null[:, :2].sum(axis=1)) < LEAST_SPAN] = -inf
         best = int(share.argmax())
         if share[best] > (-inf if self.nearest is None else self.nearest[0]):
@@ -222,7 +222,10 @@ class LatticePairSearch:
             self.nearest = float(share[best]), self.table(chosen, edge, np.zeros(1, np.int64))
 
     def placed(self, pairs: LatticePairs, edge: int) -> FixtureTable:
-        """Return pairs as the lattice holds them, its lowest peg in row 0, or farther back where it opens no wider."""
+        """Pairs as the lattice holds them.
+
+        Its lowest peg is in row 0, or farther back where it opens no wider.
+        """
         pairs = listed_once(pairs)
         travel, rows = self.lattice.travel, last_holes(self.lattice)[1]
         assert travel is not None
@@ -237,7 +240,10 @@ class LatticePairSearch:
         return self.table(pairs.take(fits), edge, back[fits])
 
     def table(self, pairs: LatticePairs, edge: int, back: NDArray[np.int64]) -> FixtureTable:
-        """Return the table of pairs on a hull edge, their lowest rows so far (N,) back; only the closure margin is known."""
+        """The table of pairs on a hull edge, their lowest rows so far (N,) back.
+
+        Only the closure margin is known.
+        """
         flush, problem, count = self.problem.workpiece.flush, self.problem, len(pairs)
         column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
         column[:, 3] = pairs.step[:, 0]
@@ -260,7 +266,7 @@ class LatticePairSearch:
         )
 
     def entry(self, pairs: LatticePairs, number: int, edge: int) -> Undecided:
-        """Return a pair that is not decided, for the account."""
+        """A pair that is not decided, for the account."""
         flush, step = self.problem.workpiece.flush, pairs.step[number].tolist()
         one, other = self.problem.faces[pairs.feature[number]].tolist()
         title, rows = self.problem.toolkit.arrangements[0].title, (0, 0, max(-step[1], 0), max(step[1], 0))
@@ -269,7 +275,10 @@ class LatticePairSearch:
 
 
 def listed_once(pairs: LatticePairs) -> LatticePairs:
-    """Return one of the pairs that are the same: contacts at a tangent joint are found on both features that meet there."""
+    """One of the pairs that are the same.
+
+    Contacts at a tangent joint are found on both features that meet there.
+    """
     place = pairs.point.reshape(-1, 4) @ np.array([1.0, 0.7548776662, 0.5698402910, 0.4301597090])
     return pairs.take(first_of_each((*pairs.step.T,), place, pairs.feature))
 
@@ -293,7 +302,7 @@ class LatticePairShares:
 
     @classmethod
     def of(cls, query: Query, cancel: Event | None) -> LatticePairShares:
-        """Return the shares of a query."""
+        """The shares of a query."""
         search = LatticePairSearch(Problem.of(query))
         return cls(search, RankedTable(query, search.problem), search.edges, cancel)
 
@@ -303,7 +312,7 @@ class LatticePairShares:
         return len(self.edges)
 
     def look(self, share: int, progress: Progress | None) -> tuple[list[FixtureTable], bool]:
-        """Return the fixtures on a hull edge."""
+        """The fixtures on a hull edge."""
         parts = []
         for pairs in self.search.fixtures(self.edges[share]):
             parts.append(pairs)
@@ -312,16 +321,16 @@ class LatticePairShares:
         return self.together(parts, share), True
 
     def together(self, parts: list[LatticePairs], share: int) -> list[FixtureTable]:
-        """Return the fixtures of some pairs on a hull edge, where there are any, each once."""
+        """The fixtures of some pairs on a hull edge, where there are any, each once."""
         return [self.search.placed(LatticePairs.joined(parts), self.edges[share])] if parts else []
 
     def account(self) -> Account:
-        """Return what became of all pairs so far."""
+        """What became of all pairs so far."""
         search = self.search
         return Account(search.examined, search.verified, search.escalated, 0, tuple(search.undecided))
 
     def work(self, done: int, complete: bool) -> Work:
-        """Return how the search went, when so many hull edges were looked at to their end."""
+        """How the search went, when so many hull edges were looked at to their end."""
         search = self.search
         statistics = {
             "features": len(search.problem.rows),
@@ -332,7 +341,7 @@ class LatticePairShares:
         return Work(complete, statistics, cells=done)
 
     def why_none(self) -> str:
-        """Return why a search that came to its end has no fixture."""
+        """Why a search that came to its end has no fixture."""
         search, wording = self.search, self.collector.query.toolkit.wording
         never, apart, square, loose = no_fixture_notes(wording)
         if search.verified:
