@@ -172,7 +172,7 @@ def listed_once(c: Candidates) -> Candidates:
 
     A contact exactly at a tangent joint is found on both faces that meet there. Two fixtures with the same
     holes and the same orientation may still differ in where the workpiece lies; one number that mixes all
-    that tells them apart.
+    that distinguishes them.
     """
     if len(c.standing) == 0:
         return c
@@ -187,8 +187,10 @@ def listed_once(c: Candidates) -> Candidates:
 
 
 def place_number(point: Array, gap: Array) -> Array:
-    """A number (N,) that tells places of the workpiece apart: of a peg's centre (N, 2) in its frame and gaps
-    (N,) in mm."""
+    """A number (N,) that distinguishes places of the workpiece.
+
+    It mixes a peg's centre (N, 2) in the workpiece's frame and gaps (N,), both in mm.
+    """
     return np.asarray(point @ np.array([1.0, 0.7548776662]) + 0.5698402910 * gap)
 
 

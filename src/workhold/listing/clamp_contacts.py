@@ -178,8 +178,9 @@ def contacts_of_candidates(c: Candidates, problem: Problem, direction: str) -> C
 def sharpened(
     c: Candidates, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
 ) -> tuple[Array, Array, Array]:
-    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts, told by balls where doubles leave
-    forces in doubt.
+    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts.
+
+    They are computed in balls where doubles leave forces in doubt.
 
     Parameters
     ----------
@@ -248,8 +249,8 @@ def doubts(inverse: Array, taken: Array, rows: Array, push: Array, problem: Prob
     products.
 
     A polished place is off by the inverse of the contact equations times their rounding, and a tip along its
-    line by that over its push; by so much over its radius a normal is turned, and by so much over L moments
-    are off. First-order, and doubled.
+    line by that over its push. A normal is turned by so much over its radius, and moments are off by so much
+    over L. The bound is of first order, and doubled.
     """
     size = float(np.abs(problem.rows[:, [X, Y, RADIUS]]).max()) + problem.wrench_length
     norm = np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)

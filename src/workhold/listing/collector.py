@@ -1,10 +1,10 @@
-"""Fixtures collected while a search goes on, all of them or the best: decided, listed once, measured and ranked.
+"""Fixtures collected while a search goes on, all or the best: decided, listed once, measured and ranked.
 
 Records of the kernels are decided, brought to the listed form, placed in the toolkit and listed once. Of the
 best alone as many are kept as the query asks for, and they say which closure margin a further one must reach.
 
 Of all, records come in the order of the search. Those decided are sorted by holes, so that fixtures found
-twice lie together; each part of that order is listed and measured on some thread; and the parts are sorted by
+twice lie together. Each part of that order is listed and measured on some thread, and the parts are sorted by
 rank. Rows of equal rank stay in the order of their identities. With a folder no more than a few parts are in
 memory at a time; the outcome does not depend on it.
 """
@@ -106,7 +106,7 @@ class Batches:
 
 
 # Records are decided when so many are waiting, or as many as are to be kept if that is more: soon where they
-# tell a margin that further ones must reach, else in blocks that cost the least.
+# give a margin that further ones must reach, else in blocks that cost the least.
 WAITING, WAITING_LONG = 64, 1 << 13
 
 

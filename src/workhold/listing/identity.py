@@ -7,10 +7,10 @@ images, which stands for the set.
 
 Glossary
 --------
-near duplicates : fixtures that a machinist would call one way to hold the part: of one arrangement, all
-    square or all tilted, whose pegs touch the same faces for each carrier. Rotations and mirror images of the
-    part onto itself and the half turn that swaps the carriers make no difference. Such fixtures differ by a
-    row or a column more or less, or by the part's symmetry.
+near duplicates : fixtures that a machinist would call one way to hold the part. They are of one arrangement,
+    all square or all tilted, and their pegs touch the same faces for each carrier. Rotations and mirror
+    images of the part onto itself and the half turn that swaps the carriers make no difference. Such fixtures
+    differ by a row or a column more or less, or by the part's symmetry.
 entry : the first of some near duplicates, and how many come after it.
 """
 
@@ -220,7 +220,7 @@ class SetCount:
         self.found = np.zeros(len(self.identity.toolkit.arrangements), np.int64)
 
     def add(self, table: FixtureTable) -> None:
-        """Count further fixtures."""
+        """Counts further fixtures."""
         self.found += np.bincount(table.arrangement, minlength=len(self.found))
         if self.identity.is_symmetric and len(table):
             words, pose = self.identity.smallest(table)

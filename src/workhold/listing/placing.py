@@ -168,7 +168,7 @@ def placed_as_is(c: Candidates, frame: Frame) -> Arranged:
 
 
 def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntArray) -> Arranged:
-    """Move fixtures on until no peg stands in a blocked hole.
+    """Moves fixtures on until no peg stands in a blocked hole.
 
     Parameters
     ----------

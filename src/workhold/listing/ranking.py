@@ -67,7 +67,7 @@ def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[ND
     for place, key in enumerate(ranking):
         number = ranked_number(key)
         assert number is not None
-        # Rounding must not tell fixtures apart that are equal, so what is coarse is rounded finely first.
+        # Rounding must not separate fixtures that are equal, so what is coarse is rounded finely first.
         values = np.round(quality[:, number], FIGURE_DECIMALS)
         if place < len(ranking) - 1:
             values = coarse(values)

@@ -46,7 +46,7 @@ __all__ = [
     "summed",
 ]
 
-# The parts of the work after the search, as progress tells it, when all is decided and when all is measured.
+# The shares of the work, as progress reports it, that are done when all is decided and when all is measured.
 DECIDED, MEASURED = 0.5, 0.8
 
 

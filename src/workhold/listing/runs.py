@@ -60,9 +60,9 @@ def key_of(*numbers: NDArray[Any]) -> Keys:
 def order_of(keys: Keys) -> NDArray[np.intp]:
     """The order (N,) of keys, equal ones as they stand.
 
-    Comparing bytes takes long. So the words that keys are made of become one number, each by its distance
-    from the least of its kind or, where that is too much for a number, by its rank; the number is sorted with
-    the index behind it.
+    Comparing bytes takes long. So the words that keys are made of become one number. Each counts by its
+    distance from the least of its kind or, where that is too much for a number, by its rank. The number is
+    sorted with the index behind it.
     """
     count = max(len(keys), 1)
     number, size = np.zeros(len(keys), np.uint64), 1

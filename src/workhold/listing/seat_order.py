@@ -1,24 +1,26 @@
-r"""The order in which seats are looked at when only the best fixtures are asked for, and where the search may stop.
+r"""The order in which seats are looked at when only the best fixtures are asked for, and where that may stop.
 
-Contacts of three locators and one clamp are grouped by seat before they are proven. What the locators alone say of a
-fixture bounds its rank from above, whatever its two clamps are:
+Contacts of three locators and one clamp are grouped by seat before they are proven. What the locators alone
+say of a fixture bounds its rank from above, whatever its two clamps are:
 
 - location error and tilt are the seat's alone, the same for all its clamps;
-- the least distance to an end or an edge, and the smallest face, are those of five contacts, so no larger than those of
-  three; warnings of contacts near an edge are at least those of the locators;
-- points and warnings grow with location error, contacts near an edge, tilt, a strong peg and a small face. Without the
-  clamps' share they can only be fewer;
-- the closure margin is at most 1/5, for five shares sum to 1, and clamp freedom at most 90 degrees; forces are above zero.
+- the least distance to an end or an edge, and the smallest face, are those of five contacts, so no larger
+  than those of three. Warnings of contacts near an edge are at least those of the locators;
+- points and warnings grow with location error, contacts near an edge, tilt, a strong peg and a small face.
+  Without the clamps' share they can only be fewer;
+- the closure margin is at most 1/5, for five shares sum to 1, and clamp freedom at most 90 degrees; forces
+  are above zero.
 
-Rounding to digits never turns two numbers round. So key by key the bound is no worse than the fixture's own key, and so is
-the whole in lexicographic order. Seats are looked at in the order of their bounds. Once as many fixtures are kept as are
-asked for, and the next bound is worse than the last of them, no further seat holds one that is listed. Seats of equal
-bounds are looked at, for what ranks alike is listed in the order of holes.
+Rounding to digits never turns two numbers round. So key by key the bound is no worse than the fixture's own
+key, and so is the whole in lexicographic order. Seats are looked at in the order of their bounds. The search
+may stop once as many fixtures are kept as are asked for, and the next bound is worse than the last of them.
+Then no further seat holds one that is listed. Seats of equal bounds are looked at, for what ranks alike is
+listed in the order of holes.
 
-Seats are taken whole, with all contacts that may be theirs. A group is one of holes and orientation. Contacts whose
-orientation is not well known are put together with all others of the same holes. So a group holds every seat that it
-touches, and what is found at it does not depend on the others. Each place in a group is bounded by itself, and the best
-counts. A group with a contact whose place is not well known has no bound.
+Seats are taken whole, with all contacts that may be theirs. A group is one of holes and orientation. Contacts
+whose orientation is not well known are put together with all others of the same holes. So a group holds every
+seat that it touches, and what is found at it does not depend on the others. Each place in a group is bounded
+by itself, and the best counts. A group with a contact whose place is not well known has no bound.
 """
 
 from __future__ import annotations
@@ -63,8 +65,8 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 LOCATORS = 3
-# Radians. Contacts whose orientation is known less well are put together with all others of the same holes, and bound
-# nothing; so are those that are this near to where orientations are counted from.
+# Radians. Contacts whose orientation is known less well are put together with all others of the same holes,
+# and bound nothing; so are those that are this near to where orientations are counted from.
 WELL_KNOWN, AT_START = 1e-7, 1e-5
 # Radians. Orientations are counted from here, which is no angle that parts have for a reason.
 START = 0.123456789
@@ -103,13 +105,16 @@ class SeatGroups:
     bounds: Array
 
     def reach(self, last: Array | None) -> int:
-        """The number of groups, the first ones, that may hold what ranks no worse than keys (R,); all for None."""
+        """The number of groups, the first ones, that may hold what ranks no worse than keys (R,).
+
+        All may for None.
+        """
         if last is None:
             return len(self.ends)
         return len(self.ends) - int(is_worse(self.bounds, last).sum())
 
     def batches(self, kept: RankedTable, together: int = FIRST_CONTACTS) -> Iterator[IntArray]:
-        """Yield numbers of contacts, sorted, of more and more groups, until what is kept cannot get better."""
+        """Numbers of contacts, sorted, of more and more groups, until what is kept cannot get better."""
         first = 0
         while first < (end := self.reach(kept.last)):
             begin = int(self.ends[first - 1]) if first else 0
@@ -204,13 +209,13 @@ def best_known(off: Array, starts: IntArray) -> IntArray:
 
 
 def seat_numbers(records: Array, problem: Problem) -> tuple[NDArray[np.uint64], Array, Array, Array, Array]:
-    """What tells the seats of contacts (N, 19) apart, whatever the direction of the clamp.
+    """What distinguishes the seats of contacts (N, 19), whatever the direction of the clamp.
 
     Returns
     -------
-    Five arrays (N,): a number for the holes of locators, the same wherever they are on the plate; orientations from
-    ``START`` on, and how far they may be off; a number for the place of the part beside the holes in mm, and how far that
-    may be off.
+    Five arrays (N,). The first is a number for the holes of locators, the same wherever they are on the
+    plate. Then come orientations from ``START`` on, and how far they may be off. The last two are a number
+    for the place of the part beside the holes in mm, and how far that may be off.
     """
     frame, pitch = problem.frame, problem.toolkit.carriers[0].pitch
     columns, rows = (
@@ -242,7 +247,10 @@ def keys_bounding(records: Array, problem: Problem, query: Query) -> Array:
 
 
 def best_figures(records: Array, problem: Problem, query: Query) -> Array:
-    """Figures of quality (N, F), none of a fixture with these locators being better; NaN where nothing is known."""
+    """Figures of quality (N, F), none of a fixture with these locators being better.
+
+    NaN stands where nothing is known.
+    """
     touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
     c = candidates_of(records, problem)
     faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)

@@ -223,7 +223,7 @@ class ClampedSeats:
         return half_turns(self.toolkit)
 
     def add(self, seats: Seats) -> None:
-        """Pair the clamps of further seats."""
+        """Pairs the clamps of further seats."""
         self.looked_at += len(seats)
         # Of opposite directions half a turn makes one fixture another, so that only one half turn of seats is
         # paired.
