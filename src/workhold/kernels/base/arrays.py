@@ -54,7 +54,7 @@ def eliminate(matrix: Array, inverse: Array) -> float:
         determinant *= abs(pivot)
         if not determinant > 0.0:
             return determinant
-        # Told by name, the pivot's row is not read again for each row that it is taken from.
+        # With a name for each entry, the pivot's row is not read again for each row that it is taken from.
         a, b, c, d = (
             matrix[best, 0] / pivot,
             matrix[best, 1] / pivot,

@@ -12,7 +12,7 @@ Glossary
 inner kernel : one that only kernels call.
 """
 
-# Numba tells no types.
+# Numba declares no types.
 # mypy: disable-error-code="no-untyped-call, misc, import-untyped, attr-defined"
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class InnerLowering(typed.NativeLowering):
     _name = "inner_kernel_lowering"
 
     def run_pass(self, state: Any) -> bool:
-        """Lower, and make the kernel known to those that call it by something that is never called."""
+        """Lowers, and makes the kernel known to those that call it by something that is never called."""
         library = state.library = InnerCode(state.targetctx.codegen(), state.func_id.func_qualname)
         state.flags.no_compile = True
         super().run_pass(state)

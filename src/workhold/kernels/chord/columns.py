@@ -1,30 +1,44 @@
 """The tables that kernels hand each other: chord curves, sliding pairs, and the pieces that curves are cut
 to.
 
-Whole numbers of a curve (C, 7), the same for a sliding pair: TAIL and HEAD (features), COLUMN_STEP and
-ROW_STEP (of the head from the tail), CENTER (number of the common centre of concentric arcs, -1 for others),
-FIRST_STRETCH and END_STRETCH (the curve's stretches, none of a sliding pair).
+Whole numbers of a curve (C, 7), the same for a sliding pair:
 
-Reals of a curve (C, 14): FROM and TO (alpha in radians), BRANCH, TANGENT_FROM and TANGENT_TO (bound of the
-error in radians of that end where the chord is a tangency there, 0 where it is not), LENGTH, SHIFT (arg
-Delta: psi = alpha - shift) and its COSINE and SINE, BACKWARD_ERROR (see ``chord.evaluation``), COINCIDENCE
-(its kind, see ``chord.coincidences``), MIDDLE (alpha) and SIDE of the coincidence, KAPPA (sum of the
-features' curvatures in 1 / mm).
+- TAIL and HEAD (features), COLUMN_STEP and ROW_STEP (of the head from the tail);
+- CENTER (number of the common centre of concentric arcs, -1 for others);
+- FIRST_STRETCH and END_STRETCH (the curve's stretches, none of a sliding pair).
+
+Reals of a curve (C, 14):
+
+- FROM and TO (alpha in radians), BRANCH;
+- TANGENT_FROM and TANGENT_TO (bound of the error in radians of that end where the chord is a tangency there,
+  0 where it is not);
+- LENGTH, SHIFT (arg Delta: psi = alpha - shift) and its COSINE and SINE;
+- BACKWARD_ERROR (see ``chord.evaluation``);
+- COINCIDENCE (its kind, see ``chord.coincidences``), MIDDLE (alpha) and SIDE of the coincidence;
+- KAPPA (sum of the features' curvatures in 1 / mm).
 
 Reals of a sliding pair (P, 5): SLIDE_FROM and SLIDE_TO (parameter of the tail on its feature), DIRECTION
 (alpha), STEP_LENGTH, ORIENTATION (psi in radians).
 
-Columns of a piece (see ``curves.pieces``): LOW, HIGH (psi in radians), VALUE and SLOPE at both ends,
-SECOND_DERIVATIVE_LOW, SECOND_DERIVATIVE_HIGH, CURVE (index), the bounds VALUE_ERROR and SLOPE_ERROR of the
-errors at both ends, VALUE_LEAST and VALUE_MOST over the piece (errors included), X_STANDING (the rightmost
-peg is no farther left than this), X_MOVING (the leftmost peg is no farther right), RIGHTWARD_LOW to
-RIGHTWARD_HIGH and LEFTWARD_LOW to LEFTWARD_HIGH (directions of the pegs' joint force where it has a part
-along +x, and of its opposite where it has one along -x; none when low > high), ACROSS_LEAST and ACROSS_MOST
-(of y . P), STEADY (1 where all this is finite, 0 beside a tangency).
+Columns of a piece (see ``curves.pieces``):
 
-Entries of an edge, a chord at one end of a piece: value, slope, their errors, place of the tail along x, |P|,
-bound of how far P is from tail and head, bound of the tail's error, the outward normals of tail and head in
-the frame of the pegs, y . P, and bound of the error of P.
+- LOW, HIGH (psi in radians), VALUE and SLOPE at both ends, SECOND_DERIVATIVE_LOW, SECOND_DERIVATIVE_HIGH;
+- CURVE (index), the bounds VALUE_ERROR and SLOPE_ERROR of the errors at both ends;
+- VALUE_LEAST and VALUE_MOST over the piece (errors included);
+- X_STANDING (the rightmost peg is no farther left than this), X_MOVING (the leftmost peg is no farther
+  right);
+- RIGHTWARD_LOW to RIGHTWARD_HIGH: directions of the pegs' joint force where it has a part along +x, none when
+  low > high;
+- LEFTWARD_LOW to LEFTWARD_HIGH: directions of its opposite where it has a part along -x, none when low >
+  high;
+- ACROSS_LEAST and ACROSS_MOST (of y . P), STEADY (1 where all this is finite, 0 beside a tangency).
+
+Entries of an edge, a chord at one end of a piece:
+
+- value, slope, their errors, place of the tail along x, |P|;
+- bound of how far P is from tail and head, bound of the tail's error;
+- the outward normals of tail and head in the frame of the pegs;
+- y . P, and bound of the error of P.
 """
 
 from __future__ import annotations

@@ -25,12 +25,16 @@ All lattice steps of one length share the stretches of their curves: P, seen fro
 the direction alpha only. Beside a tangency, where P runs off to infinity, a short stretch holds X^3 P' and
 X^3 instead, from which the signs of second derivatives follow.
 
-Columns of a stretch: STRETCH_HIGH (where it ends, alpha in radians; it begins where the one before it ends,
-the first part of a stretch where that begins), SPEED (bound of |P'| in mm per radian, infinite beside a
-tangency), X_LOW, X_HIGH, Y_LOW, Y_HIGH (of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a), LARGEST_CROSS
-(largest |X|, with the sign of X), LEAST_CUBE (smallest |X|^3), PART_A, PART_B (largest sizes of the parts of
-X^3 P' along r_a and r_b), PARTS (how many of the rows that follow divide this stretch once more, for lattice
-steps whose curves it bounds too loosely).
+Columns of a stretch:
+
+- STRETCH_HIGH (where it ends, alpha in radians; it begins where the one before it ends, the first part of a
+  stretch where that begins);
+- SPEED (bound of |P'| in mm per radian, infinite beside a tangency);
+- X_LOW, X_HIGH, Y_LOW, Y_HIGH (of X^3 P'), ALONG_LOW, ALONG_HIGH (of X^3 P' . r_a);
+- LARGEST_CROSS (largest |X|, with the sign of X), LEAST_CUBE (smallest |X|^3);
+- PART_A, PART_B (largest sizes of the parts of X^3 P' along r_a and r_b);
+- PARTS (how many of the rows that follow divide this stretch once more, for lattice steps whose curves it
+  bounds too loosely).
 """
 
 from __future__ import annotations
@@ -158,9 +162,9 @@ def one_sided(turn: Interval, sign: float) -> Interval:
 def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
     r"""Enclosure of abs(X) for alpha in [low, high], by the sides of a triangle.
 
-    Between a line and an arc X^2 = 1 - (across / R)^2. Between two arcs, with g = \|c - w\|,
-    X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
-    g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2, gamma the angle between w and c.
+    Between a line and an arc X^2 = 1 - (across / R)^2. Between two arcs let g = \|c - w\|, and gamma the
+    angle between w and c. Then X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
+    g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2.
     """
     if is_shallow(a) or is_shallow(b):
         return shallow_turn_size(a, b, d, low, high)

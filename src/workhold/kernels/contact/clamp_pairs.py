@@ -92,9 +92,11 @@ def closure_margin(one: Array, other: Array) -> tuple[float, float]:
 
     Returns
     -------
-    (the largest least entry of null vectors that sum to 1, -1 where none is positive; the most by which the
-    least entry of a null vector (1 - s) (a_1, 1, 0) + s (a_2, 0, 1) exceeds ``LEAST_CLOSURE`` of its sum: its
-    sign decides whether they close, and it is off by no more than entries of a_1 and a_2 are)
+    (the largest least entry of null vectors that sum to 1, -1 where none is positive; the lead)
+
+    The lead is the most by which the least entry of a null vector (1 - s) (a_1, 1, 0) + s (a_2, 0, 1) exceeds
+    ``LEAST_CLOSURE`` of its sum. Its sign decides whether they close, and it is off by no more than entries
+    of a_1 and a_2 are.
     """
     best, lead = -1.0, -inf
     for i in range(5):

@@ -3,12 +3,20 @@
 Columns of a peg: PEG_X, PEG_Y (centre in the workpiece's frame), PEG_FEATURE, PEG_COLUMN, PEG_ROW, PEG_RADIUS
 (in mm, of its error).
 
-Columns of a record: STANDING (how many pegs, the first ones, are on the carrier that stands still; the others
-are on the one that moves), FEATURES (4), COLUMNS (4) and ROWS (4) of the pegs on their carriers' lattices
-counted from the first standing peg (rows) and from each carrier's first peg (columns), PSI, TAIL_X and TAIL_Y
-(centre of the first peg in the workpiece's frame), SEPARATION (x distance from the first standing to the
-first moving peg), REACH (radius of psi in radians), LARGEST_RADIUS (of the pegs, in mm). A negative STANDING
-tells of a pair of chords that was given up: its features and steps, with the orientation in PSI.
+Columns of a record:
+
+- STANDING: how many pegs, the first ones, are on the carrier that stands still; the others are on the one
+  that moves;
+- FEATURES (4) that the pegs touch;
+- COLUMNS (4) and ROWS (4) of the pegs on their carriers' lattices, counted from the first standing peg (rows)
+  and from each carrier's first peg (columns);
+- PSI, and TAIL_X and TAIL_Y, the centre of the first peg in the workpiece's frame;
+- SEPARATION: x distance from the first standing to the first moving peg;
+- REACH: radius of psi in radians;
+- LARGEST_RADIUS of the pegs, in mm.
+
+A negative STANDING stands for a pair of chords that was given up: the record has its features and steps, and
+the orientation in PSI.
 
 The unknowns are z = (psi, tail x, tail y, separation): the turn of the pegs in the workpiece's frame, the
 centre of the first peg, and the separation. That is the x distance from the first standing to the first

@@ -121,7 +121,7 @@ def is_fixture(
     work: Array,
     null: Array,
 ) -> tuple[int, float]:
-    """Check four pegs at simultaneous contact.
+    """Checks four pegs at simultaneous contact.
 
     Parameters
     ----------
@@ -132,8 +132,10 @@ def is_fixture(
 
     Returns
     -------
-    (2 when it may be a fixture, 1 when the four contacts may be inside their features, 0 when they are not;
-     x distance from the first standing to the first moving peg, but 0 for verdict 0)
+    (verdict; x distance from the first standing to the first moving peg, but 0 for verdict 0)
+
+    The verdict is 2 when it may be a fixture, 1 when the four contacts may be inside their features, 0 when
+    they are not.
     """
     cx, cy = cos(psi), sin(psi)
     rows, length = features.rows, limits.wrench_length

@@ -10,12 +10,11 @@ force direction : a direction in which the two pegs of a piece can push together
 
 Discs: let w be known to e = d reach + eta. Between a line and an arc of radius R, the head's distance from
 the line's direction through the arc's centre, ``across``, is known to e. How far its square is from R^2 is
-known to q = e (2 R + e), and the root of that, ``half``, to min(sqrt q, q / half). Between two arcs, g = |c -
-w| is known to e, and with D = R_a^2 - R_b^2
+known to q = e (2 R + e), and the root of that, ``half``, to min(sqrt q, q / half). Between two arcs,
+g = |c - w| is known to e and the direction of c - w to 1.6 e / g. With D = R_a^2 - R_b^2
 
     along = (g + D / g) / 2   to  t = e / 2 (1 + |D| / (g (g - e))),
-    half = sqrt(R_a^2 - along^2)  to  min(sqrt q, q / half),  q = t (2 R_a + t),
-    the direction of c - w  to  1.6 e / g.
+    half = sqrt(R_a^2 - along^2)  to  min(sqrt q, q / half),  q = t (2 R_a + t).
 
 Near a coincidence the tail moves at no more than d + R + 3.2 sqrt(d R) < 2.6 (d + R). There d sin(gamma / 2)
 <= 0.7 R between arcs, and d (1 - cos gamma) <= R between a line and an arc (see ``chord.coincidences``).
@@ -76,8 +75,8 @@ def tail_radius(curve: Array, state: State, reach: float) -> float:
     """How far in mm the exact tail may be from a computed one when the orientation may be ``reach`` radians
     off.
 
-    The tail moves at a speed of at most d / |X|, and X^2 changes at a rate of at most 4 d kappa, here by no
-    more than a quarter of itself. So the speed stays below 1.16 d / |X|, and the theorem of
+    The tail moves at a speed of at most d / |X|. X^2 changes at a rate of at most 4 d kappa, here by no more
+    than a quarter of itself. So the speed stays below 1.16 d / |X|, and the theorem of
     ``chord.evaluation`` holds with h <= 1 / 3. By it the tail is off by no more than 3 eta / |X|. Infinite
     where this does not bound it, too near a tangency.
     """

@@ -9,7 +9,7 @@ piece : a chord curve over a range inside one cell and inside one stretch. It ha
 
 Second derivatives: with P the instant centre and K >= |P'| (see ``stretches``)
 
-    |h''| = |y . P + x . P'| <= |P| + K        and        |s''| = |P' . r_a| <= K      (divided by R_a on an arc);
+    |h''| = |y . P + x . P'| <= |P| + K      and      |s''| = |P' . r_a| <= K      (divided by R_a on an arc);
 
 the place along x, x . u, has the slope y . P and so the second derivative |x . P - y . P'| <= |P| + K, and a
 contact direction turns at the rate p / R, which changes by at most K / R. A function of such a second
@@ -127,7 +127,8 @@ def second_derivative_beside(
 ) -> tuple[float, float]:
     """Enclosure of the second derivative beside a tangency, one of whose bounds is infinite.
 
-    X^3 h'' = -x . X^3 P' - X^2 C_b y . r_a - X^3 y . u, with |C_b| <= d and |u| <= ``reach``; X^3 s'' = -X^3 P' . r_a.
+    X^3 h'' = -x . X^3 P' - X^2 C_b y . r_a - X^3 y . u, with |C_b| <= d and |u| <= ``reach``;
+    X^3 s'' = -X^3 P' . r_a.
     """
     cube = stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS]
     if mode == HEIGHT:

@@ -149,11 +149,12 @@ def sliding_pair_reach(a: Array, b: Array, sliding_pair: Array) -> float:
     """How far in radians the orientation of a sliding pair may be off.
 
     Between lines the distance h across gives the angle off square by cos = h / d, so an error of h counts by
-    1 / (d sin). The sine is at least 8.9e-8 (``conventions.SQUARE``). Between arcs whose centres are a misfit
-    m from one chord apart, and whose radii differ by r, the chord whose contacts lie in the direction phi
-    from the centres' line is (r + m cos phi) / (d sin phi) off: no more than stated where its lines of action
-    are 15 degrees from the chord or more, and nearer to it with the share of the closure that such contacts
-    leave the others.
+    1 / (d sin). The sine is at least 8.9e-8 (``conventions.SQUARE``).
+
+    Let two arcs have centres a misfit m from one chord apart, and radii that differ by r. The chord whose
+    contacts lie in the direction phi from the centres' line is then (r + m cos phi) / (d sin phi) off.
+    That is no more than stated where its lines of action are 15 degrees from the chord or more. Nearer to
+    the chord this holds with the share of the closure that such contacts leave the others.
     """
     d = sliding_pair[STEP_LENGTH]
     error = backward_error(a, b, d)

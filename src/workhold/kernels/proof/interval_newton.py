@@ -334,7 +334,7 @@ def solutions_in_all(
 def interval_newton(
     records: Array, features: Array, setting: Setting, frames: Array
 ) -> tuple[Verdicts, Array]:
-    """Contract boxes one by one.
+    """Contracts boxes one by one.
 
     Parameters
     ----------

@@ -5,10 +5,10 @@ Theorem (Newton-Kantorovich, in the form of radii polynomials): let F be the fou
 unknowns z = (L psi, tail x, tail y, separation), all in mm. Let A be an approximate inverse of the Jacobian J
 at z, and
 
-    Y >= \|A F(z)\|,   Z >= \|I - A J\|,   K >= \|A\| \|second derivatives of F\|      (largest absolute row sums).
+    Y >= \|A F(z)\|,   Z >= \|I - A J\|,   K >= \|A\| \|second derivatives of F\|
 
-When (1 - Z)^2 > 2 K Y there is exactly one solution within r+ = (1 - Z) / K of z. It lies within r = 2 Y / (1
-- Z + sqrt((1 - Z)^2 - 2 K Y)).
+Norms are largest absolute row sums. When (1 - Z)^2 > 2 K Y there is exactly one solution within
+r+ = (1 - Z) / K of z. It lies within r = 2 Y / (1 - Z + sqrt((1 - Z)^2 - 2 K Y)).
 
 Reference: J. B. van den Berg, J.-P. Lessard, "Rigorous numerics in dynamics", Notices of the AMS 62 (2015)
 1057-1061.
@@ -117,7 +117,7 @@ def sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
 def certificate(
     w: Array, size: float, smallest: float, length: float, backward_error: float
 ) -> tuple[float, float]:
-    """Certify the contacts in place.
+    """Certifies the contacts in place.
 
     The second derivatives of the contact equations are bounded as follows. A peg's centre moves by at most
     (sqrt 2 + 2 + 1) per unit of the unknowns, and its second derivative is at most 4 / L. A distance from a
