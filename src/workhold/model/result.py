@@ -174,7 +174,7 @@ class Result:
     proof : the account of the search, see :class:`workhold.model.search_report.Proof`; None for a result that
         came without.
     pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
-        directions; None for other toolkits, and where only the best were sought.
+        directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
     """
 
