@@ -1,4 +1,4 @@
-r"""The order in which seats are looked at when only the best fixtures are asked for, and where that may stop.
+r"""The order in which seats are looked at when only the best are asked for, and where the search may stop.
 
 Contacts of three locators and one clamp are grouped by seat before they are proven. What the locators alone
 say of a fixture bounds its rank from above, whatever its two clamps are:
@@ -107,7 +107,7 @@ class SeatGroups:
     def reach(self, last: Array | None) -> int:
         """The number of groups, the first ones, that may hold what ranks no worse than keys (R,).
 
-        All may for None.
+        They are all groups where ``last`` is None.
         """
         if last is None:
             return len(self.ends)

@@ -374,9 +374,9 @@ def closure(
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
     """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled, and what follows from them.
 
-    These are how much (M,) of its force the clamp passes on in its direction, which pairs (M,) press the
-    part, and of which that is open. Where both pegs move towards the wall, ``push`` is None: they pass on
-    what the wall takes up, in parts of the second one's force.
+    From them follow how much (M,) of its force the clamp passes on in its direction, which pairs (M,) press
+    the part, and of which that is open. Where both pegs move towards the wall, ``push`` is None: they pass
+    on what the wall takes up, in parts of the second one's force.
 
     Let a, b be the normals and m, M the moments of locator and clamp about the start of the hull edge of
     length l, lengths in parts of L. With p = -b_u sign a_u, q = |a_u| and t = p m + q M, the null vector is

@@ -11,7 +11,7 @@ force direction : a direction in which the two pegs of a piece can push together
 Discs: let w be known to e = d reach + eta. Between a line and an arc of radius R, the head's distance from
 the line's direction through the arc's centre, ``across``, is known to e. How far its square is from R^2 is
 known to q = e (2 R + e), and the root of that, ``half``, to min(sqrt q, q / half). Between two arcs,
-g = |c - w| is known to e and the direction of c - w to 1.6 e / g. With D = R_a^2 - R_b^2
+g = |c - w| is known to e and the direction of c - w to 1.6 e / g. With D = R_a^2 - R_b^2 so are
 
     along = (g + D / g) / 2   to  t = e / 2 (1 + |D| / (g (g - e))),
     half = sqrt(R_a^2 - along^2)  to  min(sqrt q, q / half),  q = t (2 R_a + t).
