@@ -96,7 +96,7 @@ def head(result: Result) -> dict[str, Any]:
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
         "complete": bool(result.complete),
         "notes": list(result.notes),
-        **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.travels > 1 else {}),
+        **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
 
