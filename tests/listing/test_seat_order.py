@@ -136,6 +136,9 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.M
         ["location_error"],
         ["end-distance"],
         ["smallest_face", "penalty"],
+        ["closure_margin"],
+        ["clamp_freedom"],
+        ["warnings"],
     ):
         answer(Query(part(NOTCHED), Plate((20, 16), 3, clamps=2), ranking=ranking, listing="all", best=10**6))
     assert len(seen) > 100
