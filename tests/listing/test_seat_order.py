@@ -23,6 +23,7 @@ from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.search_report import best_note
 from workhold.search import lattice_shares
+from workhold.verification import verify_file
 
 OF_LOADS = {FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key}
 
@@ -103,8 +104,11 @@ def test_what_is_left_out_does_not_depend_on_threads_and_verifies(listing: str, 
     assert not {"pairs", "seats"} & json.loads(texts[0]).keys()
     again = workhold.open(tmp_path / "r.json")
     assert (again.pairs, again.seats, again.notes) == (None, None, result.notes)
-    outcome = verify(again)
-    assert (outcome.proven, outcome.faults) == (6, ())
+    for outcome in (verify(again), verify_file(tmp_path / "r.json")):
+        assert (outcome.proven, outcome.faults) == (6, ())
+    fields = json.loads(texts[0])
+    (tmp_path / "without.json").write_text(json.dumps({**fields, "notes": fields["notes"][1:]}))
+    assert any("how many pairs" in fault for fault in verify_file(tmp_path / "without.json").faults)
 
 
 def test_ranges_of_orientation_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:

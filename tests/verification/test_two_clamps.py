@@ -223,7 +223,7 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
     assert "pairs says 12, but the fixtures listed stand for" in told(
         lambda content: content.update(pairs=12)
     )
-    assert "the key seats is missing" in told(lambda content: content.pop("seats"))
+    assert "at how many seats" in told(lambda content: content.pop("seats"))
     assert "it has the seat and the directions of fixture 1" in told(
         lambda content: content["fixtures"].__setitem__(11, content["fixtures"][0])
     )

@@ -333,11 +333,12 @@ def keys_missing(head: Head) -> list[str]:
     # Of a vise and a toolkit one is enough, a missing account is named in any case, and a fit decides
     # nothing. A departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
-    spared |= {"workpiece.departure", "tolerance.departure", "vise.flat", "toolkit.flat"}
+    # Where nobody counted pairs and seats a note says so, for which the account looks.
+    spared |= {"workpiece.departure", "tolerance.departure", "vise.flat", "toolkit.flat", "pairs", "seats"}
     if head.seating is None:
         spared |= {"seating", "opening", "foolproof"}
     if getattr(head.toolkit, "clamps", 1) == 1:
-        spared |= {"listing", "pairs", "seats", "toolkit.clamps"}
+        spared |= {"listing", "toolkit.clamps"}
     return [f"the key {key} is missing" for key in head.not_given() if key not in spared]
 
 
