@@ -62,14 +62,13 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
 PRECISIONS = (64, 128, 256, 512)
 
 
-def sectors_with_roots(values: ComplexArray, size: Array) -> tuple[BoolArray, BoolArray]:
+def sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArray]:
     """Sectors of orientations in which roots cannot be excluded, and those where rounding may hide them.
 
     By Taylor's theorem \\|f(c + h) - f(c) - h f'(c)\\| <= h^2 / 2 max \\|f''\\|, and max \\|f''\\| is at most
@@ -98,7 +97,7 @@ def sectors_with_roots(values: ComplexArray, size: Array) -> tuple[BoolArray, Bo
     return possible, possible & crowded
 
 
-def ball_roots(values: ComplexArray) -> ComplexArray:
+def ball_roots(values: Complex) -> Complex:
     """All roots of a polynomial, coefficients from the constant up, isolated in ball arithmetic."""
     before = ctx.prec
     polynomial = acb_poly([acb(c.real, c.imag) for c in values])
@@ -115,7 +114,7 @@ def ball_roots(values: ComplexArray) -> ComplexArray:
     return np.asarray(np.roots(values[::-1]), np.complex128)
 
 
-def companion_roots(values: ComplexArray) -> ComplexArray:
+def companion_roots(values: Complex) -> Complex:
     """Roots (N, 2 d) of N polynomials with well-conditioned outermost coefficients, (N, 2 d + 1)."""
     degree = values.shape[1] - 1
     matrix = np.zeros((len(values), degree, degree), np.complex128)
@@ -124,19 +123,19 @@ def companion_roots(values: ComplexArray) -> ComplexArray:
     return np.asarray(np.linalg.eigvals(matrix))
 
 
-def vanishing_ends(values: ComplexArray, largest: Array) -> IntArray:
+def vanishing_ends(values: Complex, largest: Array) -> IntArray:
     """(N,) numbers of coefficients that vanish at either end of polynomials (N, 2 d + 1)."""
     bound = values.shape[1] // 2
     size = np.maximum(np.abs(values), np.abs(values[:, ::-1]))[:, :bound]
     return np.asarray((np.maximum.accumulate(size, axis=1) <= VANISHING * largest[:, None]).sum(axis=1))
 
 
-def near_circle(roots: ComplexArray) -> BoolArray:
+def near_circle(roots: Complex) -> BoolArray:
     """Which roots may be on the unit circle."""
     return np.asarray(np.abs(np.abs(roots) - 1.0) <= NEAR_CIRCLE)
 
 
-def hard_roots(contacts: ContactSystems, case: tuple[int, int], values: ComplexArray) -> ComplexArray | None:
+def hard_roots(contacts: ContactSystems, case: tuple[int, int], values: Complex) -> Complex | None:
     """Roots of one system's resultant (a set of one) in ball arithmetic; None if they are not isolated."""
     if case[0] == 0:
         kept = np.flatnonzero(np.abs(values) > VANISHING * np.abs(values).max())

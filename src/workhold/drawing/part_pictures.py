@@ -194,8 +194,7 @@ def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths:
     dimension(group, (x, box.y1), (x, box.y0), lengths.words(bounds.height))
 
 
-PARTS_EDGE, PARTS_HEADER, PARTS_FOOTER = 32.0, 62.0, 30.0
-OTHER_FILL, PARTS_LEADER = "#eef0f3", "#6b4a00"
+OTHER_FILL = "#eef0f3"
 # Parts by decreasing area; smaller ones are drawn without a number.
 MOST_NUMBERS = 60
 
@@ -225,20 +224,20 @@ def draw_parts(
     lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
     page = LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT
     drawing = Box(
-        PARTS_EDGE + 30,
-        PARTS_EDGE + PARTS_HEADER + 30,
-        page[0] - PARTS_EDGE - 30,
-        page[1] - PARTS_EDGE - PARTS_FOOTER - 30,
+        EDGE + 30,
+        EDGE + HEADER + 30,
+        page[0] - EDGE - 30,
+        page[1] - EDGE - FOOTER - 30,
     )
     view = View.fitting(bounds, drawing)
     scene = Scene.page(page, f"{name}: parts")
     group = scene.group("header")
-    width = page[0] - 2 * PARTS_EDGE
-    group.text((PARTS_EDGE, PARTS_EDGE + 12), shortened(name, 26, width, bold=True), 26, bold=True)
+    width = page[0] - 2 * EDGE
+    group.text((EDGE, EDGE + 12), shortened(name, 26, width, bold=True), 26, bold=True)
     words = (
         f"{plural(len(parts), 'part')}, numbered by decreasing area · part {chosen} is the one that is used"
     )
-    group.text((PARTS_EDGE, PARTS_EDGE + 40), shortened(words, 14, width), 14, fill=GREY)
+    group.text((EDGE, EDGE + 40), shortened(words, 14, width), 14, fill=GREY)
     for number, part in reversed(list(enumerate(loops, start=1))):
         fill = PART_FILL if number == chosen else OTHER_FILL
         scene.group(f"part-{number}", view).path(
@@ -258,9 +257,9 @@ def draw_parts(
         labels.append(around((x, y), 0.0, size, [4.0, 14.0, 26.0, 40.0], turns, turn_cost=0.0))
     group = scene.group("part-numbers")
     for number, place in enumerate(placer.place(labels), start=1):
-        group.line([place.anchor, leader_end(place.anchor, place.box)], PARTS_LEADER, 0.9)
-        group.circle(place.anchor, 1.7, PARTS_LEADER)
-        group.rectangle(place.box, "#ffffff", PARTS_LEADER, 0.9, place.box.height / 2)
+        group.line([place.anchor, leader_end(place.anchor, place.box)], LEADER, 0.9)
+        group.circle(place.anchor, 1.7, LEADER)
+        group.rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
         group.text(place.box.center, str(number), 15.0, "middle", bold=True)
-    scale_bar(scene, (PARTS_EDGE, page[1] - PARTS_EDGE), view.scale, lengths)
+    scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
     return scene.svg()

@@ -43,7 +43,7 @@ from workhold.version import __version__
 
 __all__ = ["draw_curve", "draw_setups"]
 
-CURVE_EDGE, CURVE_HEADER = 32.0, 84.0
+EDGE, CURVE_HEADER = 32.0, 84.0
 CURVE_LINE, CHOSEN, GRID = "#0b3a82", "#b3122a", "#d5d9de"
 # Room for numbers and words at the axes, page units.
 AT_LEFT, BELOW = 84.0, 70.0
@@ -62,15 +62,13 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
     scene = Scene.page(LANDSCAPE, f"{held}: set-ups and loss")
     width, height = LANDSCAPE
     group = scene.group("heading")
-    group.text((CURVE_EDGE, CURVE_EDGE + 12), held, 26, bold=True)
+    group.text((EDGE, EDGE + 12), held, 26, bold=True)
     words = (
         f"The loss is the {family.figure.words} over the best that each part has; at each point that of the "
         "worst part."
     )
-    group.text((CURVE_EDGE, CURVE_EDGE + 44), words, 15, fill=GREY)
-    room = Box(
-        CURVE_EDGE + AT_LEFT, CURVE_EDGE + CURVE_HEADER, width - CURVE_EDGE - 30, height - CURVE_EDGE - BELOW
-    )
+    group.text((EDGE, EDGE + 44), words, 15, fill=GREY)
+    room = Box(EDGE + AT_LEFT, EDGE + CURVE_HEADER, width - EDGE - 30, height - EDGE - BELOW)
     points = [point for point in family.points if isfinite(point.loss)]
     if not points:
         group.text(room.center, "No number of set-ups has a loss that is finite.", 16, "middle")
@@ -141,7 +139,7 @@ def nice_step(least: float) -> float:
 
 
 MOST_BESIDE, MOST_ALONE = 12, 18
-EDGE, HEADER, FOOTER, GAP = 32.0, 92.0, 34.0, 12.0
+HEADER, FOOTER, GAP = 92.0, 34.0, 12.0
 # Of the page, the share of the plan.
 PLAN = 0.42
 # Sizes of words, heights of a line, of a row of the table and of the name under a part, page units.

@@ -41,6 +41,7 @@ from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.listing.canonical_form import candidates_of
 from workhold.listing.ranking import ranking_keys
 from workhold.listing.results import RankedTable
+from workhold.model.clamps import LOCATORS
 from workhold.model.quality import (
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
@@ -64,7 +65,6 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-LOCATORS = 3
 # Radians. Contacts whose orientation is known less well are put together with all others of the same holes,
 # and bound nothing; so are those that are this near to where orientations are counted from.
 WELL_KNOWN, AT_START = 1e-7, 1e-5

@@ -23,6 +23,7 @@ from workhold.geometry.segment import Arc, Box, Line, Point, Segment
 from workhold.model.fixture import Fixture, Peg
 
 __all__ = [
+    "LOCATORS",
     "ShownClamp",
     "clamp_names",
     "clamp_shares",

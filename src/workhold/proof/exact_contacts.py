@@ -23,6 +23,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import STRAIGHT
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X, REST_Y, SIGN, X, Y
 from workhold.kernels.base.given import Limits
+from workhold.model.clamps import LOCATORS
 from workhold.proof.interval_newton import (
     PRECISIONS,
     BoxContacts,
@@ -83,7 +84,6 @@ def exact_row(
     return made if all(abs(one - other) < SAME_ROW for one, other in pairs) else row
 
 
-LOCATORS = 3
 # Steps in which a box shrinks to one solution, if it ever does.
 MOST_STEPS = 24
 # Half units in the last place of a double.

@@ -37,13 +37,13 @@ from workhold.conventions import NO_REACTION
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.kernels.seating.sticking import least_friction
 from workhold.limits import MOST_FRICTION
-from workhold.model.clamps import clamp_names, first_clamps, order_words, second_over_first
+from workhold.model.clamps import LOCATORS, clamp_names, first_clamps, order_words, second_over_first
 from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.seating import DRY_STEEL, length
 from workhold.model.setup import LengthSetting, settings_of
 from workhold.model.workpiece import Workpiece
 from workhold.plain import listed
-from workhold.statics.contact_matrix import LOCATORS, Touched
+from workhold.statics.contact_matrix import Touched
 from workhold.statics.loads import cone_edges, contacts_on_part
 from workhold.units import MILLIMETRE
 

@@ -32,7 +32,7 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.contact_matrix import contact_matrices_of
-from workhold.model.clamps import working_forces
+from workhold.model.clamps import LOCATORS, working_forces
 from workhold.model.fixture import Fixture
 from workhold.model.wall import Flush
 from workhold.model.workpiece import Workpiece, outline_diameter
@@ -75,7 +75,7 @@ def wrenches(points: Array, normals: Array, length: float) -> Array:
 
 
 # Pegs of a fixture whose contact matrix has one inverse; with two clamps there is one more.
-PEGS, LOCATORS = 4, 3
+PEGS = 4
 
 
 @define(frozen=True, eq=False)

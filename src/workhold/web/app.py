@@ -86,8 +86,6 @@ def create_app(
     )
     app.include_router(part_routes.router)
     app.include_router(job_routes.router)
-    # Before those of a fixture, which take any last word for a paper.
-    app.include_router(fixture_routes.seating_router)
     app.include_router(fixture_routes.router)
     app.add_api_route("/", page, methods=["GET", "HEAD"], include_in_schema=False)
     app.add_api_route("/static/{path:path}", static_file, methods=["GET", "HEAD"], include_in_schema=False)

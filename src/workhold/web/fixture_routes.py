@@ -1,8 +1,4 @@
-"""Routes of one fixture of a job: its row, loads, cautions and papers, its seating, and closings of the jaws.
-
-The routes of seating have a router of their own. It comes before the other one, which takes any last word
-for a paper.
-"""
+"""Routes of one fixture of a job: its row, loads, cautions, papers and seating, and closings of the jaws."""
 
 from __future__ import annotations
 
@@ -25,7 +21,7 @@ from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
 from workhold.web.state import at_desk, at_desk_while_heard, state_of
 
-__all__ = ["router", "seating_router"]
+__all__ = ["router"]
 
 router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
 
@@ -56,6 +52,53 @@ def ranked(result: Result, rank: int) -> int:
     if rank > len(result):
         raise HTTPException(404, f"There is no fixture {rank}: {len(result)} are listed.")
     return rank - 1
+
+
+# Before what takes any last word for a paper.
+async def seated(
+    request: Request, name: str, rank: int, revision: int | None
+) -> tuple[Held, Seating | ByHand]:
+    """Finds the seating of a fixture, or how it is put into two clamps, once, and keeps it with the job."""
+    job = found_job(request, name)
+    result = result_of_job(job, revision)
+    held = result[ranked(result, rank)], result.workpiece, result.toolkit
+    key = (job.revision, rank)
+    if key not in job.seatings:
+        # On a first run kernels are compiled for it, which takes as long as a search may.
+        found = await at_desk(request, "seating", held, state_of(request).limits.seconds)
+        job.keep_seating(key, found)
+        return held, found
+    return held, job.seatings[key]
+
+
+@router.get("/seating", summary="Whether the part ends up there")
+async def seating(
+    request: Request, name: str, rank: Rank, unit: UnitName = "mm", revision: Revision = None
+) -> dict[str, Any]:
+    """How wide open the part is still caught, every other seat of the same pegs, and both in sentences."""
+    held, found = await seated(request, name, rank, revision)
+    return {"rank": rank, **seating_answer(held, found, unit)}
+
+
+@router.post("/closing", summary="Close the jaws from where the part was put")
+async def closing(
+    request: Request, name: str, rank: Rank, form: ClosingForm, revision: Revision = None
+) -> dict[str, Any] | None:
+    """The frictionless way of part and jaws: turn in degrees, x and y of the pose and the opening in mm.
+
+    The opening is counted from where the jaws hold the part. The ending is one of ``right``, ``same place``,
+    ``wrong``, ``elsewhere``, ``stop``, ``outside`` and ``lost``. The simulation stops when the client hangs
+    up.
+    """
+    held, found = await seated(request, name, rank, revision)
+    if isinstance(found, ByHand):
+        raise InputError(
+            "no closing can be played with two clamps: the part is put against its locators by hand."
+        )
+    answer: dict[str, Any] | None = await at_desk_while_heard(
+        request, "closing", ClosingOrder(held, found, form)
+    )
+    return answer
 
 
 @router.get("", summary="One fixture")
@@ -169,52 +212,3 @@ async def paper(
         what, ending = kind.split(".")
         headers["Content-Disposition"] = attachment(f"{result.workpiece.name}-{what}-{rank}", ending)
     return Response(content, media_type=KINDS[kind], headers=headers)
-
-
-seating_router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
-
-
-async def seated(
-    request: Request, name: str, rank: int, revision: int | None
-) -> tuple[Held, Seating | ByHand]:
-    """Finds the seating of a fixture, or how it is put into two clamps, once, and keeps it with the job."""
-    job = found_job(request, name)
-    result = result_of_job(job, revision)
-    held = result[ranked(result, rank)], result.workpiece, result.toolkit
-    key = (job.revision, rank)
-    if key not in job.seatings:
-        # On a first run kernels are compiled for it, which takes as long as a search may.
-        found = await at_desk(request, "seating", held, state_of(request).limits.seconds)
-        job.keep_seating(key, found)
-        return held, found
-    return held, job.seatings[key]
-
-
-@seating_router.get("/seating", summary="Whether the part ends up there")
-async def seating(
-    request: Request, name: str, rank: Rank, unit: UnitName = "mm", revision: Revision = None
-) -> dict[str, Any]:
-    """How wide open the part is still caught, every other seat of the same pegs, and both in sentences."""
-    held, found = await seated(request, name, rank, revision)
-    return {"rank": rank, **seating_answer(held, found, unit)}
-
-
-@seating_router.post("/closing", summary="Close the jaws from where the part was put")
-async def closing(
-    request: Request, name: str, rank: Rank, form: ClosingForm, revision: Revision = None
-) -> dict[str, Any] | None:
-    """The frictionless way of part and jaws: turn in degrees, x and y of the pose and the opening in mm.
-
-    The opening is counted from where the jaws hold the part. The ending is one of ``right``, ``same place``,
-    ``wrong``, ``elsewhere``, ``stop``, ``outside`` and ``lost``. The simulation stops when the client hangs
-    up.
-    """
-    held, found = await seated(request, name, rank, revision)
-    if isinstance(found, ByHand):
-        raise InputError(
-            "no closing can be played with two clamps: the part is put against its locators by hand."
-        )
-    answer: dict[str, Any] | None = await at_desk_while_heard(
-        request, "closing", ClosingOrder(held, found, form)
-    )
-    return answer
