@@ -221,7 +221,9 @@ def test_other_imports_are_none() -> None:
 @pytest.fixture
 def glossary(tmp_path: Path) -> Path:
     path = tmp_path / "glossary.md"
-    table = "| word | instead |\n|---|---|\n| told, tells | said |\n| Door | frame |\n"
+    table = (
+        "| word | instead |\n|---|---|\n| told, tells | said |\n| Door | frame |\n| `beyond` | hand in |\n"
+    )
     path.write_text(
         f"| word | meaning |\n|---|---|\n| loop | chain |\n\n## Words replaced\n\n{table}\n## More\n\n| peg | pin |\n"
     )
@@ -238,6 +240,27 @@ def test_a_replaced_word_is_found(text: str, glossary: Path) -> None:
 @pytest.mark.parametrize("text", ["# a loop, a peg", "untold = 1", "toldest(a)", "door = Doorway()", "word"])
 def test_another_word_is_none(text: str, glossary: Path) -> None:
     assert places(rules.replaced_words(glossary)(planted(text))) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def beyond(): pass",
+        "import a.beyond",
+        "from a import beyond",
+        "from a.beyond import b",
+        "beyond(a)",
+        "a.beyond",
+    ],
+)
+def test_a_word_of_plain_english_is_found_as_a_name(text: str, glossary: Path) -> None:
+    assert len(places(rules.replaced_words(glossary)(planted(text)))) == 1
+
+
+def test_a_word_of_plain_english_is_none_elsewhere(glossary: Path) -> None:
+    text = '"""Beyond the end."""\nbeyond = 1\nf(beyond)  # how far beyond the end\n'
+    assert places(rules.replaced_words(glossary)(planted(text))) == []
+    assert places(rules.replaced_words(glossary)(planted("", "drawing/beyond.py"))) == ["drawing/beyond.py:1"]
 
 
 def test_the_glossary_of_the_manual_has_replaced_words() -> None:

@@ -146,7 +146,7 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
         if claim is not None and fixture.seating is not None:
             other = first_other(claim.fields, fixture.seating.as_fields())
             if other:
-                yield f"a search tells another {other} of the seating of fixture {(match or 0) + 1}"
+                yield f"a search finds another {other} of the seating of fixture {(match or 0) + 1}"
                 break
     lacking = [note for note in result.notes if note not in listing.notes]
     if lacking:

@@ -11,7 +11,7 @@ from threading import Event
 from attrs import define, field, frozen
 
 from workhold.batch.durations import Measured
-from workhold.batch.run import ANY_PART, Batch, HeldIn, Request, Work, run_batch
+from workhold.batch.run import ANY_PART, Batch, BatchRun, HeldIn, Request, run_batch
 from workhold.batch.store import FolderStore, Store, refusal_record
 from workhold.batch.tasks import Outcome, Task, done
 from workhold.errors import InputError
@@ -79,7 +79,7 @@ def run_in(
     requests = [Request(part, {}, held_in) for part in part_list([str(one) for one in given])]
     store = FolderStore(folder / "work") if store is None else store
     measured = Measured(folder / "measured.csv")
-    return run_batch(requests, best, Work(store, queue, measured, Onlooker(), Event()))
+    return run_batch(requests, best, BatchRun(store, queue, measured, Onlooker(), Event()))
 
 
 def records_in(folder: Path) -> dict[str, bytes]:

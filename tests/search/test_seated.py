@@ -169,8 +169,8 @@ def test_a_file_with_a_seating_that_is_none_is_refused(seated: Result, tmp_path:
     for old, new, words in (
         ('"room_factor"', '"factor"', "fixture 1 cannot be used: seating.room_factor: it is missing"),
         ('"kind": "fixture"', '"kind": "chair"', r"seating\.seats\.8\.kind"),
-        ('"seating": 8', '"seating": 3', "seating of 8 fixtures is told, but it is asked of 3"),
-        (', "seating": {', ', "sitting": {', "its seating told, but not the one before it"),
+        ('"seating": 8', '"seating": 3', "seating of 8 fixtures is stated, but it is asked of 3"),
+        (', "seating": {', ', "sitting": {', "its seating stated, but not the one before it"),
     ):
         path.write_text(text.replace(old, new, 1))
         with pytest.raises(InputError, match=words):
@@ -281,7 +281,7 @@ def test_of_two_clamps_no_seating_may_be_told_and_the_note_must(tmp_path: Path) 
     plate, path = Plate(pitch=20, peg_radius=3, clamps=2, columns=4, rows=3), tmp_path / "a.json"
     made = workhold.design(part, plate, seating=1, best=1)
     workhold.save(attrs.evolve(made, notes=()), path)
-    assert any("the part in is told of each" in fault for fault in workhold.verify(path).faults)
+    assert any("the part in is stated for each" in fault for fault in workhold.verify(path).faults)
     [other] = workhold.design(WEDGE, VISE, seating=1, best=1).seating
     workhold.save(attrs.evolve(made, seating=(other,)), path)
     outcome = workhold.verify(path)

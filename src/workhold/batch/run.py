@@ -26,7 +26,7 @@ from workhold.files.result.writer import asked_entry
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ANY_PART", "Batch", "Counting", "HeldIn", "Job", "Part", "Request", "Work", "run_batch"]
+__all__ = ["ANY_PART", "Batch", "Counting", "HeldIn", "Job", "Part", "Request", "BatchRun", "run_batch"]
 
 # Stands for any part in the queries that wait for theirs.
 ANY_PART = Workpiece.from_loops("any", [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
@@ -203,7 +203,7 @@ class Batch:
 
 
 @frozen(eq=False)
-class Work:
+class BatchRun:
     """What a run works with.
 
     Parameters
@@ -288,7 +288,7 @@ class Work:
 GO_ON = "What is done is kept: make room, and start the same command again to go on."
 
 
-def run_batch(requests: Iterable[Request], best: int, work: Work) -> Batch:
+def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
     """Reads all parts and answer all jobs, as far as that is not done.
 
     Parameters
@@ -321,7 +321,7 @@ def run_batch(requests: Iterable[Request], best: int, work: Work) -> Batch:
     return batch
 
 
-def read_parts(batch: Batch, work: Work) -> None:
+def read_parts(batch: Batch, work: BatchRun) -> None:
     """Reads the parts that are not read yet, and take note of all."""
     parts = [part for part in batch.parts if part.name]
 

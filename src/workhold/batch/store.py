@@ -93,8 +93,11 @@ FOLDER_LETTERS = 2
 class Store(Protocol):
     """What keeps records."""
 
+    __slots__ = ()
+
     def has(self, name: str) -> bool:
         """Whether a task is done: its record is there, and whole."""
+        return self.read(name) is not None
 
     def read(self, name: str) -> bytes | None:
         """The record of a task; None where there is none."""
@@ -116,7 +119,7 @@ class Store(Protocol):
 
 
 @frozen
-class FolderStore:
+class FolderStore(Store):
     """A folder of records.
 
     Parameters
@@ -133,10 +136,6 @@ class FolderStore:
     def path(self, name: str) -> Path:
         """The path of a record."""
         return self.folder / name[:FOLDER_LETTERS] / f"{name}.json"
-
-    def has(self, name: str) -> bool:
-        """Whether there is such a record."""
-        return self.read(name) is not None
 
     def read(self, name: str) -> bytes | None:
         """A record, if it is whole."""
@@ -160,7 +159,7 @@ class FolderStore:
 
 
 @frozen
-class UrlStore:
+class UrlStore(Store):
     """Records below a URL.
 
     Parameters
@@ -180,10 +179,6 @@ class UrlStore:
 
         system, path = url_to_fs(self.place(name))
         return system, path
-
-    def has(self, name: str) -> bool:
-        """Whether there is such a record."""
-        return self.read(name) is not None
 
     def read(self, name: str) -> bytes | None:
         """A record, if it is whole."""

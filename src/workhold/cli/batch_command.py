@@ -126,7 +126,7 @@ def batch(
     refuse_output_folder(folder, names, (*parts, words.loads), force)
     requests = requests_of(parts, toolkit, pitch, columns, peg_radius, (words, seated_by), reading, folder)
     from workhold.batch.durations import Measured
-    from workhold.batch.run import Work, run_batch
+    from workhold.batch.run import BatchRun, run_batch
     from workhold.batch.store import FolderStore, store_at
     from workhold.kernels.base.compiling import is_first_run
 
@@ -146,7 +146,7 @@ def batch(
             queue = place_to_work(progress, count, cluster, processes, None if records is None else store)
             workshop.enter_context(queue)
             measured = Measured(folder / MEASURED)
-            done = run_batch(requests, kept, Work(store, queue, measured, progress, stop))
+            done = run_batch(requests, kept, BatchRun(store, queue, measured, progress, stop))
     spent = perf_counter() - start
     report = write_all(done, store, measured, folder, spent, progress.events, sheets)
     from workhold.cli.table import print_tables

@@ -23,7 +23,7 @@ from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.clamp_placement import DIRECTION_NAMES, axis_of
-from workhold.listing.placing import LOCATORS, TIP, clamp_placement
+from workhold.listing.placing import LOCATOR_CONTACTS, TIP, clamp_placement
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.deciding import BALLS
 from workhold.statics.contact_matrix import outward_normals, wrenches
@@ -127,13 +127,13 @@ def contacts_of_candidates(c: Candidates, problem: Problem, direction: str) -> C
     frame = problem.frame
     rows = problem.rows[c.feature]
     wrench = wrenches(c.point, outward_normals(rows, c.point), problem.wrench_length)
-    inverse = np.asarray(np.linalg.inv(np.swapaxes(wrench[:, LOCATORS], 1, 2)), np.float64)
+    inverse = np.asarray(np.linalg.inv(np.swapaxes(wrench[:, LOCATOR_CONTACTS], 1, 2)), np.float64)
     taken = -(inverse @ wrench[:, TIP, :, None])[..., 0]
     axis = np.array(frame.toolkit.moving_axis) * frame.toolkit.clamping
     turned = np.stack(rotated(axis[0], axis[1], -(c.theta + frame.quarters * np.pi / 2)), axis=1)
     push = (turned * wrench[:, TIP, :2]).sum(axis=1)
     taken, push, doubt = sharpened(c, taken, push, *doubts(inverse, taken, rows, push, problem), problem)
-    column, row = frame.step_back(c.column[:, LOCATORS], c.row[:, LOCATORS])
+    column, row = frame.step_back(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
     lowest = np.stack([column.min(axis=1, initial=1 << 30), row.min(axis=1, initial=1 << 30)], axis=1)
     column, row = column - lowest[:, :1], row - lowest[:, 1:]
     placement = clamp_placement(c, problem)
@@ -150,9 +150,10 @@ def contacts_of_candidates(c: Candidates, problem: Problem, direction: str) -> C
     number = np.cumsum(kept) - 1
     order = np.lexsort((row, column), axis=1)
     feature, column, row = (
-        np.take_along_axis(values, order, axis=1)[kept] for values in (c.feature[:, LOCATORS], column, row)
+        np.take_along_axis(values, order, axis=1)[kept]
+        for values in (c.feature[:, LOCATOR_CONTACTS], column, row)
     )
-    point = np.take_along_axis(c.point[:, LOCATORS], order[:, :1, None], axis=1)[kept, 0]
+    point = np.take_along_axis(c.point[:, LOCATOR_CONTACTS], order[:, :1, None], axis=1)[kept, 0]
     taken = np.take_along_axis(taken, order, axis=1)[kept]
     there = kept[index]
     return ClampContacts(
@@ -204,7 +205,7 @@ def sharpened(
 def box_of(c: Candidates, number: int, problem: Problem) -> CandidateBox:
     """A contact of three locators and a clamp in the frame of the search."""
     column, row, lattice = c.column[number], c.row[number], problem.frame.lattice
-    x, y = (column[LOCATORS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
+    x, y = (column[LOCATOR_CONTACTS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
     separation = float(x.max() + c.gap[number])
     offsets = list(zip([*x.tolist(), 0.0], y.tolist(), strict=True))
     middle = -float(c.theta[number]), *c.point[number, 0].tolist(), separation

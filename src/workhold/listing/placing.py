@@ -32,7 +32,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 # Of candidates on a plate with a clamp.
-LOCATORS, TIP = slice(0, 3), 3
+LOCATOR_CONTACTS, TIP = slice(0, 3), 3
 
 
 @define(frozen=True, eq=False)
@@ -235,14 +235,16 @@ def clamp_placement(c: Candidates, problem: Problem) -> ClampPlacement:
     frame = problem.frame
     pitch_x, pitch_y = frame.lattice[:2]
     last_column, last_row = last_holes(frame.toolkit.carriers[0])[:: -1 if frame.quarters % 2 else 1]
-    last = c.column[:, LOCATORS].max(axis=1, initial=0)
+    last = c.column[:, LOCATOR_CONTACTS].max(axis=1, initial=0)
     along = last * pitch_x + c.gap
     return ClampPlacement(
         frame.moving,
         axis=0,
         back=1,
         tip=np.stack([along, c.row[:, TIP] * pitch_y], axis=1),
-        locators=np.stack([c.column[:, LOCATORS] * pitch_x, c.row[:, LOCATORS] * pitch_y], axis=2),
+        locators=np.stack(
+            [c.column[:, LOCATOR_CONTACTS] * pitch_x, c.row[:, LOCATOR_CONTACTS] * pitch_y], axis=2
+        ),
         place=along,
         pitch=pitch_x,
         first=last - last_column,
@@ -282,7 +284,7 @@ def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
     """The table of candidates that fit on a plate with a clamp that is bolted on it."""
     frame, placement = problem.frame, clamp_placement(c, problem)
     hole, _ = placement.nearest(problem)
-    column = np.concatenate([c.column[:, LOCATORS], hole[:, None]], axis=1)
+    column = np.concatenate([c.column[:, LOCATOR_CONTACTS], hole[:, None]], axis=1)
     column, row = (
         numbers - numbers.min(axis=1, keepdims=True, initial=1 << 30)
         for numbers in frame.step_back(column, c.row)

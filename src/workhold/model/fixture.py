@@ -247,7 +247,7 @@ class Fixture:
         """
         if self.listed is None:
             raise InputError(
-                "this fixture is not of a result, which tells the part and the toolkit: take one of a result."
+                "this fixture is not of a result, which has the part and the toolkit: take one of a result."
             )
         return self.listed
 

@@ -136,7 +136,7 @@ SEATING_FIGURES = (
         "reading",
         "mm",
         True,
-        "What a measurement of the opening, or of the clamp, must resolve to tell a wrong seat.",
+        "What a measurement of the opening, or of the clamp, must resolve to show a wrong seat.",
     ),
 )
 # All figures that fixtures can be ranked by.

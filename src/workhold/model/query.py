@@ -202,7 +202,7 @@ class Query:
             object.__setattr__(self, "opening", opening)
         if self.has_seating_rules and self.seating is None:
             raise InputError(
-                "which fixtures catch the part at an opening, or are foolproof, their seating tells, and "
+                "which fixtures catch the part at an opening, or are foolproof, their seating states, and "
                 "that is worked out for the first ones only: give of how many, such as seating 100."
             )
 

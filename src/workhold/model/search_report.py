@@ -40,8 +40,8 @@ __all__ = [
 ]
 
 # Why something is undecided.
-GIVEN_UP = "two pegs on these faces fit in so many nearly equal ways that they cannot be told apart"
-UNBOUNDED = "the pegs slide so easily along these faces that their places cannot be told"
+GIVEN_UP = "two pegs on these faces fit in so many nearly equal ways that they cannot be distinguished"
+UNBOUNDED = "the pegs slide so easily along these faces that their places cannot be stated"
 NEARLY_DOUBLE = "the contacts are a double solution, or so nearly that its clamping force is not decided"
 AT_AN_EDGE = "a rule is met exactly at its edge"
 
@@ -250,7 +250,7 @@ def by_hand_note() -> str:
     """The remark on seating asked for with two clamps, which is no figure to order fixtures by."""
     return (
         "With two clamps the part is pushed against its locators by hand, so fixtures are in the same order "
-        "as without seating. How to put the part in is told of each fixture."
+        "as without seating. How to put the part in is stated for each fixture."
     )
 
 

@@ -279,7 +279,7 @@ class Seating:
                 f"the part is caught only while {self.opened} by less than {self.capture_opening:.3f} mm"
             )
         if reading is not None and round(reading, DECIMALS) < CLOSE_READING:
-            words = f"only {reading:.3f} mm otherwise, which a caliper hardly tells"
+            words = f"only {reading:.3f} mm otherwise, which a caliper hardly shows"
             out.append(f"a wrong seat reads {'the same' if reading < SAME_READING else words}")
         return tuple(out)
 

@@ -44,6 +44,7 @@ __all__ = [
     "explored_data",
     "finite",
     "fixture_data",
+    "helps_data",
     "load_case_data",
     "part_data",
     "result_data",
@@ -209,18 +210,23 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
         "nearest": None
         if nearest is None
         else {"words": nearest.words, "fixture": fixture_data(nearest.fixture, toolkit)},
-        "helps": [
-            {
-                "change": help.change,
-                "fixtures": help.fixtures,
-                "complete": help.complete,
-                "fields": None
-                if help.fields is None
-                else {key: written(value) for key, value in help.fields.items()},
-            }
-            for help in explanation.helps
-        ],
+        "helps": helps_data(explanation, "fields"),
     }
+
+
+def helps_data(explanation: Explanation, key: str) -> list[dict[str, Any]]:
+    """Describes what would help, with the changed fields of the toolkit under a key."""
+    return [
+        {
+            "change": help.change,
+            "fixtures": help.fixtures,
+            "complete": help.complete,
+            key: None
+            if help.fields is None
+            else {name: written(value) for name, value in help.fields.items()},
+        }
+        for help in explanation.helps
+    ]
 
 
 def toolkit_data(loaded: LoadedToolkit) -> dict[str, Any]:

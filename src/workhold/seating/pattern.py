@@ -246,7 +246,7 @@ def refuse_unseated(toolkit: Toolkit) -> None:
     InputError
         With two clamps, where no peg stands still, for pegs with a flat, and for pegs without a radius.
     """
-    words = "what a part does while it is clamped is told"
+    words = "what a part does while it is clamped is stated"
     if not toolkit.closes_at_once:
         raise InputError(f"{words} of one clamp: with two the part is put against its locators by hand.")
     if all(plate.travel is not None for plate in toolkit.plates):

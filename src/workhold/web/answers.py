@@ -9,7 +9,7 @@ from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields, written
+from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.pegs import standoff
@@ -23,7 +23,7 @@ from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import settings_of
 from workhold.model.shown import Shown, shown
 from workhold.model.workpiece import Workpiece
-from workhold.presenting.data import finite
+from workhold.presenting.data import finite, helps_data
 
 if TYPE_CHECKING:
     from workhold.files.outline.chain import Chain
@@ -387,15 +387,5 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: 
             "row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, toolkit)},
             "words": nearest.words,
         },
-        "helps": [
-            {
-                "change": help.change,
-                "fixtures": help.fixtures,
-                "complete": help.complete,
-                "toolkit": None
-                if help.fields is None
-                else {name: written(value) for name, value in help.fields.items()},
-            }
-            for help in explanation.helps
-        ],
+        "helps": helps_data(explanation, "toolkit"),
     }

@@ -169,7 +169,7 @@ async def paper(
     peg_height: Size = None,
     clearance: Annotated[float | None, Query(ge=0, le=1e6)] = None,
     seating: Annotated[
-        bool | None, Query(description="whether the sheet tells where else the part can rest")
+        bool | None, Query(description="whether the sheet states where else the part can rest")
     ] = None,
     day: Annotated[date | None, Query(alias="date")] = None,
     revision: Revision = None,

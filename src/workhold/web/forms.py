@@ -236,7 +236,7 @@ class SearchForm(Form):
 
 
 class JobForm(SearchForm):
-    """A search for every fixture; of so many of the first ones the seating is told, and what is asked of it."""
+    """A search for every fixture, with the number of first ones whose seating is worked out, and rules for it."""
 
     toolkit: HeldIn
     seating: int | None = Field(default=None, ge=1, le=MOST_SEATED)

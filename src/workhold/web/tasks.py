@@ -41,7 +41,7 @@ NamedQuery = tuple[str, Query]
 
 # Seconds between reports of progress.
 PAUSE = 0.1
-# Best fixtures told when loads are asked for over all of them.
+# Best fixtures listed when loads are asked for over all of them.
 MOST_RESISTING = 10
 # What the questions of a part's readers are called on the page, or by those who ask the server for more.
 CALLED = {

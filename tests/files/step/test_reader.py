@@ -412,7 +412,7 @@ def test_a_solid_that_cannot_be_read_is_told(tmp_path: Path) -> None:
     path.write_text(text.replace("CLOSED_SHELL", "CLOSED_SHAPE", 1))
     loaded = read_workpiece(path)
     assert area(loaded.workpiece) == pytest.approx(2400 - (4 - pi) * 25)
-    assert loaded.remarks[0].startswith("The file tells of 2 solids, but only 1 could be read")
+    assert loaded.remarks[0].startswith("The file names 2 solids, but only 1 could be read")
     path.write_text(text.replace("CLOSED_SHELL", "CLOSED_SHAPE"))
     with pytest.raises(InputError, match="no solid of the STEP file can be read"):
         read_workpiece(path)

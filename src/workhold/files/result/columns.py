@@ -179,7 +179,7 @@ def read_columns(path: Path) -> Result:
     seatings = seatings_of(data, path)
     if len(seatings) > len(result):
         raise InputError(
-            f"{path}: the seating of {len(seatings)} fixtures is told, but {len(result)} are listed."
+            f"{path}: the seating of {len(seatings)} fixtures is stated, but {len(result)} are listed."
         )
     # The pose decides which of the seats is the fixture's own.
     poses = [fixture.pose for fixture in result[: len(seatings)]]

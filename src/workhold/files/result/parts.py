@@ -193,7 +193,7 @@ def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Resu
     query = result.query
     if len(seating) > (query.seating or 0) or len(seating) > len(result):
         raise InputError(
-            f"{path}: the seating of {len(seating)} fixtures is told, but it is asked of "
+            f"{path}: the seating of {len(seating)} fixtures is stated, but it is asked of "
             f"{query.seating or 0} and {len(result)} are listed."
         )
     return evolve(result, seating=tuple(one.in_toolkit(query.toolkit, query.opening) for one in seating))

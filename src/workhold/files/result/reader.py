@@ -111,7 +111,7 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
             if "seating" in fixture:
                 if len(seating) < number - 1:
                     raise InputError(
-                        f"{path}: fixture {number} has its seating told, but not the one before it."
+                        f"{path}: fixture {number} has its seating stated, but not the one before it."
                     )
                 theta, x, y, *_ = rows[-1][4]
                 seating.append(checked_seating(fixture["seating"], Pose(theta, x, y), path, number))

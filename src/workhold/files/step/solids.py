@@ -97,7 +97,7 @@ def lost_remarks(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
     if counted_in_text(content) <= len(solids):
         return []
     return [
-        f"The file tells of {counted_in_text(content)} solids, but only {len(solids)} could be read: "
+        f"The file names {counted_in_text(content)} solids, but only {len(solids)} could be read: "
         "check that yours "
         "is there."
     ]
