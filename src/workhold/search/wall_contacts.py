@@ -14,8 +14,6 @@ only grazes an arc there is no bound, and the contact is decided in balls.
 
 from __future__ import annotations
 
-from math import inf
-
 import numpy as np
 from attrs import define, fields, frozen
 from numpy.typing import NDArray
@@ -43,7 +41,6 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.rules import ROUNDING
-from workhold.listing.wall_fixtures import WallFixtures
 
 __all__ = [
     "ContactPairs",
@@ -53,7 +50,6 @@ __all__ = [
     "may_oppose",
     "part_on_wall",
     "pin_contacts_on",
-    "reaction_doubts",
     "seating",
 ]
 
@@ -343,25 +339,6 @@ def seating(
         )
     held = worst > 1.0
     return null, pushes, held, ~held & ~(worst < -1.0)
-
-
-def reaction_doubts(
-    pressed: WallFixtures,
-    lying: PartOnWall,
-    one: PinContacts,
-    two: PinContacts,
-    locator: IntArray,
-    problem: Problem,
-) -> Array:
-    """How far the forces of wall and locator (M,) may be off, from how far places and normals may be."""
-    reach = np.maximum(one.reach[locator], two.reach)
-    swing = np.maximum(one.swing[locator], two.swing)
-    across = np.abs(one.normal[locator, 0])
-    size = 1.0 + np.abs(pressed.null).sum(axis=1)
-    wall = lying.length / problem.wrench_length
-    with np.errstate(invalid="ignore"):
-        doubt = 4.0 * size * (20.0 * swing + 4.0 * (reach + lying.off) / problem.wrench_length + ROUNDING)
-        return np.asarray(np.nan_to_num(doubt / (across * min(wall, 1.0)), nan=inf))
 
 
 def closure(

@@ -31,6 +31,7 @@ from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.geometry.segment import bounding_box
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
+from workhold.kernels.contact.rules import ROUNDING
 from workhold.listing.clamp_placement import axis_of
 from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_table
 from workhold.model.fixture import Pose
@@ -45,7 +46,6 @@ from workhold.search.wall_contacts import (
     may_oppose,
     part_on_wall,
     pin_contacts_on,
-    reaction_doubts,
     seating,
 )
 
@@ -283,6 +283,25 @@ class WallSearch:
             features=(int(one.feature[behind]), int(two.feature[k])),
             branches=(float(one.branch[behind]), float(two.branch[k])),
         )
+
+
+def reaction_doubts(
+    pressed: WallFixtures,
+    lying: PartOnWall,
+    one: PinContacts,
+    two: PinContacts,
+    locator: IntArray,
+    problem: Problem,
+) -> Array:
+    """How far the forces of wall and locator (M,) may be off, from how far places and normals may be."""
+    reach = np.maximum(one.reach[locator], two.reach)
+    swing = np.maximum(one.swing[locator], two.swing)
+    across = np.abs(one.normal[locator, 0])
+    size = 1.0 + np.abs(pressed.null).sum(axis=1)
+    wall = lying.length / problem.wrench_length
+    with np.errstate(invalid="ignore"):
+        doubt = 4.0 * size * (20.0 * swing + 4.0 * (reach + lying.off) / problem.wrench_length + ROUNDING)
+        return np.asarray(np.nan_to_num(doubt / (across * min(wall, 1.0)), nan=inf))
 
 
 def allowed_edges(problem: Problem) -> list[int]:
