@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 import re
 import subprocess
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from attrs import field, frozen
@@ -32,6 +32,10 @@ KIND_ATTRIBUTES = {
 }
 # Fields whose names are words of other things too, and are not counted.
 COMMON_WORDS = {"columns", "directions", "rows"}
+# What variables that hold a toolkit are called, and those that hold its fields by name.
+HOLDERS, RECORDS = {"toolkit"}, {"fields", "given", "said"}
+# What of a row of a table is the name of another field.
+REFERRING = {"at_least", "follows", "name"}
 KIND_WORDS = {"vise", "vises", "plate", "plates", "fence", "fences", "opening"}
 LONGEST_FILE, SHORTEST_FILE, LONGEST_LINE, LONGEST_SENTENCE, LONGEST_SUBJECT = 400, 40, 110, 30, 72
 # Openings that lean on something said elsewhere.
@@ -186,15 +190,74 @@ def field_names() -> tuple[str, ...]:
 
 
 def files_naming_fields(sources: Sequence[Source], names: Sequence[str] = ()) -> Iterator[Finding]:
-    """Each file in which the name of a field stands, by field: as an attribute, a keyword argument or a text."""
-    wanted = set(names or field_names())
+    """Each file that names the field of a toolkit, by field.
+
+    Carriers, lattices and pegs have attributes of the same names, and some forms of values are called like a field. Of
+    these a file may speak freely. The name of a toolkit's field is
+
+    - an attribute of ``toolkit``, and of ``self`` in a kind, which is a class that is made from a table;
+    - a keyword argument of a kind's constructor, or of ``evolve`` with a toolkit;
+    - a text in a call that makes a row of a table, or in ``getattr`` with a toolkit;
+    - a text by which ``fields``, ``given``, ``said`` or ``toolkit`` is asked, in brackets, by ``get`` or by ``pop``;
+    - a text in a tuple, a list, a set, or among the keys of a mapping, all of which are fields of toolkits;
+    - a text that is compared with ``name``.
+    """
+    wanted, every = set(names or field_names()), COMMON_WORDS | set(names or field_names())
     for source in sources:
         found: dict[str, int] = {}
+        in_kinds = {
+            node
+            for kind in ast.walk(source.tree)
+            if isinstance(kind, ast.ClassDef) and "made_from_table" in map(last_name, kind.decorator_list)
+            for node in ast.walk(kind)
+        }
         for node in ast.walk(source.tree):
-            name = getattr(node, "attr", "") or getattr(node, "arg", "") or getattr(node, "value", "")
-            if isinstance(node, ast.Attribute | ast.keyword | ast.Constant) and isinstance(name, str):
-                found.setdefault(name, node.lineno)
-        yield from (Finding(name, f"{source.name}:{found[name]}") for name in sorted(wanted & found.keys()))
+            owners = HOLDERS | {"self"} if node in in_kinds else HOLDERS
+            for name in wanted & fields_named(node, owners, every):
+                found.setdefault(name, getattr(node, "lineno", 1))
+        yield from (Finding(name, f"{source.name}:{found[name]}") for name in sorted(found))
+
+
+def fields_named(node: ast.AST, owners: set[str], every: set[str]) -> set[str]:
+    """The names of fields, and other words, by which a node of the syntax tree asks a toolkit or its data.
+
+    Parameters
+    ----------
+    node : see the list in ``files_naming_fields``.
+    owners : what variables that hold a toolkit are called.
+    every : the names of all fields.
+    """
+    match node:
+        case ast.Attribute(value=value, attr=name) if last_name(value) in owners:
+            return {name}
+        case ast.Subscript(value=value, slice=key) if last_name(value) in HOLDERS | RECORDS:
+            return texts([key])
+        case ast.Call(func=func, args=args, keywords=keywords):
+            match last_name(func), args:
+                case ("get" | "pop", [key, *_]) if (
+                    last_name(getattr(func, "value", func)) in HOLDERS | RECORDS
+                ):
+                    return texts([key])
+                case "getattr", [owner, key, *_] if last_name(owner) in owners:
+                    return texts([key])
+                case (("ToolkitField" | "shown"), _):
+                    return texts([*args, *(one.value for one in keywords if one.arg in REFERRING)])
+                case (("evolve" | "replace"), [owner, *_]) if last_name(owner) in owners:
+                    return {one.arg or "" for one in keywords}
+                case kind, _ if kind in KIND_CLASSES:
+                    return {one.arg or "" for one in keywords}
+        case ast.Dict(keys=[_, *_] as keys) if texts(keys) <= every:
+            return texts(keys)
+        case ast.Tuple(elts=items) | ast.List(elts=items) | ast.Set(elts=items) if len(items) > 1:
+            return texts(items) if all(texts([one]) and texts([one]) <= every for one in items) else set()
+        case ast.Compare(left=left, comparators=others) if "name" in map(last_name, [left, *others]):
+            return texts([left, *others])
+    return set()
+
+
+def texts(nodes: Iterable[ast.AST | None]) -> set[str]:
+    """The texts among written expressions."""
+    return {one.value for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)}
 
 
 def long_files(sources: Sequence[Source]) -> Iterator[Finding]:

@@ -15,7 +15,7 @@ from workhold.cli.commands import option
 from workhold.cli.search_options import with_fit_of
 from workhold.cli.values import length, optional_length, pitches, whole_number
 from workhold.errors import InputError
-from workhold.fixels.fields import MIN_GAP, NAMES, OPTIONS
+from workhold.fixels.fields import MIN_GAP, NAMES, OPTIONS, PITCH
 from workhold.fixels.table import TOOLKIT_SECTION
 from workhold.units import Unit
 
@@ -159,7 +159,7 @@ class ToolkitWords:
             )
         if opening > travel.least:
             # The jaws never stand farther apart than the pegs, so the one limit says it all.
-            vise = toolkit_of(kind, fields | {"min_gap": opening})
+            vise = toolkit_of(kind, fields | {MIN_GAP.name: opening})
         return vise, tolerance
 
 
@@ -271,7 +271,7 @@ def toolkits_to_try(
     lists: list[list[tuple[str, dict[str, Any]]]] = []
     if pitch is not None:
         lists.append(
-            [(f"pitch {word}", {"pitch": pitch_of(word, unit)}) for word in words_of("--pitch", pitch)]
+            [(f"pitch {word}", {PITCH.name: pitch_of(word, unit)}) for word in words_of("--pitch", pitch)]
         )
     if columns is not None:
         numbers = [whole_number("--columns", word) for word in words_of("--columns", columns)]

@@ -29,7 +29,7 @@ from attrs import frozen
 from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
 from workhold.files.text import read_text, toml_table
-from workhold.fixels.fields import OPTIONS
+from workhold.fixels.fields import COLUMNS, OPTIONS, PEG_RADIUS, PITCH
 from workhold.fixels.kinds import USUAL, kind_of, toolkit_of
 from workhold.fixels.table import Form
 from workhold.fixels.toolkit import Toolkit
@@ -190,7 +190,7 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
     given = {row.name: in_mm(row.form, entries[row.name], unit) for row in OPTIONS if row.name in entries}
     fields: dict[str, Any] = {**said, **given}
     toolkit_of(kind, fields)
-    fit = fit_of(entries, unit, fields["peg_radius"])
+    fit = fit_of(entries, unit, fields[PEG_RADIUS.name])
     return LoadedToolkit(
         name=name,
         title=entries.get("title", ""),
@@ -198,7 +198,7 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
         unit=unit,
         kind=kind,
         fields=fields,
-        tolerance=tolerance_of(entries, unit, fit, fields["peg_radius"]),
+        tolerance=tolerance_of(entries, unit, fit, fields[PEG_RADIUS.name]),
         fit=fit,
         assumed=tuple(entries.get("assumed", ())),
     )
@@ -286,7 +286,9 @@ def preset_names() -> tuple[str, ...]:
         if entry.name.endswith(ENDING)
     ]
     presets = [preset(name.removesuffix(ENDING)) for name in found]
-    presets.sort(key=lambda one: (one.name.split("-")[0], one.fields["pitch"], one.fields.get("columns", 0)))
+    presets.sort(
+        key=lambda one: (one.name.split("-")[0], one.fields[PITCH.name], one.fields.get(COLUMNS.name, 0))
+    )
     presets.sort(key=lambda one: (not is_sold(one.name), one.toolkit.moving.has_lattice))
     return tuple(one.name for one in presets)
 

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import ClassVar
 
-from workhold.fixels.carrier import WALL
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import (
     ALL_PAIRS,
@@ -21,12 +20,14 @@ from workhold.fixels.fields import (
     FLAT,
     ON_A_PLATE,
     ONE_CLAMP,
+    PEG_RADIUS,
+    PITCH,
     TRAVEL,
     TWO_CLAMPS,
     WALL_OFFSET,
     WAYS,
 )
-from workhold.fixels.making import finer, made_from_table
+from workhold.fixels.making import finer, made_from_table, wall_carrier
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
@@ -125,7 +126,7 @@ class Fence(Plate):
     page: ClassVar[PageWords] = PageWords(
         "Fence with a stop, one clamp or two",
         "Close clamp",
-        {"pitch": [20.0, 20.0], "peg_radius": 3.0, "wall_offset": 10.0, "clamps": 1},
+        {PITCH.name: [20.0, 20.0], PEG_RADIUS.name: 3.0, WALL_OFFSET.name: 10.0, CLAMPS.name: 1},
     )
 
     wall_offset: float
@@ -143,7 +144,7 @@ class Fence(Plate):
     @property
     def distinct_directions(self) -> tuple[str, ...]:
         """All directions: the fence turns with the plate."""
-        if self.clamps == 2:
+        if self.is_paired:
             return tuple(name for name in DIRECTIONS if any(name in pair for pair in self.directions))
         return self.directions
 
@@ -156,7 +157,7 @@ class Fence(Plate):
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
         """A locator, the two ends of the fence's contact and a clamp, or two, once for each direction."""
         names = self.distinct_directions
-        if self.clamps == 1:
+        if not self.is_paired:
             return tuple(
                 Arrangement("edge", (1, 2, *(int(other == name) for other in names)), name) for name in names
             )
@@ -183,16 +184,14 @@ class Fence(Plate):
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp in all directions, and half the pitch."""
-        if self.clamps == 1:
-            yield Change("with a second clamp", {"clamps": 2, "directions": None})
-        if self.clamps == 1 and len(self.directions) < len(DIRECTIONS):
-            yield Change("with the clamp in any of the four directions", {"directions": tuple(DIRECTIONS)})
+        if not self.is_paired:
+            yield Change("with a second clamp", {CLAMPS.name: 2, DIRECTION.name: None})
+        if not self.is_paired and len(self.directions) < len(DIRECTIONS):
+            yield Change("with the clamp in any of the four directions", {DIRECTION.name: tuple(DIRECTIONS)})
         yield from finer(self)
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The plate, the wall, and for each direction the clamp."""
-        size = self.pitch, self.columns, self.rows
-        wall = Carrier(WALL, *size, 0.0, 0.0, noun="fence", peg="end", is_wall=True)
         plate, *clamps = self.plate_and_clamps((0.0, self.wall_offset))
-        return plate, wall, *clamps
+        return plate, wall_carrier(self, "fence"), *clamps

@@ -9,9 +9,8 @@ from functools import cached_property
 from math import pi
 from typing import ClassVar
 
-from workhold.fixels.carrier import WALL
-from workhold.fixels.fields import FLAT, MAX_OPENING, MIN_GAP, ON_A_PLATE, PEG_RADIUS
-from workhold.fixels.making import finer, made_from_table, settle
+from workhold.fixels.fields import FLAT, MAX_OPENING, MIN_GAP, ON_A_PLATE, PEG_RADIUS, PITCH
+from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle, wall_carrier
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
@@ -29,9 +28,9 @@ FIELDS = FieldTable(
         PEG_RADIUS,
         MIN_GAP.shown(
             PageLabel("Smallest opening", "peg radius"),
-            follows="peg_radius",
+            follows=PEG_RADIUS.name,
             figure="smallest opening",
-            at_least="peg_radius",
+            at_least=PEG_RADIUS.name,
             below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would "
             "stand in the flat jaw; give the least distance from the flat jaw to that row, in mm.",
         ),
@@ -111,7 +110,7 @@ class FlatJaw(Toolkit):
     )
 
     page: ClassVar[PageWords] = PageWords(
-        "Vise with one flat jaw", "Close vise", {"pitch": [10.0, 10.0], "peg_radius": 3.0}
+        "Vise with one flat jaw", "Close vise", {PITCH.name: [10.0, 10.0], PEG_RADIUS.name: 3.0}
     )
 
     pitch: tuple[float, float]
@@ -128,13 +127,8 @@ class FlatJaw(Toolkit):
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The flat jaw, and the jaw that moves, whose travel is the jaw separation."""
-        size = self.pitch, self.columns, self.rows
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
-        wall = Carrier(WALL, *size, 0.0, 0.0, noun="flat jaw", peg="end", is_wall=True)
-        jaw = Carrier(
-            "jaw", *size, self.peg_radius, self.peg_radius, travel=travel, noun="jaw", flat=self.flat
-        )
-        return wall, jaw
+        return wall_carrier(self, "flat jaw"), lattice_carrier(self, "jaw", travel=travel, noun="jaw")
 
     @property
     def law(self) -> str:

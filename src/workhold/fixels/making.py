@@ -13,18 +13,29 @@ from itertools import product
 from math import inf, isfinite, isnan, nan
 from typing import Any, TypeVar
 
-from attrs import NOTHING, field, frozen
+from attrs import NOTHING, evolve, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import Holes, holes_named
+from workhold.fixels.carrier import WALL, Carrier, Holes, holes_named
 from workhold.fixels.contacts import DIRECTIONS
+from workhold.fixels.fields import PITCH
 from workhold.fixels.pegs import flat_of, resolved_flat
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.limits import MOST_BLOCKED, MOST_HOLES, real, refuse_long
 
-__all__ = ["finer", "made_from_table", "optional_length", "pair", "refuse_many_holes", "settle", "whole"]
+__all__ = [
+    "finer",
+    "lattice_carrier",
+    "made_from_table",
+    "optional_length",
+    "pair",
+    "refuse_many_holes",
+    "settle",
+    "wall_carrier",
+    "whole",
+]
 
 
 def pair(value: float | Iterable[float]) -> tuple[float, float]:
@@ -301,9 +312,28 @@ def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
             raise InputError(f"every column of the {carrier} {noun} is blocked: leave at least one.")
 
 
+def lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
+    """A carrier with the holes and pegs of a toolkit.
+
+    Parameters
+    ----------
+    toolkit : whose pitch, counts of holes, peg radius and flat the carrier has.
+    name : of the carrier.
+    others : what else it has, or has instead.
+    """
+    size = toolkit.pitch, toolkit.columns, toolkit.rows, toolkit.peg_radius, toolkit.peg_radius
+    return evolve(Carrier(name, *size, flat=toolkit.flat), **others)
+
+
+def wall_carrier(toolkit: Any, noun: str) -> Carrier:
+    """The straight wall of a toolkit, along x at y = 0."""
+    size = toolkit.pitch, toolkit.columns, toolkit.rows
+    return Carrier(WALL, *size, 0.0, 0.0, noun=noun, peg="end", is_wall=True)
+
+
 def finer(toolkit: Any) -> Iterator[Change]:
     """Yields half the pitch as a change to try, where pegs are thin enough; every hole stays where it is."""
     if min(toolkit.pitch) >= 4 * toolkit.peg_radius:
         counts = {name: getattr(toolkit, name) for name in ("columns", "rows")}
         more = {name: 2 * count - 1 for name, count in counts.items() if count is not None}
-        yield Change("with half the pitch", {"pitch": tuple(one / 2 for one in toolkit.pitch), **more})
+        yield Change("with half the pitch", {PITCH.name: tuple(one / 2 for one in toolkit.pitch), **more})

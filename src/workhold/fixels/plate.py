@@ -16,8 +16,17 @@ from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.fields import CLAMP_RADIUS, CLAMPS, DIRECTION, FLAT, ON_A_PLATE, TRAVEL
-from workhold.fixels.making import finer, made_from_table, settle
+from workhold.fixels.fields import (
+    CLAMP_RADIUS,
+    CLAMPS,
+    DIRECTION,
+    FLAT,
+    ON_A_PLATE,
+    PEG_RADIUS,
+    PITCH,
+    TRAVEL,
+)
+from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
@@ -99,7 +108,9 @@ class Plate(Toolkit):
     )
 
     page: ClassVar[PageWords] = PageWords(
-        "Plate with one clamp or two", "Close clamp", {"pitch": [20.0, 20.0], "peg_radius": 3.0, "clamps": 1}
+        "Plate with one clamp or two",
+        "Close clamp",
+        {PITCH.name: [20.0, 20.0], PEG_RADIUS.name: 3.0, CLAMPS.name: 1},
     )
 
     pitch: tuple[float, float]
@@ -117,9 +128,15 @@ class Plate(Toolkit):
         object.__setattr__(self, "directions", self.resolved_directions())
 
     @property
+    def is_paired(self) -> bool:
+        """Whether two clamps are needed together."""
+        return self.clamps == 2
+
+    @property
     def is_square(self) -> bool:
         """Whether a quarter turn of the plate leaves it as it is."""
-        return self.pitch[0] == self.pitch[1] and self.columns == self.rows
+        holes = lattice_carrier(self, "plate")
+        return holes.pitch[0] == holes.pitch[1] and holes.columns == holes.rows
 
     def resolved_directions(self) -> tuple[Any, ...]:
         """The directions, or pairs of them, that are meant.
@@ -130,7 +147,7 @@ class Plate(Toolkit):
             For pairs where there is one clamp.
         """
         names = self.directions
-        if self.clamps == 1:
+        if not self.is_paired:
             if any(not isinstance(name, str) for name in names):
                 raise InputError(
                     "the directions are pairs, but there is one clamp: give two clamps, or no pairs."
@@ -153,7 +170,7 @@ class Plate(Toolkit):
     @property
     def distinct_directions(self) -> tuple[str, ...]:
         """The clamps' directions, without those that half a turn of the plate makes of another one."""
-        if self.clamps == 2:
+        if self.is_paired:
             return tuple(name for name in DIRECTIONS if any(name in pair for pair in self.distinct_pairs))
         return tuple(
             name for name in self.directions if not (name[0] == "+" and f"-{name[1]}" in self.directions)
@@ -174,7 +191,7 @@ class Plate(Toolkit):
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
         """Three locators and a clamp for each direction, or two clamps for each pair of directions."""
         names = self.distinct_directions
-        if self.clamps == 1:
+        if not self.is_paired:
             return tuple(
                 Arrangement("clamp", (3, *(int(other == name) for other in names)), name) for name in names
             )
@@ -190,11 +207,19 @@ class Plate(Toolkit):
 
     def plate_and_clamps(self, offset: tuple[float, float]) -> tuple[Carrier, ...]:
         """The plate with its first hole at a place in mm, and the clamp of each direction."""
-        size = self.pitch, self.columns, self.rows, self.peg_radius, self.peg_radius
-        plate = Carrier("plate", *size, offset, noun="plate", peg="locator", flat=self.flat)
+        plate = lattice_carrier(self, "plate", offset=offset, noun="plate", peg="locator")
         least, most = (-inf, None) if self.travel is None else (-self.travel[1], -self.travel[0])
-        size = self.pitch, self.columns, self.rows, self.clamp_radius, self.clamp_radius
-        clamp = Carrier("clamp", *size, offset, noun="clamp", peg="clamp", on="plate")
+        clamp = lattice_carrier(
+            self,
+            "clamp",
+            peg_radius=self.clamp_radius,
+            body_radius=self.clamp_radius,
+            offset=offset,
+            noun="clamp",
+            peg="clamp",
+            on="plate",
+            flat=None,
+        )
         return (
             plate,
             *(
@@ -206,12 +231,14 @@ class Plate(Toolkit):
     @property
     def ways(self) -> tuple[Plate, ...]:
         """The plate with one clamp in one direction each time."""
-        return tuple(self.changed({"clamps": 1, "directions": (name,)}) for name in self.distinct_directions)
+        return tuple(
+            self.changed({CLAMPS.name: 1, DIRECTION.name: (name,)}) for name in self.distinct_directions
+        )
 
     @property
     def law(self) -> str:
         """The law of one clamp, or of two."""
-        return "plate" if self.clamps == 1 else "two clamps"
+        return "two clamps" if self.is_paired else "plate"
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
@@ -222,13 +249,13 @@ class Plate(Toolkit):
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp along rows and columns, and half the pitch."""
-        if self.clamps == 2:
-            yield Change("with one clamp", {"clamps": 1, "directions": None})
+        if self.is_paired:
+            yield Change("with one clamp", {CLAMPS.name: 1, DIRECTION.name: None})
             if len(self.distinct_pairs) == 1:
                 pairs = ("-x", "-y"), ("-x", "+y")
-                yield Change("with the clamps along rows and columns either way", {"directions": pairs})
-        if self.clamps == 1:
-            yield Change("with a second clamp", {"clamps": 2, "directions": None})
+                yield Change("with the clamps along rows and columns either way", {DIRECTION.name: pairs})
+        if not self.is_paired:
+            yield Change("with a second clamp", {CLAMPS.name: 2, DIRECTION.name: None})
             if len(self.distinct_directions) == 1:
-                yield Change("with the clamp along the columns as well", {"directions": ("-x", "-y")})
+                yield Change("with the clamp along the columns as well", {DIRECTION.name: ("-x", "-y")})
         yield from finer(self)

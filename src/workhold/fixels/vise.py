@@ -20,7 +20,7 @@ from workhold.fixels.fields import (
     ROW_OFFSET,
     ROWS,
 )
-from workhold.fixels.making import made_from_table, settle
+from workhold.fixels.making import lattice_carrier, made_from_table, settle
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
@@ -98,7 +98,9 @@ class Vise(Toolkit):
     setup_words: ClassVar[SetupWords] = SETUP
 
     page: ClassVar[PageWords] = PageWords(
-        "Vise, pegs on both jaws", "Close vise", {"pitch": [10.0, 10.0], "columns": 2, "peg_radius": 3.0}
+        "Vise, pegs on both jaws",
+        "Close vise",
+        {PITCH.name: [10.0, 10.0], COLUMNS.name: 2, PEG_RADIUS.name: 3.0},
     )
 
     pitch: tuple[float, float]
@@ -118,21 +120,17 @@ class Vise(Toolkit):
     @property
     def carriers(self) -> tuple[Carrier, Carrier]:
         """The left jaw, and the right jaw, whose travel is the jaw separation."""
-        left = Carrier(
+        left = lattice_carrier(
+            self,
             JAWS[0],
-            self.pitch,
-            self.columns,
-            self.rows,
-            self.peg_radius,
-            self.body_radius,
+            body_radius=self.body_radius,
             blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[0]),
             noun=NOUN,
-            flat=self.flat,
         )
         right = evolve(
             left,
             name=JAWS[1],
-            offset=((self.columns - 1) * self.pitch[0], self.row_offset),
+            offset=((self.columns - 1) * left.pitch[0], self.row_offset),
             blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[1]),
             travel=Travel(0.0, self.min_gap, self.max_opening),
         )
@@ -154,16 +152,18 @@ class Vise(Toolkit):
         def words(length: float) -> str:
             return f"{unit.figure(length)} {unit.abbreviation}"
 
-        narrow, offset = 2 * self.peg_radius, self.pitch[1] / 2
+        jaw, _ = self.carriers
+        narrow, offset = 2 * jaw.peg_radius, jaw.pitch[1] / 2
         if self.min_gap > narrow > 0:
-            yield Change(f"with a smallest gap of {words(narrow)}", {"min_gap": narrow})
-        yield Change("with one more column on each jaw", {"columns": self.columns + 1})
+            yield Change(f"with a smallest gap of {words(narrow)}", {MIN_GAP.name: narrow})
+        yield Change("with one more column on each jaw", {COLUMNS.name: self.columns + 1})
         if self.row_offset == 0.0:
-            yield Change(f"with the right jaw's rows offset by {words(offset)}", {"row_offset": offset})
-        if min(self.pitch) >= 4 * self.peg_radius:
-            half = (self.pitch[0] / 2, self.pitch[1] / 2)
+            yield Change(f"with the right jaw's rows offset by {words(offset)}", {ROW_OFFSET.name: offset})
+        if min(jaw.pitch) >= 4 * jaw.peg_radius:
+            half = (jaw.pitch[0] / 2, jaw.pitch[1] / 2)
             yield Change(
-                "with half the pitch", {"pitch": half, "min_gap": min(self.min_gap, half[0]), "blocked": ()}
+                "with half the pitch",
+                {PITCH.name: half, MIN_GAP.name: min(self.min_gap, half[0]), BLOCKED.name: ()},
             )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from workhold.archive import Column, Columns
+from workhold.fixels.fields import CLAMPS
 from workhold.model.quality import FIGURES
 
 __all__ = ["COLUMNS", "COLUMNS_OF", "HEAD", "PAIR_COLUMNS", "columns_said"]
@@ -39,6 +40,6 @@ def columns_said(head: str) -> Columns:
     """What the columns hold beside a head, which may be of any kind of file."""
     try:
         toolkit = json.loads(head).get("toolkit")
-        return PAIR_COLUMNS if toolkit is not None and toolkit.get("clamps") == 2 else COLUMNS
+        return PAIR_COLUMNS if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else COLUMNS
     except (ValueError, AttributeError, RecursionError):
         return COLUMNS

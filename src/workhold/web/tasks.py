@@ -91,7 +91,7 @@ def warm_up(kind: str) -> None:
         from workhold.fixels.vise import Vise
 
         corners = [[0.0, 0.0, 0.0], [30.0, 0.0, 0.2], [34.0, 25.0, 0.0], [0.0, 20.0, 0.0]]
-        design(Workpiece.from_loops("warm", [corners]), Vise(pitch=8, columns=2, peg_radius=2))
+        design(Workpiece.from_loops("warm", [corners]), Vise(8, 2, 2))
         return
     import workhold.drawing.sheet
     import workhold.files.dxf.reader

@@ -20,6 +20,7 @@ from attrs import asdict
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import fixture_lines, rounded_degrees
 from workhold.fixels.carrier import Holes
+from workhold.fixels.fields import FLAT
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
 from workhold.fixels.toolkit import Toolkit
@@ -153,7 +154,7 @@ def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
     """The fields of a toolkit as they are written: lengths in mm, holes by name, their number first."""
     values = asdict(toolkit, recurse=False)  # type: ignore[arg-type]
     fields = {name: written(value) for name, value in values.items()}
-    fields = {name: value for name, value in fields.items() if name != "flat" or value is not None}
+    fields = {name: value for name, value in fields.items() if name != FLAT.name or value is not None}
     return {name: fields.pop(name) for name in ("pitch", "columns", "rows") if name in fields} | fields
 
 
