@@ -9,7 +9,7 @@ import pytest
 from attrs import evolve
 
 from candidate_examples import candidates
-from workhold.contact.frame import Frame
+from workhold.contact.problem import Frame
 from workhold.fixels.vise import Vise
 from workhold.listing.placing import outward_moves, placed_as_is
 

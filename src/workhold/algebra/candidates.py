@@ -26,7 +26,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.contact.frame import Frame
+from workhold.contact.problem import Frame
 from workhold.conventions import PARALLEL, WEDGE_SLACK
 from workhold.errors import InputError
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y

@@ -14,7 +14,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.resultants import Complex
-from workhold.contact.frame import Frame
+from workhold.contact.problem import Frame
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, RISES, ROW_SLACK
 from workhold.kernels.base.feature import (
     AXIS_X,

@@ -29,8 +29,7 @@ from workhold.algebra.sliding_pairs import (
     three_and_one_sliding_pairs,
     two_and_two_sliding_pairs,
 )
-from workhold.contact.frame import Frame
-from workhold.contact.problem import Problem, Progress
+from workhold.contact.problem import Frame, Problem, Progress
 from workhold.conventions import SAME_CENTER
 from workhold.errors import InputError
 from workhold.kernels.base.feature import SEGMENT_LENGTH

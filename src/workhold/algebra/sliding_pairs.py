@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from workhold.algebra.candidates import PegPairs, are_parallel, sector_of
 from workhold.algebra.conditions import STEEPEST, SimultaneousContacts, row_points
 from workhold.algebra.resultants import Complex, ContactSystems
-from workhold.contact.frame import Frame
+from workhold.contact.problem import Frame
 from workhold.conventions import (
     COINCIDENT,
     LEAST_SLIDING_REACH,

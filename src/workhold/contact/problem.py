@@ -1,12 +1,19 @@
-"""What every engine begins with: a query made ready for arithmetic."""
+"""What every engine begins with: a query made ready for arithmetic, in the frame of the search.
+
+In the frame a toolkit is turned so that its moving carrier slides along +x. Quarter turns alone are used, and
+fixtures found in the frame are carried back. Everything between contact features and placed fixtures works
+there; a vise needs no turning.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cached_property
+from math import inf, pi
+from typing import Any
 
 import numpy as np
-from attrs import define
+from attrs import define, evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.features import (
@@ -16,18 +23,181 @@ from workhold.contact.features import (
     end_slacks,
     feature_rows,
 )
-from workhold.contact.frame import Frame
 from workhold.errors import InputError
-from workhold.fixels.toolkit import Carrier, Toolkit
+from workhold.fixels.carrier import Holes
+from workhold.fixels.toolkit import Carrier, Toolkit, Travel
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
-from workhold.kernels.base.given import Limits, Setting
+from workhold.kernels.base.given import Lattice, Limits, Setting
 from workhold.limits import refuse_many_steps
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece, outline_diameter
 
-__all__ = ["Problem", "Progress"]
+__all__ = ["Frame", "Problem", "Progress"]
+
+IntArray = NDArray[np.int64]
+
+# Cosine and sine of so many quarter turns.
+QUARTERS = ((1, 0), (0, 1), (-1, 0), (0, -1))
+# A direction this near to a quarter turn, in quarter turns, is one.
+ROUNDING = 1e-12
+
+
+@frozen
+class Frame:
+    """A toolkit as the search sees it: one carrier stands still, one slides along its rows or columns.
+
+    What other toolkits must bring. Both carriers need one pitch only where both hold two pegs: Type I asks
+    for heights that differ by whole row pitches (``kernels.base.given.Lattice``). Chords are made of the
+    steps of one lattice alone: a carrier of another pitch needs lattice steps and curves of its own
+    (``search.toolkit_search``, ``CurveTable.joined``), and ``equations.take_pegs`` its pitch. A single moving
+    peg, such as a clamp on a line of holes of the locators' own plate, needs the pitch of its rows and their
+    offset only.
+
+    Parameters
+    ----------
+    toolkit : as it was asked for.
+    quarters : quarter turns, counter-clockwise, from the frame back to the toolkit.
+    standing, moving : its carriers in the frame, places in mm about the toolkit's origin.
+    """
+
+    toolkit: Toolkit
+    quarters: int
+    standing: Carrier
+    moving: Carrier
+
+    @classmethod
+    def of(cls, toolkit: Toolkit, farthest: float) -> Frame:
+        """The frame of a toolkit; two pegs on the part are at most ``farthest`` mm apart.
+
+        Raises
+        ------
+        InputError
+            When the lattices are not alike, or the moving carrier slides neither along its rows nor along its
+            columns.
+        """
+        moving = toolkit.moving
+        still = (plate for plate in toolkit.plates if plate.travel is None)
+        # Beside a wall a lattice that slides may be all there is.
+        standing = next(still, moving)
+        assert moving.travel is not None
+        turns = moving.travel.direction / (pi / 2)
+        if abs(turns - round(turns)) > ROUNDING or standing.pitch != moving.pitch:
+            raise InputError(
+                f"the {moving.name} carrier of a {toolkit.kind} does not slide along the rows or columns of "
+                f"a lattice like that of the {standing.name} one: give both one pitch, and a direction of "
+                "whole quarter turns."
+            )
+        quarters = round(turns) % 4
+        return cls(
+            toolkit, quarters, turned(standing, quarters, farthest), turned(moving, quarters, farthest)
+        )
+
+    @property
+    def carriers(self) -> tuple[Carrier, Carrier]:
+        """Both carriers, the one that stands still first."""
+        return self.standing, self.moving
+
+    @property
+    def lattice(self) -> Lattice:
+        """The lattice of holes, common to both."""
+        return Lattice(*self.standing.pitch, self.moving.offset[1] - self.standing.offset[1])
+
+    @property
+    def gap(self) -> float:
+        """The gap rule in mm, -inf when there is none."""
+        return -inf if self.toolkit.gap is None else self.toolkit.gap
+
+    @property
+    def swapped(self) -> int:
+        """Pegs on each carrier of the arrangement that a half turn of everything keeps; 0 for none.
+
+        The half turn swaps the carriers.
+        """
+        swaps = any(s.half_turns % 2 and s.carriers == (1, 0) for s in self.toolkit.symmetries)
+        return next((a.pegs[0] for a in self.toolkit.arrangements if swaps and a.pegs == a.pegs[::-1]), 0)
+
+    @property
+    def travel_at_rest(self) -> float:
+        """Travel in mm at which the moving carrier's first column would be in the last one of the other."""
+        (x, _), (first, _) = self.standing.place(self.standing.column_count - 1, 0), self.moving.offset
+        return float(x - first)
+
+    def step_back(self, column: IntArray, row: IntArray) -> tuple[IntArray, IntArray]:
+        """Differences of columns and rows in the toolkit from those in the frame."""
+        cosine, sine = QUARTERS[self.quarters]
+        return cosine * column - sine * row, sine * column + cosine * row
+
+    def holes(
+        self, standing: NDArray[np.bool_], column: IntArray, row: IntArray
+    ) -> tuple[IntArray, IntArray]:
+        """Columns and rows (N, 4) of the toolkit from those of the frame; ``standing`` says of which carrier.
+
+        Where the carriers have no end across the travel, the lowest is 0.
+        """
+        if self.quarters == 0:
+            return column, row
+        places = [hole_back(carrier, self.quarters, column, row) for carrier in self.carriers]
+        out = [np.where(standing, one, other) for one, other in zip(*places, strict=True)]
+        if self.standing.rows is None:
+            across = self.quarters % 2 == 0
+            out[across] = out[across] - out[across].min(axis=1, keepdims=True, initial=0)
+        return out[0], out[1]
+
+
+def flipped(k: Any, count: int | None) -> Any:
+    """Numbers counted from the other end; from the same one, downward, where there is no other."""
+    return -k if count is None else count - 1 - k
+
+
+def hole_back(carrier: Carrier, quarters: int, column: Any, row: Any) -> tuple[Any, Any]:
+    """Column and row in the toolkit of a hole of a carrier in the frame."""
+    if quarters == 2:
+        return flipped(column, carrier.columns), flipped(row, carrier.rows)
+    if quarters == 1:
+        return flipped(row, carrier.rows), column
+    return (row, flipped(column, carrier.columns)) if quarters else (column, row)
+
+
+def turned(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
+    """A carrier as it is in the frame.
+
+    Without an end along the travel it has as many columns as two pegs on the part can be apart.
+
+    Raises
+    ------
+    InputError
+        When holes are blocked where it has no end.
+    """
+    swaps = quarters % 2 == 1
+    columns, rows = (carrier.rows, carrier.columns) if swaps else (carrier.columns, carrier.rows)
+    if carrier.blocked and (columns is None or (quarters and rows is None)):
+        raise InputError(
+            f"the {carrier.name} carrier has no end: give the number of its columns and rows of holes."
+        )
+    pitch = carrier.pitch[::-1] if swaps else carrier.pitch
+    if columns is None:
+        columns = int(farthest / pitch[0]) + 1
+    travel = carrier.travel and Travel(0.0, carrier.travel.least, carrier.travel.most)
+    out = evolve(carrier, pitch=pitch, columns=columns, rows=rows, travel=travel)
+    x, y = evolve(carrier, travel=None).place(*hole_back(out, quarters, 0, 0))
+    cosine, sine = QUARTERS[quarters]
+    offset = (cosine * x + sine * y, cosine * y - sine * x)
+    return evolve(out, offset=offset, blocked=tuple(turned_holes(carrier, quarters)))
+
+
+def turned_holes(carrier: Carrier, quarters: int) -> Iterator[Holes]:
+    """The blocked holes of a carrier as they are in the frame."""
+    if quarters == 0:
+        yield from carrier.blocked
+        return
+    for holes in carrier.blocked:
+        for k in range(carrier.rows or 0) if holes.row is None else [holes.row]:
+            # Turning on by the rest of a whole turn is the way there.
+            column, row = hole_back(carrier, -quarters % 4, holes.column, k)
+            yield evolve(holes, column=column, row=row)
+
 
 Progress = Callable[[float, int], None]
 # Roundings of half a unit in the last place in a feature's row, generously counted.

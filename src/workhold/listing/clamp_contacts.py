@@ -16,8 +16,7 @@ import numpy as np
 from attrs import define, fields
 from numpy.typing import NDArray
 
-from workhold.contact.frame import QUARTERS
-from workhold.contact.problem import ROUNDINGS, Problem
+from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
 from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_POSE
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y

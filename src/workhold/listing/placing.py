@@ -15,8 +15,7 @@ import numpy as np
 from attrs import define, evolve, fields
 from numpy.typing import NDArray
 
-from workhold.contact.frame import Frame
-from workhold.contact.problem import Problem
+from workhold.contact.problem import Frame, Problem
 from workhold.conventions import ANGLE_SLACK, GAP_SLACK
 from workhold.geometry.symmetry import rotated
 from workhold.listing.canonical_form import Candidates

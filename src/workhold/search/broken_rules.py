@@ -16,8 +16,7 @@ from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.features import end_distances
-from workhold.contact.frame import Frame
-from workhold.contact.problem import Problem
+from workhold.contact.problem import Frame, Problem
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated

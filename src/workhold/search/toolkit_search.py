@@ -19,8 +19,7 @@ from attrs import define, evolve, field
 from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, joined, loosened
-from workhold.contact.frame import Frame
-from workhold.contact.problem import Problem
+from workhold.contact.problem import Frame, Problem
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK
 from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
 from workhold.kernels.base.feature import SEGMENT_LENGTH

@@ -10,8 +10,7 @@ from attrs import evolve, frozen
 
 from workhold import Result, Vise, Workpiece, design
 from workhold.contact.features import end_distances
-from workhold.contact.frame import Frame
-from workhold.contact.problem import Problem
+from workhold.contact.problem import Frame, Problem
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Travel
