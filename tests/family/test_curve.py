@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workhold.family.covering import Cover
-from workhold.family.curve import LossTable, Point, Search, curve_of, points_of
+from workhold.family.covering import Cover, LossTable, Point, Search, curve_of, points_of
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 

@@ -18,8 +18,7 @@ import numpy as np
 from attrs import define, evolve, frozen
 
 from workhold.errors import InputError
-from workhold.family.covering import load_solver
-from workhold.family.curve import LossTable, Point, curve_of, table_of
+from workhold.family.covering import LossTable, Point, curve_of, load_solver, table_of
 from workhold.family.members import OTHER_SIDE, Member, Threshold, member_of, other_side, zero_of_other_side
 from workhold.family.plan import Holding, Plan, SetUp, plan_of
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees

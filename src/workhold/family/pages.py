@@ -32,7 +32,7 @@ from workhold.drawing.scene import (
     text_width,
     wrapped,
 )
-from workhold.family.curve import Point
+from workhold.family.covering import Point
 from workhold.family.family import Family
 from workhold.family.members import loss_text
 from workhold.family.plan import Holding, Plan, SetUp

@@ -17,7 +17,7 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.family.curve import LossTable, Point
+from workhold.family.covering import LossTable, Point
 from workhold.family.members import Member
 from workhold.family.patterns import NOTHING, holes_of, moved_onto, shifted
 from workhold.fixels.toolkit import Toolkit
