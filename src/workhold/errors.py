@@ -1,16 +1,53 @@
-"""The errors workhold raises on purpose, and how those of the system are known.
+"""The errors workhold raises on purpose, and text made fit to be shown.
 
 Every message is one plain sentence that names the place and the remedy, because the command line prints it as
-it is.
+it is. What it quotes, such as names of parts and layers from files, is made fit for a terminal.
 """
 
 from __future__ import annotations
 
 import errno
+from collections.abc import Sequence
 
-from workhold.plain import plain, shortened
+__all__ = ["InputError", "NO_ROOM", "WorkholdError", "lacks_memory", "listed", "plain", "shortened"]
 
-__all__ = ["NO_ROOM", "InputError", "WorkholdError", "lacks_memory"]
+# Letters of a sentence: enough for any of the program's own.
+LONGEST = 1000
+CUT = " ... "
+
+
+def plain(text: str) -> str:
+    """Text without letters that steer a terminal, turn the direction of writing, or break a line or string.
+    Examples
+    --------
+    >>> plain("a\\x1b]0;b\\u202ec\\td")
+    'a?]0;b?c d'
+    """
+    return "".join(letter if letter.isprintable() else " " if letter.isspace() else "?" for letter in text)
+
+
+def shortened(text: str, most: int = LONGEST) -> str:
+    """Text of at most so many letters, its middle left out.
+
+    Examples
+    --------
+    >>> shortened("a" * 30, 15)
+    'aaaaa ... aaaaa'
+    """
+    if len(text) <= most:
+        return text
+    half = (most - len(CUT)) // 2
+    return text[: most - len(CUT) - half] + CUT + text[len(text) - half :]
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words with commas and a last "and".
+
+    >>> listed(["a"]), listed(["a", "b", "c"])
+    ('a', 'a, b and c')
+    """
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
 
 # A full disk, a used up quota, a limit of the size of files.
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from workhold.errors import InputError
+from workhold.errors import InputError, plain, shortened
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
 from workhold.files.result.reader import read_result
@@ -15,7 +15,6 @@ from workhold.files.toolkit_file import read_toolkit_file
 from workhold.fixels.vise import Vise
 from workhold.model.requirements import Load, Tolerance, circle_zone
 from workhold.model.workpiece import Workpiece
-from workhold.plain import plain, shortened
 
 HUGE = "1" + "0" * 400
 MARK = b"\xef\xbb\xbf"

@@ -136,7 +136,7 @@ def all_sides(
     plain: int = -1,
 ) -> tuple[Array, dict[int, int]] | None:
     """Vertices of a part within the corners of half planes, and the segment that touches at each of the touches; that of the
-    number ``plain`` is the whole line. None where a touch is at a corner."""
+    number ``errors`` is the whole line. None where a touch is at a corner."""
     vertices: list[list[float]] = []
     names = {}
     for k, number in enumerate(np.argsort(np.arctan2(normals[:, 1], normals[:, 0])).tolist()):

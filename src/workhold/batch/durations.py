@@ -21,9 +21,9 @@ from pathlib import Path
 from attrs import define, field
 
 from workhold.batch.tasks import Outcome
+from workhold.errors import plain
 from workhold.files.atomic import plain_errors
 from workhold.fixels.toolkit import Toolkit
-from workhold.plain import plain
 
 __all__ = ["Measured", "answering_seconds", "measures", "reading_seconds"]
 

@@ -25,8 +25,8 @@ from workhold.batch.run import Batch
 from workhold.batch.store import Store
 from workhold.batch.tables import JobRow, Row, job_rows, write_tables
 from workhold.drawing.panel import plural
+from workhold.errors import plain
 from workhold.files.atomic import plain_errors, text_file, write_bytes
-from workhold.plain import plain
 
 __all__ = ["Report", "Summary", "write_results"]
 

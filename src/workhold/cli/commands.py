@@ -18,8 +18,7 @@ import typer
 from attrs import fields, resolve_types
 from typer.core import TyperCommand, TyperGroup
 
-from workhold.errors import NO_ROOM
-from workhold.plain import plain, shortened
+from workhold.errors import NO_ROOM, plain, shortened
 
 __all__ = ["PlainCommand", "PlainGroup", "forget", "option", "spread", "print_remark"]
 

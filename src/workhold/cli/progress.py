@@ -12,7 +12,7 @@ from attrs import define, field
 
 from workhold.cli.commands import print_remark
 from workhold.cli.ending import keep_what_is_found
-from workhold.plain import plain
+from workhold.errors import plain
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID

@@ -10,7 +10,7 @@ from typing import TextIO
 import typer
 from attrs import define, field, frozen
 
-from workhold.plain import plain, shortened
+from workhold.errors import plain, shortened
 
 __all__ = ["Table", "print_tables", "width_of"]
 

@@ -19,8 +19,8 @@ from pathlib import Path
 
 from attrs import frozen
 
+from workhold.errors import plain
 from workhold.geometry.segment import Box, Point
-from workhold.plain import plain
 from workhold.units import MILLIMETRE, Unit
 
 __all__ = [

@@ -26,12 +26,12 @@ from workhold.drawing.sheet_writing import (
     write_dowel,
     write_flats,
 )
+from workhold.errors import listed
 from workhold.fixels.carrier import Carrier, column_letters, hole_name
 from workhold.fixels.contacts import WALL_END
 from workhold.model.clamps import clamp_names, clamp_shares, freedom_words, order_words, second_over_first
 from workhold.model.setup import LengthSetting
 from workhold.model.shown import shown
-from workhold.plain import listed
 
 __all__ = ["CLAMPS", "OPENING", "touch_words", "write_counting", "write_pegs"]
 

@@ -11,6 +11,7 @@ from workhold.drawing.panel import FACT_NAME, TextColumn, pegs_words
 from workhold.drawing.scene import BLACK, GREY, LengthUnit, Scene, text_width
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.sheet_facts import Caution, SheetDetails
+from workhold.errors import listed
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.setup_words import Datum
 from workhold.fixels.toolkit import Toolkit
@@ -19,7 +20,6 @@ from workhold.model.dowels import fit_words
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.setup import LengthSetting, PartZero, contact_names, part_zero, settings_of
 from workhold.model.workpiece import Workpiece
-from workhold.plain import listed
 
 __all__ = [
     "BODY",

@@ -34,6 +34,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import NO_REACTION
+from workhold.errors import listed
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.kernels.seating.sticking import least_friction
 from workhold.limits import MOST_FRICTION
@@ -42,7 +43,6 @@ from workhold.model.fixture import Fixture, Pair, Peg
 from workhold.model.seating import DRY_STEEL, length
 from workhold.model.setup import LengthSetting, settings_of
 from workhold.model.workpiece import Workpiece
-from workhold.plain import listed
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.loads import cone_edges, contacts_on_part
 from workhold.units import MILLIMETRE

@@ -44,7 +44,6 @@ def copy(tmp_path: Path) -> Path:
         "conventions.py",
         "errors.py",
         "limits.py",
-        "plain.py",
         "delegates.py",
         *(f"kernels/{name}.py" for name in ("__init__", *(f"base/{base}" for base in BASE))),
     ):

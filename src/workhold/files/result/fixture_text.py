@@ -26,6 +26,7 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
+from workhold.errors import plain
 from workhold.files.atomic import text_file
 from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
@@ -36,7 +37,6 @@ from workhold.model.quality import FIGURES, SEATING_FIGURES, Figure
 from workhold.model.result import FixtureTable, Result, flat_angles, peg_places
 from workhold.model.seating import DECIMALS
 from workhold.model.workpiece import Workpiece
-from workhold.plain import plain
 from workhold.units import Unit
 
 __all__ = [

@@ -17,7 +17,7 @@ from math import cos, isfinite, pi, sin
 from pathlib import Path
 from typing import Any
 
-from workhold.errors import InputError
+from workhold.errors import InputError, plain, shortened
 from workhold.files.atomic import write_bytes
 from workhold.files.step.library import load_step_library
 from workhold.fixels.carrier import hole_name
@@ -29,7 +29,6 @@ from workhold.model.fixture import Fixture, Pose
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
 from workhold.model.workpiece import Workpiece
-from workhold.plain import plain, shortened
 
 __all__ = ["plates_step", "setup_step", "write_plates_step", "write_setup_step"]
 
