@@ -327,10 +327,6 @@ class Toolkit:
         known = [carrier.name for carrier in self.carriers]
         return [known.index(name) for name in names]
 
-    def carrier_names(self, arrangement: Arrangement) -> tuple[str, ...]:
-        """The name of each peg's carrier, in the order in which pegs are listed."""
-        return tuple(self.carriers[number].name for number in arrangement.carriers)
-
     def arrangement_numbers(self, standing: NDArray[Any]) -> NDArray[np.int64]:
         """The indices (N,) of the arrangements with so many pegs (N,) on the carrier that stands still."""
         pegs = [one.pegs[0] for one in self.arrangements]
