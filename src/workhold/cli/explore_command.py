@@ -23,7 +23,7 @@ from workhold.units import Unit
 if TYPE_CHECKING:
     from workhold.model.requirements import Restrictions
     from workhold.model.workpiece import Workpiece
-    from workhold.search.exploring import Explored
+    from workhold.search.design import Explored
 
 __all__ = ["explore"]
 
@@ -71,7 +71,7 @@ def explore(
     workpiece = reading.load(part).workpiece
     refuse_unknown_faces(workpiece, asked["restrictions"])
     queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]
-    from workhold.search.exploring import explore as try_all
+    from workhold.search.design import explore as try_all
 
     found: list[Explored] = []
     with ask_to_stop("what was tried so far is kept") as cancel:
@@ -159,9 +159,9 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
 
 
 def first_of(found: list[Explored], ranking: tuple[str, ...]) -> Explored | None:
-    """Returns the toolkit to take, see :func:`workhold.search.exploring.first_choice`."""
+    """Returns the toolkit to take, see :func:`workhold.search.design.first_choice`."""
     from workhold.files.toolkit_file import is_sold
-    from workhold.search.exploring import first_choice
+    from workhold.search.design import first_choice
 
     return first_choice(found, ranking, is_sold)
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from workhold.files.toolkit_file import LoadedToolkit
     from workhold.listing.identity import Entries
     from workhold.model.result import Result
-    from workhold.search.exploring import Explored
+    from workhold.search.design import Explored
     from workhold.statics.loads import LoadCase, Worst
     from workhold.verification import Verification
 

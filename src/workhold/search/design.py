@@ -1,22 +1,28 @@
-"""Design: every fixture of a workpiece in a toolkit."""
+"""Design: every fixture of a workpiece in a toolkit, or the number and the first choice in each of many.
+
+Trying the same part in many toolkits shows which one to buy.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from threading import Event
 
-from attrs import evolve
+import numpy as np
+from attrs import evolve, frozen
 
 from workhold.contact.curves import center_numbers
 from workhold.contact.problem import Problem, Progress
+from workhold.errors import InputError
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC
 from workhold.kernels.curves.two_and_two import CANDIDATES, CONTACTS
 from workhold.limits import counting_number, thread_count
 from workhold.listing.collector import BestFixtures, ResultCollector
+from workhold.listing.ranking import figure_keys
 from workhold.listing.results import (
     MEASURED,
     Work,
@@ -26,6 +32,7 @@ from workhold.listing.results import (
     listed_result,
     stage,
 )
+from workhold.model.quality import FIGURES
 from workhold.model.query import Query, asked_ranking
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
@@ -36,8 +43,9 @@ from workhold.search.lattice_shares import LatticeShares
 from workhold.search.seated import Sink, deliver_seated, seated_answer
 from workhold.search.shares import Locating, Preview, Previews, answer_in_shares
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch, contacts_of
+from workhold.statics.judging import unfit
 
-__all__ = ["Sink", "answer", "design"]
+__all__ = ["Explored", "Sink", "answer", "design", "explore", "first_choice"]
 
 # The share of the work, as progress reports it, that goes into finding records. The rest decides which of
 # them are fixtures.
@@ -269,3 +277,75 @@ def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, ca
     if contacts == 0 and contacts_of(problem, threads, cancel) == 0:
         return apart
     return no_place_note(proven, wording) if proven else loose
+
+
+@frozen
+class Explored:
+    """What one toolkit can do for a part.
+
+    Parameters
+    ----------
+    name : what it is called.
+    found : fixtures of each arrangement; empty for a toolkit that cannot be.
+    figures : of the first fixture, the one to set up; empty when there is none.
+    fit : whether that is a fixture for a workshop.
+    reason : why there is no fixture, or why the toolkit cannot be; empty otherwise.
+    """
+
+    name: str
+    found: Mapping[str, int]
+    figures: Mapping[str, float]
+    reason: str = ""
+    fit: bool = False
+
+    @property
+    def fixtures(self) -> int:
+        """How many fixtures there are."""
+        return sum(self.found.values())
+
+
+def explore(
+    queries: Iterable[tuple[str, Query | InputError]], cancel: Event | None = None
+) -> Iterator[Explored]:
+    """Answers the same query for one toolkit after the other.
+
+    Parameters
+    ----------
+    queries : what each toolkit is called, and the query, or why there is none.
+    cancel : when set, no further query is answered.
+    """
+    for name, query in queries:
+        if cancel is not None and cancel.is_set():
+            return
+        try:
+            if isinstance(query, InputError):
+                raise query
+            result = answer(query, cancel=cancel)
+        except InputError as error:
+            yield Explored(name, {}, {}, str(error))
+            continue
+        if not result.complete:
+            return
+        reason = "" if len(result) else " ".join(result.reasons)
+        figures = dict(result[0].quality) if len(result) else {}
+        fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
+        yield Explored(name, dict(result.found), figures, reason, fit)
+
+
+def first_choice(
+    explored: Sequence[Explored], ranking: Sequence[str], is_sold: Callable[[str], bool] = lambda name: True
+) -> Explored | None:
+    """The toolkit whose first fixture stands first among those of all; None when none has a fixture.
+
+    A fixture for a workshop goes before one that is none, and what is sold, as ``is_sold`` says of a name,
+    before what nobody sells.
+    """
+    able = [item for item in explored if item.figures]
+    if not able:
+        return None
+    quality = np.array([[item.figures.get(figure.key, np.nan) for figure in FIGURES] for item in able])
+    keys = [(not item.fit, not is_sold(item.name)) for item in able]
+    order = sorted(
+        range(len(able)), key=lambda k: (keys[k], *(key[k] for key in figure_keys(quality, ranking)))
+    )
+    return able[order[0]]

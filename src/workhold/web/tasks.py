@@ -129,7 +129,7 @@ def search(payload: tuple[Query, int], order: Order) -> Found:
 def explore(payload: tuple[NamedQuery, ...], order: Order) -> None:
     """Answers one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
     from workhold.files.result.writer import toolkit_fields
-    from workhold.search.exploring import explore
+    from workhold.search.design import explore
 
     total = 0
     for number, (row, (_, query)) in enumerate(zip(explore(payload, order.cancel), payload, strict=False), 1):
