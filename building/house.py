@@ -12,7 +12,8 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from house_rules import RULES, Finding, Rule, long_subjects, replaced_words, sources_of
+from house_rules import RULES, Finding, Rule, long_subjects, sources_of
+from house_words import replaced_words
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES, GLOSSARY, RECORD = (

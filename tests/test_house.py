@@ -12,6 +12,7 @@ import pytest
 import house
 import house_rules as rules
 from house_rules import Source
+from house_words import replaced_words
 from workhold.fixels.kinds import TABLES
 
 ROOT = Path(__file__).parent.parent
@@ -269,12 +270,12 @@ def glossary(tmp_path: Path) -> Path:
     "text", ["# As told.", "told = 1", "how_it_is_told(a)", '"""Told."""', "Door()", "# it tells"]
 )
 def test_a_replaced_word_is_found(text: str, glossary: Path) -> None:
-    assert len(places(rules.replaced_words(glossary)(planted(text)))) == 1
+    assert len(places(replaced_words(glossary)(planted(text)))) == 1
 
 
 @pytest.mark.parametrize("text", ["# a loop, a peg", "untold = 1", "toldest(a)", "door = Doorway()", "word"])
 def test_another_word_is_none(text: str, glossary: Path) -> None:
-    assert places(rules.replaced_words(glossary)(planted(text))) == []
+    assert places(replaced_words(glossary)(planted(text))) == []
 
 
 @pytest.mark.parametrize(
@@ -289,17 +290,17 @@ def test_another_word_is_none(text: str, glossary: Path) -> None:
     ],
 )
 def test_a_word_of_plain_english_is_found_as_a_name(text: str, glossary: Path) -> None:
-    assert len(places(rules.replaced_words(glossary)(planted(text)))) == 1
+    assert len(places(replaced_words(glossary)(planted(text)))) == 1
 
 
 def test_a_word_of_plain_english_is_none_elsewhere(glossary: Path) -> None:
     text = '"""Beyond the end."""\nbeyond = 1\nf(beyond)  # how far beyond the end\n'
-    assert places(rules.replaced_words(glossary)(planted(text))) == []
-    assert places(rules.replaced_words(glossary)(planted("", "drawing/beyond.py"))) == ["drawing/beyond.py:1"]
+    assert places(replaced_words(glossary)(planted(text))) == []
+    assert places(replaced_words(glossary)(planted("", "drawing/beyond.py"))) == ["drawing/beyond.py:1"]
 
 
 def test_the_glossary_of_the_manual_has_replaced_words() -> None:
-    found = rules.replaced_words(ROOT / "docs" / "glossary.md")(planted("told = Door"))
+    found = replaced_words(ROOT / "docs" / "glossary.md")(planted("told = Door"))
     assert sorted(one.key for one in found) == ["Door", "told"]
 
 

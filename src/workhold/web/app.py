@@ -13,8 +13,8 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse, Response
 
-from workhold import __version__
 from workhold.errors import InputError
+from workhold.version import __version__
 from workhold.web import fixture_routes, job_routes, part_routes
 from workhold.web.answers import place_in
 from workhold.web.forms import sentence_of

@@ -8,7 +8,7 @@ from urllib.parse import unquote
 from fastapi import APIRouter, Depends, Query, Request
 from starlette.exceptions import HTTPException
 
-from workhold import __version__
+from workhold.version import __version__
 from workhold.web.answers import figures_answer, toolkit_answer
 from workhold.web.fixture_tasks import has_step
 from workhold.web.forms import WorkpieceForm
