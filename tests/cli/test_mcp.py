@@ -123,7 +123,7 @@ def test_explain_tells_why_there_is_none(folder: Path) -> None:
     why = told("explain", folder, part="wedge.json", **VISE, angles=[[1, 1.01]])
     assert why["found"] == 0 and why["last_rule"] and why["sentence"] and why["removals"][-1]["after"] == 0
     some = told("explain", folder, part="wedge.json", **VISE)
-    assert some["found"] > 0 and "design tells them" in some["sentence"]
+    assert some["found"] > 0 and "design lists them" in some["sentence"]
 
 
 def test_a_search_that_is_ended_says_so(folder: Path) -> None:

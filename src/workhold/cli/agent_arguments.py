@@ -25,7 +25,7 @@ Arguments = TypeVar("Arguments", bound="ToolArguments")
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Positive = Annotated[float, Field(gt=0)]
 Rank = Annotated[int, Field(ge=1, description="which fixture; 1 is the best")]
-ResultPath = Annotated[str, Field(description="path of a result file, as design tells it")]
+ResultPath = Annotated[str, Field(description="path of a result file, as design reports it")]
 MayReplace = Annotated[bool, Field(description="replace a file that workhold has not written")]
 ClosingForce = Annotated[float | None, Field(ge=0, description="with which the vise is closed, in N")]
 
@@ -108,7 +108,7 @@ class DesignArguments(LoadArguments):
     seating: int | None = Field(
         default=None,
         ge=1,
-        description="of the first so many fixtures tell from how far open, or drawn back, the part is "
+        description="of the first so many fixtures report from how far open, or drawn back, the part is "
         "caught and where else it can rest, and order them by that too",
     )
     opening: Positive | None = Field(
@@ -117,15 +117,15 @@ class DesignArguments(LoadArguments):
     )
     foolproof: bool = Field(
         default=False,
-        description="with seating, list only those of which a caliper tells every wrong place to rest",
+        description="with seating, list only those of which a caliper shows every wrong place to rest",
     )
-    count: int = Field(default=5, ge=0, le=100, description="how many fixtures to tell")
+    count: int = Field(default=5, ge=0, le=100, description="how many fixtures to report")
     out: str | None = Field(
         default=None, description="path of the result file, .json or .npz; else a temporary one"
     )
     force: MayReplace = False
     seconds: Positive = Field(
-        default=120.0, description="longest search; what was found by then is told as incomplete"
+        default=120.0, description="longest search; what was found by then is reported as incomplete"
     )
 
 

@@ -101,7 +101,7 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
     found = sum(result.found.values())
     if found or not result.complete:
         why = (
-            f"There are {found:,} fixtures: design tells them."
+            f"There are {found:,} fixtures: design lists them."
             if found
             else "The search was ended before any was found."
         )
@@ -226,7 +226,7 @@ TOOLS: Mapping[str, Tool] = {
     ),
     "design": Tool(
         "Find every way to hold a part in a vise, on a plate with clamps or on a fence, proven complete; "
-        "tells the best and writes all to a result file.",
+        "reports the best and writes all to a result file.",
         DesignArguments,
         design,
     ),
@@ -243,7 +243,7 @@ TOOLS: Mapping[str, Tool] = {
         sheet,
     ),
     "explain": Tool(
-        "Tell why there is no way to hold a part, which rule took the last candidates away, and which "
+        "Explain why there is no way to hold a part, which rule took the last candidates away, and which "
         "changes would help.",
         DesignArguments,
         explain,

@@ -212,7 +212,7 @@ def family(
     time_limit: str = option(
         FAMILY,
         "SECONDS",
-        "How long to prove that there are no fewer set-ups; then what is known is told.",
+        "How long to prove that there are no fewer set-ups; then what is known is reported.",
         default=SECONDS,
     ),
     words: QueryWords,
@@ -234,11 +234,11 @@ def family(
     json_: JsonOption = False,
     reading: PartWords,
 ) -> None:
-    """Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
+    """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
 
     A loss is a fixture's location error, or the first figure of --rank-by, over the best that the part has in
     this vise or on this plate: 1 is the best, 2 is twice as bad. For each number of set-ups the least worst
-    loss is told. Give --setups or --max-loss to see which pegs stand where and how each part lies.
+    loss is reported. Give --setups or --max-loss to see which pegs stand where and how each part lies.
 
     Example: workhold family drawings --vise plate-20mm --max-loss 1.25
     """

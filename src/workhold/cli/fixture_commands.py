@@ -73,7 +73,9 @@ def load_tables(
         notes.append(
             "With friction the forces are not determined; what is needed with it is the best to be hoped for."
         )
-    note = f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md tells both."
+    note = (
+        f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md explains both."
+    )
     return (
         "",
         table,
@@ -112,9 +114,9 @@ def seat(
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened:
+    """Report whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened:
     how wide open that may be when the part is let go and how far off it may lie, where else it can come to
-    rest, and what is read then. Of two clamps, tell how the part is put in by hand and in which order they
+    rest, and what is read then. Of two clamps, report how the part is put in by hand and in which order they
     are tightened.
 
     Example: workhold seat part.json 1 --draw seats.svg
@@ -292,7 +294,7 @@ def wrong_words(
         )
     if alike:
         words.append(
-            f"In {alike} more it covers its place all the same, which no reading tells: mark the part."
+            f"In {alike} more it covers its place all the same, which no reading shows: mark the part."
         )
     return words
 

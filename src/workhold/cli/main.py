@@ -56,9 +56,9 @@ COMMANDS = {
         "quality, and what loads do to it (those of the result, if none are given here)."
     ),
     "seat": (
-        "Tell whether the part ends up in the pose of fixture N when the vise is closed or the clamp "
+        "Report whether the part ends up in the pose of fixture N when the vise is closed or the clamp "
         "tightened: how wide open that may be when the part is let go and how far off it may lie, where "
-        "else it can come to rest, and what is read then. Of two clamps, tell how the part is put in by "
+        "else it can come to rest, and what is read then. Of two clamps, report how the part is put in by "
         "hand and in which order they are tightened."
     ),
     "sheet": (
@@ -73,8 +73,8 @@ COMMANDS = {
         "Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with "
         "its figures."
     ),
-    "copies": "Tell how many copies of fixture N a plate holds at once, and where each stands.",
-    "family": "Tell which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
+    "copies": "Report how many copies of fixture N a plate holds at once, and where each stands.",
+    "family": "Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
     "batch": (
         "Try many parts in many toolkits: every part with every toolkit, into tables, a report and result "
         "files."

@@ -104,7 +104,7 @@ JAW = option(
     default="screw",
 )
 FRICTION = option(
-    LOADS, "MU", "Coefficient of friction, to tell what friction could add; none counts elsewhere."
+    LOADS, "MU", "Coefficient of friction, to report what friction could add; none counts elsewhere."
 )
 
 
@@ -286,7 +286,7 @@ FoolproofOption = Annotated[
     bool,
     typer.Option(
         "--foolproof",
-        help="List only those of them that have no wrong place to rest in, or a caliper tells each.",
+        help="List only those of them that have no wrong place to rest in, or a caliper shows each.",
         rich_help_panel=SEATING,
     ),
 ]
@@ -299,7 +299,7 @@ class SeatingWords:
     seating: str | None = option(
         SEATING,
         "K",
-        "Of the first K fixtures tell from how far open, or with the clamp how far drawn back, the part is "
+        "Of the first K fixtures report from how far open, or with the clamp how far drawn back, the part is "
         "caught and where else it can rest, and order them by that too (see workhold seat).",
     )
     opening: str | None = option(

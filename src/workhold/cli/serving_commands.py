@@ -30,7 +30,7 @@ LIMITS = "Limits"
 HIGHEST_PORT = 65_535
 TOKEN_BYTES = 16
 OPEN_TO_ALL = (
-    "workhold: everybody who reaches this machine can use the page, read what others search for if told its "
+    "workhold: everybody who reaches this machine can use the page, read what others search for if given its "
     "name, and keep the processors busy; --ask-token lets in only who has the address."
 )
 # Processes that search: each takes a hundred megabytes before it begins.

@@ -324,7 +324,7 @@ def pair_sentences(fixture: Fixture) -> list[str]:
     ]
     return [
         order,
-        f"Forces are told for {' and '.join(each)} of the clamp force, which is that of both.",
+        f"Forces are stated for {' and '.join(each)} of the clamp force, which is that of both.",
     ]
 
 

@@ -93,7 +93,7 @@ def sheet(
         typer.Option(
             "--seating",
             rich_help_panel=ON_PAPER,
-            help="Tell whether the part ends up there: how far to open, and how it looks where it does not.",
+            help="Report whether the part ends up there: how far to open, and how it looks where it does not.",
         ),
     ] = False,
     load: list[str] | None = LOAD,
@@ -213,7 +213,7 @@ def copies(
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """Tell how many copies of fixture N a plate holds at once, and where each stands.
+    """Report how many copies of fixture N a plate holds at once, and where each stands.
 
     The fixture is repeated by whole columns and rows, so that parts, pegs and clamps of the copies are clear
     of each other.
