@@ -117,7 +117,8 @@ def test_the_sheet_says_what_is_measured_and_how_far_the_set_up_may_be_moved() -
         "\n", " "
     )
     assert (
-        "any columns further right; places are then told from the column that takes the place of A" in words
+        "any columns further right; places are then measured from the column that takes the place of A"
+        in words
     )
     assert "further up" not in words
     part = Workpiece.from_loops("block", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])

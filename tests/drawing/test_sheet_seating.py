@@ -138,7 +138,7 @@ def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) ->
 def test_it_is_told_whether_the_reading_tells(result: Result, told: list[Seating]) -> None:
     """The first fixture's wrong seats read like the right one, those of the second do not."""
     first, second = (words_for(result, told[k], k).wrong_words()[0] for k in (0, 1))
-    assert "the reading alone does not tell" in first and second.endswith(": the reading tells.")
+    assert "the reading alone does not show it" in first and second.endswith(": the reading shows it.")
 
 
 def test_friction_is_told_where_dry_steel_sticks(result: Result, told: list[Seating]) -> None:

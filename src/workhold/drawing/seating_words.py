@@ -172,12 +172,16 @@ class SeatingSentences:
         words = [f"The same pegs{reach} hold the part in no wrong place."]
         if wrong:
             plain = abs(wrong[0].difference) >= CLOSE_READING
-            hint = "the reading tells" if plain else "see how the part lies, the reading alone does not tell"
+            hint = (
+                "the reading shows it"
+                if plain
+                else "see how the part lies, the reading alone does not show it"
+            )
             words = [f"The same pegs{reach} can hold the part in {places}{turned}: {hint}."]
         if self.alike:
             words.append(
                 f"In {self.alike} more it lies turned round or over and covers its place all the same, which "
-                "no reading tells: mark the part."
+                "no reading shows it: mark the part."
             )
         return [*words, *in_sentences(seating.unsettled)]
 
@@ -188,7 +192,7 @@ class SeatingSentences:
             return f"It comes home: {read}."
         if seat is not None and ending == "same place":
             way = "turned over" if seat.mirrored else "turned round"
-            return f"It covers its place, but {way}: {read}, which tells nothing. Mark the part."
+            return f"It covers its place, but {way}: {read}, which shows nothing. Mark the part."
         if seat is not None:
             kind = {"loose": " that does not locate it", "unsettled": " that is not settled"}.get(
                 seat.kind, ""

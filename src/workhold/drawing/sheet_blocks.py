@@ -140,7 +140,7 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
     column.paragraph(f"{header[1].capitalize()}: {what}, without friction.", NOTE)
     if not sheet.is_closed_at_once:
         column.paragraph(
-            f"The {moving.noun} force is that of both {moving.noun}s added up, in the ratio told.", NOTE
+            f"The {moving.noun} force is that of both {moving.noun}s added up, in the ratio stated.", NOTE
         )
     if details.friction is not None:
         column.paragraph(

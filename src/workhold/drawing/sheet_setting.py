@@ -56,7 +56,7 @@ def write_pegs(column: TextColumn, sheet: Sheet) -> None:
     )
     for wall in (carrier for carrier in toolkit.carriers if carrier.contact is WALL_END):
         write_flush(column, sheet, wall)
-    added = "" if sheet.is_closed_at_once else f", both {noun}s added up, in the ratio told below"
+    added = "" if sheet.is_closed_at_once else f", both {noun}s added up, in the ratio stated below"
     column.paragraph(f"{per} of {noun} force{added}, without friction.", NOTE)
     write_flats(column, sheet)
     write_dowel(column, sheet)
@@ -223,7 +223,7 @@ def write_order(column: TextColumn, sheet: Sheet) -> None:
     freedom = fixture.quality["clamp_freedom"]
     column.fact("clamp freedom, of 90°", f"{freedom:.1f}°", bold=True)
     column.paragraph(
-        f"{freedom_words(freedom).capitalize()}. Forces here are told for {second} with {ratio:.2f} times "
+        f"{freedom_words(freedom).capitalize()}. Forces here are stated for {second} with {ratio:.2f} times "
         f"the force of {first}, the middle of what holds.",
         NOTE,
     )
@@ -244,7 +244,7 @@ def clamp_steps(sheet: Sheet) -> list[str]:
             f"{lengths.words(setting.length)}{'; if not, the part lies another way.' if alone else '.'}"
         )
     if not alone:
-        ups.append("If a length is not as told, the part lies another way.")
+        ups.append("If a length is not as stated, the part lies another way.")
     count = sum(peg.carrier == plate.name for peg in sheet.fixture.pegs)
     against = toolkit.setup_words.against.format(count=NUMBERS[count], peg=plate.peg)
     return [
@@ -329,7 +329,9 @@ def moving_words(sheet: Sheet) -> str:
             ways.append(f"up to {spare} {noun}{'' if spare == 1 else 's'} {way}")
     if not ways:
         return f"The set-up fits the {sheet.toolkit.noun} in this place only."
-    return f"All of it may stand {' and '.join(ways)}; places are then told from {sheet.datum.substitute}."
+    return (
+        f"All of it may stand {' and '.join(ways)}; places are then measured from {sheet.datum.substitute}."
+    )
 
 
 def spare_holes(sheet: Sheet) -> tuple[int | None, int | None]:
