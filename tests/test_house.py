@@ -282,6 +282,8 @@ def test_another_word_is_none(text: str, glossary: Path) -> None:
     "text",
     [
         "def beyond(): pass",
+        "async def beyond(): pass",
+        "class beyond: pass",
         "import a.beyond",
         "from a import beyond",
         "from a.beyond import b",

@@ -81,6 +81,7 @@ def test_design_explains_why_there_is_none(run: Any, folder: Path) -> None:
     why = content["explanation"]
     assert why["removals"][-1]["rule"] == why["last_rule"] and why["removals"][-1]["after"] == 0
     assert all(help["fixtures"] > 0 for help in why["helps"])
+    assert all(set(help) == {"change", "fixtures", "complete", "fields"} for help in why["helps"])
     assert [Path(name).exists() for name in content["pictures"]] == [True, True]
 
 

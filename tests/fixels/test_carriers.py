@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
-from workhold import Fence, OpeningVise, Plate, Vise
+from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
@@ -39,6 +41,25 @@ def test_what_stands_on_a_carrier(
     assert [one.has_lattice for one in toolkit.carriers] == [
         kind in (ROUND_PIN, FLAT_PIN) for kind in contacts
     ]
+
+
+@pytest.mark.parametrize(
+    ("toolkit", "bodies"),
+    [
+        (Vise((10, 12), 2, 3, rows=5), [3, 3]),
+        (Vise((10, 12), 2, 3, rows=5, body_radius=4), [4, 4]),
+        (Plate((20, 22), 3, columns=4, rows=5, clamp_radius=2), [3, 2, 2]),
+        (Fence((20, 22), 3, columns=4, rows=5, wall_offset=8, clamp_radius=2), [3, 0, 2, 2, 2, 2]),
+        (FlatJaw((10, 12), 3, columns=4, rows=5), [0, 3]),
+    ],
+)
+def test_a_carrier_has_the_lattice_and_the_pegs_of_its_toolkit(toolkit: Any, bodies: list[float]) -> None:
+    """A peg's body is its tip where nothing else is given, a clamp has its own tip, and a wall has no pegs."""
+    size = toolkit.pitch, toolkit.columns, toolkit.rows
+    assert [(one.pitch, one.columns, one.rows) for one in toolkit.carriers] == [size] * len(bodies)
+    assert [one.body_radius for one in toolkit.carriers] == bodies
+    tips = [min(body, 3) for body in bodies]
+    assert [one.peg_radius for one in toolkit.carriers] == tips
 
 
 def test_how_files_name_what_stands_on_a_carrier() -> None:
