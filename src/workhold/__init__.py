@@ -99,9 +99,9 @@ HOMES = {
 # The functions that methods of the model's classes call, see ``delegates``.
 DELEGATES = {
     "fixture_picture": "workhold.presenting.papers",
-    "preset_fields": "workhold.presenting.presets",
-    "preset_names_of": "workhold.presenting.presets",
-    "preset_tolerance": "workhold.presenting.presets",
+    "preset_fields": "workhold.files.toolkit_file",
+    "preset_names_of": "workhold.files.toolkit_file",
+    "preset_tolerance": "workhold.files.toolkit_file",
     "result_picture": "workhold.presenting.papers",
     "save_sheet": "workhold.presenting.papers",
     "to_arrow": "workhold.presenting.data",

@@ -30,7 +30,7 @@ from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
 from workhold.files.text import read_text, toml_table
 from workhold.fixels.fields import COLUMNS, OPTIONS, PEG_RADIUS, PITCH
-from workhold.fixels.kinds import USUAL, kind_of, toolkit_of
+from workhold.fixels.kinds import KINDS, USUAL, kind_of, toolkit_of
 from workhold.fixels.table import Form
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import DowelSize, Fit, Limits, peg_error, refuse_limits
@@ -46,7 +46,10 @@ __all__ = [
     "is_sold",
     "load_toolkit",
     "preset",
+    "preset_fields",
     "preset_names",
+    "preset_names_of",
+    "preset_tolerance",
     "read_toolkit_file",
 ]
 
@@ -342,3 +345,34 @@ def load_toolkit(name: str | Path) -> LoadedToolkit:
     raise InputError(
         f"{str(name)[:200]!r}: file not found, and no toolkit has that name (try {', '.join(close)})."
     )
+
+
+def preset_names_of(kind: type[Toolkit]) -> tuple[str, ...]:
+    """Lists the presets that are toolkits of a class."""
+    return tuple(name for name in preset_names() if KINDS[preset(name).kind] is kind)
+
+
+def preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
+    """The fields of a preset or of a user's file, for a class of toolkits or one that has all fields of it.
+
+    Raises
+    ------
+    InputError
+        As :func:`workhold.files.toolkit_file.load_toolkit`, and for a toolkit of another class.
+    """
+    loaded = load_toolkit(name)
+    is_of = KINDS[loaded.kind]
+    if not issubclass(kind, is_of):
+        raise InputError(f"{loaded.name} is a {is_of.noun}: ask {is_of.__name__}.preset for it.")
+    return loaded.fields
+
+
+def preset_tolerance(name: str) -> Tolerance:
+    """How far pegs and faces of a preset or of a user's file may be off.
+
+    Raises
+    ------
+    InputError
+        As :func:`workhold.files.toolkit_file.load_toolkit`.
+    """
+    return load_toolkit(name).tolerance
