@@ -17,9 +17,9 @@ import pytest
 import yaml
 
 from workhold.errors import InputError
+from workhold.files.result.forms import COLUMNS, PAIR_COLUMNS
 from workhold.fixels.kinds import KINDS
 from workhold.fixels.vise import OpeningVise
-from workhold.model.columns import COLUMNS, PAIR_COLUMNS
 from workhold.version import __version__
 
 ROOT = Path(__file__).parent.parent

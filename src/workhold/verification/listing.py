@@ -20,12 +20,11 @@ from numpy.typing import NDArray
 from workhold.archive import is_archive, mapped_archive
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
-from workhold.files.result.forms import Head
+from workhold.files.result.forms import HEAD, Head, columns_said
 from workhold.files.result.parts import checked_head, read_parts
 from workhold.files.text import json_value
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
-from workhold.model.columns import HEAD, columns_said
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
 from workhold.model.quality import FIGURES
 from workhold.model.query import Query

@@ -16,10 +16,10 @@ from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.result import columns as in_columns
 from workhold.files.result.columns import significant, write_columns
+from workhold.files.result.forms import COLUMNS, HEAD
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
 from workhold.listing.identity import entries
-from workhold.model.columns import COLUMNS, HEAD
 from workhold.model.result import FixtureTable, Result
 from workhold.verification.listing import read_listing
 

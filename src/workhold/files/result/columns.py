@@ -23,6 +23,7 @@ from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees, significant
+from workhold.files.result.forms import COLUMNS_OF, HEAD, columns_said
 from workhold.files.result.parts import (
     checked_head,
     checked_query,
@@ -33,7 +34,6 @@ from workhold.files.result.parts import (
 )
 from workhold.files.result.writer import FORMAT, head
 from workhold.files.text import json_value
-from workhold.model.columns import COLUMNS_OF, HEAD, columns_said
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result
 

@@ -1,25 +1,42 @@
-"""The shape of a result file's head, checked by pydantic, and what its parts are in the model."""
+"""The shape of a result file: its head, checked by pydantic, with what that is in the model, and its columns.
+
+A result file in columns has the name of its head, and arrays whose types and widths stand here.
+"""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from workhold.archive import Column, Columns
 from workhold.errors import InputError
 from workhold.files.input_forms import forms_by_noun, one_of, optional
+from workhold.fixels.fields import CLAMPS
 from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import Fit
+from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.search_report import Proof, Undecided
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart"]
-
+__all__ = [
+    "COLUMNS",
+    "COLUMNS_OF",
+    "HEAD",
+    "Head",
+    "LoadPart",
+    "PAIR_COLUMNS",
+    "ProofPart",
+    "RestrictionsPart",
+    "TolerancePart",
+    "columns_said",
+]
 
 LONGEST_STANDARD = 40
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -268,3 +285,38 @@ class Head(FormPart):
             opening=self.opening,
             foolproof=self.foolproof,
         )
+
+
+HEAD = "result.json"
+# What each column holds, N fixtures: see docs/columns.md and ``model.result.FixtureTable``.
+COLUMNS = {
+    "arrangement": Column("|i1"),
+    "column": Column("<i4", (4,)),
+    "row": Column("<i4", (4,)),
+    "face": Column("<i4", (4,)),
+    "theta": Column("<f8"),
+    "position": Column("<f8", (2,)),
+    "jaw_separation": Column("<f8"),
+    "force": Column("<f8", (4,)),
+    "quality": Column("<f8", (len(FIGURES),)),
+}
+# What each column holds of fixtures with two clamps.
+PAIR_COLUMNS = COLUMNS | {
+    "column": Column("<i4", (5,)),
+    "row": Column("<i4", (5,)),
+    "face": Column("<i4", (5,)),
+    "jaw_separation": Column("<f8", (2,)),
+    "force": Column("<f8", (5, 2)),
+    "pairs": Column("<i4"),
+}
+# By how many things move in a fixture.
+COLUMNS_OF = {1: COLUMNS, 2: PAIR_COLUMNS}
+
+
+def columns_said(head: str) -> Columns:
+    """What the columns hold beside a head, which may be of any kind of file."""
+    try:
+        toolkit = json.loads(head).get("toolkit")
+        return PAIR_COLUMNS if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else COLUMNS
+    except (ValueError, AttributeError, RecursionError):
+        return COLUMNS
