@@ -114,10 +114,10 @@ def seat(
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """Report whether the part ends up in the pose of fixture N when the vise is closed or the clamp tightened:
-    how wide open that may be when the part is let go and how far off it may lie, where else it can come to
-    rest, and what is read then. Of two clamps, report how the part is put in by hand and in which order they
-    are tightened.
+    """Report whether the part ends up in the pose of fixture N when the vise is closed or the clamp
+    tightened: how wide open that may be when the part is let go and how far off it may lie, where else it can
+    come to rest, and what is read then. Of two clamps, report how the part is put in by hand and in which
+    order they are tightened.
 
     Example: workhold seat part.json 1 --draw seats.svg
     """

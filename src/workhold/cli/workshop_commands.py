@@ -93,7 +93,7 @@ def sheet(
         typer.Option(
             "--seating",
             rich_help_panel=ON_PAPER,
-            help="Report whether the part ends up there: how far to open, and how it looks where it does not.",
+            help="Say whether the part ends up there: how far to open, and how it looks where it does not.",
         ),
     ] = False,
     load: list[str] | None = LOAD,
