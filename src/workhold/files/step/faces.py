@@ -45,6 +45,7 @@ class SolidFace:
     low, high : its lowest and highest z in mm.
     fold : z at which a leaning face turns over, where it may reach farthest out; None without one.
     upward : whether a level face looks up.
+    box : (x0, y0, x1, y1) around it, seen from above, in mm.
     """
 
     shape: Any
@@ -54,6 +55,7 @@ class SolidFace:
     high: float
     fold: float | None = None
     upward: bool = False
+    box: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
 
 @frozen
@@ -88,7 +90,9 @@ def solid_face(face: Any) -> SolidFace:
     if lie == "level":
         turned = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
         upward = (sampled_normals(surface)[0].Z() > 0) != turned
-    return SolidFace(face, lie, kind_of(surface, lie), low[2], high[2], fold, upward)
+    return SolidFace(
+        face, lie, kind_of(surface, lie), low[2], high[2], fold, upward, (low[0], low[1], high[0], high[1])
+    )
 
 
 def lie_of(surface: Any, axis: int) -> Lie:

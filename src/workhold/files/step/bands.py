@@ -1,0 +1,359 @@
+"""Bands: the heights at which a peg may press on each piece of an outline, from the solid's upright faces.
+
+Over a point of the outline's border an upright face covers ranges of height. The band of the point is the least
+interval that holds them within the heights that a peg reaches. Between the ends, lowest and highest points of
+the walls' edges, both of its ends run monotonically, so a piece has in common what its two ends have.
+
+Glossary
+--------
+wall : an upright face of the solid.
+run : neighbouring pieces of one carrier over which the band's ends are continuous.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
+from math import pi, tan, tau
+
+import numpy as np
+from attrs import define, field, frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import SAME_HEIGHT
+from workhold.files.step.faces import SolidFace
+from workhold.files.step.projected import EdgeCurve
+from workhold.geometry.arrangement import BorderPiece, Carrier
+from workhold.geometry.segment import Arc, Line, Point, Segment
+
+__all__ = ["Band", "Strip", "Walls", "strips_of_loop"]
+
+# Heights (z0, z1) in mm above the plane on which the part lies.
+Band = tuple[float, float]
+# How far inside a piece its ends are looked at, as a share of it.
+INSIDE = 1e-7
+# Heights that differ by less, in mm, are one: of an edge, and of a band that goes on from piece to piece.
+ONE_HEIGHT, SAME_BAND = 1e-9, 1e-5
+# Shares of a piece below this are not worth a strip of their own.
+LEAST_SHARE = 1e-4
+NOTHING = (0.0, 0.0)
+
+
+@frozen
+class Strip:
+    """A segment of the outline with its band.
+
+    Parameters
+    ----------
+    start, end : (x, y) in mm, run with the material on the left.
+    bulge : of the segment.
+    band : (z0, z1) in mm that all its points have in common; None where nothing may touch.
+    faces : indices of the solid's upright faces over it, in their order.
+    """
+
+    start: Point
+    end: Point
+    bulge: float
+    band: Band | None
+    faces: tuple[int, ...]
+
+
+@frozen
+class Wall:
+    """An upright face over a carrier.
+
+    Parameters
+    ----------
+    index : of the face.
+    is_left : whether its material is to the left as positions on the carrier grow.
+    edges : its edges that are not upright, each with its points' positions (N,) on the carrier.
+    """
+
+    index: int
+    is_left: bool
+    edges: tuple[tuple[EdgeCurve, NDArray[np.float64]], ...]
+
+    def intervals(self, position: float) -> list[Band]:
+        """Ranges of z in mm that the face covers at a position, from the lowest up."""
+        heights = sorted(z for edge, places in self.edges for z in heights_at(edge, places, position))
+        return list(zip(heights[0::2], heights[1::2], strict=False))
+
+
+@define
+class Walls:
+    """The upright faces of a solid by the carrier that they stand on.
+
+    Parameters
+    ----------
+    faces, edges : of the solid.
+    low, high : z in mm between which a peg may press.
+    """
+
+    faces: Sequence[SolidFace]
+    edges: Sequence[EdgeCurve]
+    low: float
+    high: float
+    found: dict[int, list[Wall]] = field(init=False, factory=dict)
+
+    def upright_edges(self) -> Iterator[tuple[EdgeCurve, Segment]]:
+        """Edges of upright faces that are not upright themselves, with the segments under them."""
+        for edge in self.edges:
+            if self.faces[edge.face].lie == "upright" and edge.segment is not None:
+                yield edge, edge.segment
+
+    def cuts(self) -> list[tuple[Segment, Point]]:
+        """Points at which an outline is to be cut: where an edge of a wall is highest or lowest."""
+        return [(segment, point) for edge, segment in self.upright_edges() for point in edge.turning_points()]
+
+    def over(self, carrier: Carrier) -> list[Wall]:
+        """The walls that stand on a carrier."""
+        if id(carrier) not in self.found:
+            edges = defaultdict(list)
+            for edge, segment in self.upright_edges():
+                if carrier.holds(segment):
+                    edges[edge.face].append((edge, positions(carrier, edge.points)))
+            self.found[id(carrier)] = [
+                Wall(index, has_material_left(self.faces[index], carrier), tuple(own))
+                for index, own in edges.items()
+            ]
+        return self.found[id(carrier)]
+
+    def band(self, piece: BorderPiece, position: float) -> tuple[Band | None, tuple[int, ...]]:
+        """The band at a position of a piece, and the indices of the walls that make it."""
+        covered = [
+            (max(start, self.low), min(end, self.high), wall.index)
+            for wall in self.over(piece.carrier)
+            if wall.is_left == piece.forward
+            for start, end in wall.intervals(position)
+        ]
+        covered = [one for one in covered if one[1] - one[0] > SAME_HEIGHT]
+        if not covered:
+            return None, ()
+        band = min(one[0] for one in covered), max(one[1] for one in covered)
+        return band, tuple(sorted({one[2] for one in covered}))
+
+
+def positions(carrier: Carrier, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Positions (N,) of points on a carrier, on a circle without jumps."""
+    found = np.array([carrier.position((x, y)) for x, y in points[:, :2].tolist()])
+    return found if isinstance(carrier.segment, Line) else np.unwrap(found)
+
+
+def has_material_left(face: SolidFace, carrier: Carrier) -> bool:
+    """Whether a wall's material lies to the left as positions on its carrier grow."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.BRepGProp import BRepGProp_Face
+    from OCP.gp import gp_Pnt, gp_Vec
+
+    surface = BRepAdaptor_Surface(face.shape)
+    u = (surface.FirstUParameter() + surface.LastUParameter()) / 2
+    v = (surface.FirstVParameter() + surface.LastVParameter()) / 2
+    point, outward = gp_Pnt(), gp_Vec()
+    BRepGProp_Face(face.shape).Normal(u, v, point, outward)
+    nx, ny = carrier.left(carrier.position((point.X(), point.Y())))
+    return bool(outward.X() * nx + outward.Y() * ny < 0)
+
+
+def heights_at(edge: EdgeCurve, places: NDArray[np.float64], position: float) -> list[float]:
+    """The z in mm at which an edge passes a position of the carrier that its points lie on at some places."""
+    found = []
+    segment = edge.segment
+    for turn in (0.0,) if isinstance(segment, Line) else (-tau, 0.0, tau):
+        away = places - (position + turn)
+        for k in np.flatnonzero(away[:-1] * away[1:] < 0):
+            first, last = edge.points[k, 2], edge.points[k + 1, 2]
+            share = away[k] / (away[k] - away[k + 1])
+            if len(places) == 2 or abs(last - first) <= ONE_HEIGHT:
+                found.append(float(first + share * (last - first)))
+            else:
+                found.append(refined(edge, int(k), places, position + turn))
+    return found
+
+
+def refined(edge: EdgeCurve, k: int, places: NDArray[np.float64], position: float) -> float:
+    """The z in mm at which a curved edge passes a position between its points k and k + 1."""
+    segment = edge.segment
+    assert segment is not None
+    own = segment.parameter((float(edge.points[k, 0]), float(edge.points[k, 1])))
+    step = 1.0 if isinstance(segment, Arc) else direction_of(segment, edge.points, places)
+
+    def along(point: tuple[float, float, float]) -> float:
+        value = segment.parameter((point[0], point[1]))
+        if isinstance(segment, Arc):
+            value = own + (value - own + pi) % tau - pi
+        return value
+
+    return edge.point_at(k, along, own + step * (position - float(places[k])))[2]
+
+
+def direction_of(segment: Segment, points: NDArray[np.float64], places: NDArray[np.float64]) -> float:
+    """1 where positions on the carrier grow with the segment's own parameter, else -1."""
+    own = np.array([segment.parameter((x, y)) for x, y in points[:, :2].tolist()])
+    return 1.0 if float(np.dot(own - own.mean(), places - places.mean())) > 0 else -1.0
+
+
+@frozen
+class Ends:
+    """A piece of the border with its band at both of its ends, in the direction of its run.
+
+    Parameters
+    ----------
+    piece : of the border.
+    first, last : bands at its first and its last point; None where nothing may touch.
+    faces : indices of the walls over it.
+    """
+
+    piece: BorderPiece
+    first: Band | None
+    last: Band | None
+    faces: tuple[int, ...]
+
+    def at(self, share: float) -> float:
+        """The position at a share of the run."""
+        low, high = self.piece.low, self.piece.high
+        return low + share * (high - low) if self.piece.forward else high - share * (high - low)
+
+
+def ends_of(piece: BorderPiece, walls: Walls) -> Ends:
+    """A piece with its band at both ends, looked at a hair inside."""
+    whole = Ends(piece, None, None, ())
+    first, used = walls.band(piece, whole.at(INSIDE))
+    last, more = walls.band(piece, whole.at(1 - INSIDE))
+    return Ends(piece, first, last, tuple(sorted({*used, *more})))
+
+
+def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> list[Strip]:
+    """The segments of a loop with their bands, in running order.
+
+    Parameters
+    ----------
+    loop : pieces in running order, see ``geometry.arrangement``.
+    least : shortest band in mm that may be touched.
+    """
+    ends = [ends_of(piece, walls) for piece in loop]
+    # Begin where the band jumps or the carrier changes, so that no run passes the loop's first point.
+    first = next((k for k in range(len(ends)) if not continues(ends[k - 1], ends[k])), 0)
+    ends = ends[first:] + ends[:first]
+    runs: list[list[Ends]] = []
+    for one in ends:
+        if runs and continues(runs[-1][-1], one):
+            runs[-1].append(one)
+        else:
+            runs.append([one])
+    return [strip for run in runs for strip in strips_of_run(run, walls, least)]
+
+
+def continues(before: Ends, after: Ends) -> bool:
+    """Whether a piece continues another: the same carrier and direction, and no jump of the band."""
+    if before.piece.carrier is not after.piece.carrier or before.piece.forward != after.piece.forward:
+        return False
+    if before.last is None or after.first is None:
+        return before.last is after.first
+    return all(abs(a - b) <= SAME_BAND for a, b in zip(before.last, after.first, strict=True))
+
+
+def strips_of_run(run: Sequence[Ends], walls: Walls, least: float) -> list[Strip]:
+    """A run cut where the common band would fall below the least.
+
+    Strips are made as long as they can be, one after the other. Over one piece each end of the band rises or
+    falls only, so a part of a piece has in common what its own two ends have.
+    """
+    if run[0].first is None:
+        return strips_between(run[0], 0.0, run[-1], 1.0, None, run)
+    strips: list[Strip] = []
+    opened: tuple[int, float] | None = None
+    common: Band | None = None
+
+    def close(k: int, share: float) -> None:
+        nonlocal opened, common
+        if opened is not None:
+            parts = run[opened[0] : k + 1]
+            strips.extend(strips_between(parts[0], opened[1], parts[-1], share, common, parts))
+        opened, common = None, None
+
+    for k, one in enumerate(run):
+        share = 0.0
+        while share < 1.0:
+            here = band_at(one, walls, share)
+            if length(here) < least - SAME_HEIGHT:
+                begin = first_share(share, lambda t, one=one: length(band_at(one, walls, t)) >= least)
+                close(k, share)
+                strips += strips_between(one, share, one, begin, None, [one])
+                share = begin
+                continue
+            opened = opened or (k, share)
+            sofar = overlap(common, here)
+            whole = overlap(sofar, band_at(one, walls, 1.0))
+            if length(whole) >= least - SAME_HEIGHT:
+                common = whole
+                break
+            end = first_share(
+                share,
+                lambda t, one=one, own=sofar: (
+                    length(overlap(own, band_at(one, walls, t))) < least - SAME_HEIGHT
+                ),
+            )
+            if end - share > LEAST_SHARE:
+                common = overlap(sofar, band_at(one, walls, end))
+                close(k, end)
+                share = end
+            elif opened != (k, share):
+                close(k, share)
+            else:
+                opened = None
+                strips += strips_between(one, share, one, 1.0, None, [one])
+                break
+    close(len(run) - 1, 1.0)
+    return strips
+
+
+def band_at(one: Ends, walls: Walls, share: float) -> Band:
+    """The band at a share of a piece's run; one of no length where nothing may touch."""
+    if share <= INSIDE:
+        return one.first or NOTHING
+    if share >= 1 - INSIDE:
+        return one.last or NOTHING
+    return walls.band(one.piece, one.at(share))[0] or NOTHING
+
+
+def overlap(a: Band | None, b: Band) -> Band:
+    """What two bands have in common; the second alone without a first."""
+    return b if a is None else (max(a[0], b[0]), min(a[1], b[1]))
+
+
+def length(band: Band) -> float:
+    """Length of a band in mm, below 0 where two bands had nothing in common."""
+    return band[1] - band[0]
+
+
+def first_share(start: float, holds: Callable[[float], bool], steps: int = 32) -> float:
+    """The least share after a start for which something that does not hold there holds; 1 if it never does."""
+    low = start
+    for step in range(1, steps + 1):
+        high = start + (1.0 - start) * step / steps
+        if holds(high):
+            for _ in range(50):
+                middle = (low + high) / 2
+                low, high = (low, middle) if holds(middle) else (middle, high)
+            return high
+        low = high
+    return 1.0
+
+
+def strips_between(
+    first: Ends, start: float, last: Ends, stop: float, band: Band | None, parts: Sequence[Ends]
+) -> list[Strip]:
+    """The strip from a share of one piece to a share of another on the same carrier; two for a wide arc."""
+    carrier, forward = first.piece.carrier, first.piece.forward
+    begin = first.at(start)
+    covered = sum(one.piece.high - one.piece.low for one in parts)
+    covered -= start * (first.piece.high - first.piece.low) + (1 - stop) * (last.piece.high - last.piece.low)
+    if covered <= carrier.slack:
+        return []
+    faces = tuple(sorted({index for one in parts for index in one.faces})) if band is not None else ()
+    pieces = 2 if isinstance(carrier.segment, Arc) and covered > pi else 1
+    step = covered / pieces if forward else -covered / pieces
+    bulge = tan(step / 4) if isinstance(carrier.segment, Arc) else 0.0
+    ends = [carrier.at(begin + step * k) for k in range(pieces + 1)]
+    return [Strip(a, b, bulge, band, faces) for a, b in pairwise(ends)]

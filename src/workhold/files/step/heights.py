@@ -1,0 +1,160 @@
+"""Outlines by height: what pegs that reach over some heights may run into, and what they may touch.
+
+The outline U(a, p) is the projection of what a solid has between two heights. Its border consists of edges,
+folds and cuts (see ``files.step.projected``); which pieces of these it has is decided by the material beside
+them.
+
+Glossary
+--------
+peg height : the height p in mm above the plane on which the part lies up to which pegs reach.
+head room : what is kept free above the pegs, in mm.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from attrs import define, field, frozen
+
+from workhold.errors import InputError
+from workhold.files.step.bands import Strip, Walls, strips_of_loop
+from workhold.files.step.faces import SolidFace, solid_faces
+from workhold.files.step.material import Material
+from workhold.files.step.projected import EdgeCurve, ProjectedCurves, edge_curves, projected_curves
+from workhold.geometry.arrangement import BorderPiece, arrange, border_loops, border_pieces
+
+__all__ = ["HEAD_ROOM", "LEAST_BAND", "HeightOutline", "StandingSolid"]
+
+# What is kept free above the pegs, and the shortest band that may be touched, both in mm.
+HEAD_ROOM, LEAST_BAND = 0.5, 1.0
+# How far beside a curve its two sides are looked at, in mm.
+BESIDE = 4e-4
+
+
+@frozen
+class HeightOutline:
+    """The outline between two heights with what may be touched of it.
+
+    Parameters
+    ----------
+    loops : strips in running order with the material on the left; the largest outer loop first.
+    peg_height, head_room, least_band : in mm.
+    """
+
+    loops: tuple[tuple[Strip, ...], ...]
+    peg_height: float
+    head_room: float
+    least_band: float
+
+
+@define
+class StandingSolid:
+    """A solid with its axis up and its lowest point at height 0.
+
+    Parameters
+    ----------
+    shape : Open CASCADE's solid in mm, its axis along z.
+    """
+
+    shape: Any
+    faces: list[SolidFace] = field(init=False)
+    edges: list[EdgeCurve] = field(init=False)
+    material: Material = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        self.faces = solid_faces(self.shape)
+        self.edges = edge_curves(self.faces)
+        self.material = Material(self.shape, self.faces)
+
+    @property
+    def height(self) -> float:
+        """Height of its highest point in mm."""
+        return max(face.high for face in self.faces)
+
+    def outline(
+        self, peg_height: float | None = None, head_room: float = HEAD_ROOM, least_band: float = LEAST_BAND
+    ) -> HeightOutline:
+        """The outline of pegs that reach from below up to a height.
+
+        Parameters
+        ----------
+        peg_height : in mm; the solid's height when None.
+        head_room : kept free above the pegs, in mm.
+        least_band : shortest band in mm that may be touched.
+
+        Raises
+        ------
+        InputError
+            For heights that leave nothing, and where the outline has a curve that is neither line nor arc.
+        """
+        top = self.height if peg_height is None else peg_height
+        walls = Walls(self.faces, self.edges, 0.0, min(top, self.height))
+        loops = self.border(-inf, top + head_room, walls)
+        strips = tuple(tuple(strips_of_loop(loop, walls, least_band)) for loop in loops)
+        return HeightOutline(strips, top, head_room, least_band)
+
+    def border(self, low: float, high: float, walls: Walls | None = None) -> list[list[BorderPiece]]:
+        """The loops of U(low, high), heights in mm.
+
+        Raises
+        ------
+        InputError
+            Naming the face whose border is neither line nor arc.
+        """
+        low, high = max(low, -1.0), min(high, self.height + 1.0)
+
+        def inside(point: tuple[float, float]) -> bool:
+            return self.material.reaches_into(point, low, high)
+
+        curves = projected_curves(self.faces, self.edges, low, high)
+        self.refuse_others(curves, low, high)
+        more = walls.cuts() if walls else []
+        carriers = arrange(curves.segments, (*curves.cuts, *more))
+        pieces = border_pieces(carriers, inside)
+        if not pieces:
+            raise InputError(
+                f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
+            )
+        return border_loops(pieces)
+
+    def refuse_others(self, curves: ProjectedCurves, low: float, high: float) -> None:
+        """Refuses a curve that is neither line nor arc where material lies on one side of it only.
+
+        Raises
+        ------
+        InputError
+            Naming the face, and what helps.
+        """
+        for index, points in curves.others:
+            ahead = points[1:] - points[:-1]
+            for (x, y), (dx, dy) in zip((points[:-1] + points[1:]) / 2, ahead, strict=True):
+                size = (dx * dx + dy * dy) ** 0.5
+                if size < 10 * BESIDE:
+                    continue
+                nx, ny = -dy / size * BESIDE, dx / size * BESIDE
+                sides = {
+                    self.material.reaches_into((float(x + s * nx), float(y + s * ny)), low, high)
+                    for s in (40.0, -40.0)
+                }
+                if len(sides) == 2:
+                    face = self.faces[index]
+                    raise InputError(
+                        f"the outline has a curve that is neither line nor arc: a {face.kind} at heights "
+                        f"{max(face.low, 0):.6g} to {face.high:.6g} mm"
+                    )
+
+
+def standing(shape: Any) -> StandingSolid:
+    """A solid moved so that its lowest point is at height 0, and turned right side out."""
+    from OCP.BRepLib import BRepLib
+    from OCP.gp import gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
+
+    from workhold.files.step.solids import bounding_box
+
+    BRepLib.OrientClosedSolid_s(shape)
+    low, _ = bounding_box(shape)
+    move = gp_Trsf()
+    move.SetTranslation(gp_Vec(0.0, 0.0, -low[2]))
+    return StandingSolid(shape.Moved(TopLoc_Location(move)))

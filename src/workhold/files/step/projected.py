@@ -1,0 +1,444 @@
+"""The curves of a solid that can bound its projection along the axis, as lines and arcs in the plane.
+
+A point on the border of the projection of a slab of the solid is the image of an edge, of a place where a
+face stands upright (a fold), or of the cut at the slab's upper or lower end. What is too much does no harm: an
+arrangement only asks which pieces have material on one side. So curves are taken whole where that is simple.
+
+Glossary
+--------
+fold : where a leaning face stands upright: the contour generator of computer vision (Cipolla and Giblin,
+    "Visual Motion of Curves and Surfaces", 2000).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from math import acos, atan2, cos, hypot, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import ALIGNED, SAME_HEIGHT, SHORTEST
+from workhold.files.step.faces import SolidFace
+from workhold.files.step.solids import sub_shapes
+from workhold.geometry.segment import Arc, Line, Point, Segment
+
+__all__ = ["EdgeCurve", "ProjectedCurves", "edge_curves", "projected_curves"]
+
+# Points along a curve that is neither a line nor an arc in the plane, at which its two sides are looked at.
+SAMPLES = 33
+GOLDEN = (sqrt(5.0) - 1.0) / 2.0
+Point3 = tuple[float, float, float]
+
+
+@frozen
+class EdgeCurve:
+    """An edge of a face, seen from above.
+
+    Parameters
+    ----------
+    face : index of the face.
+    segment : the line or arc that it projects to; None for an upright edge and for any other curve.
+    parameters : (N,) parameters of Open CASCADE's curve, rising; between two of them the edge neither turns
+        back along its segment nor up or down.
+    points : (N, 3) the points there in mm.
+    is_other : whether it projects to a curve that is neither line nor arc.
+    curve : Open CASCADE's curve.
+    """
+
+    face: int
+    segment: Segment | None
+    parameters: NDArray[np.float64]
+    points: NDArray[np.float64]
+    is_other: bool
+    curve: Any
+
+    @property
+    def low(self) -> float:
+        """Lowest z of its points in mm."""
+        return float(self.points[:, 2].min())
+
+    @property
+    def high(self) -> float:
+        """Highest z of its points in mm."""
+        return float(self.points[:, 2].max())
+
+    def point_at(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
+        """The point between the points k and k + 1 at which a value that runs monotonically is as wanted."""
+        a, b = float(self.parameters[k]), float(self.parameters[k + 1])
+        first, last = value(point3(self.points[k])), value(point3(self.points[k + 1]))
+        if len(self.points) == 2:
+            share = (wanted - first) / (last - first)
+            return point3(self.points[0] + share * (self.points[1] - self.points[0]))
+        for _ in range(60):
+            middle = (a + b) / 2
+            if (value(curve_point(self.curve, middle)) < wanted) == (first < wanted):
+                a = middle
+            else:
+                b = middle
+        return curve_point(self.curve, (a + b) / 2)
+
+    def turning_points(self) -> list[Point]:
+        """Points (x, y) within the edge at which it is highest or lowest around."""
+        z = self.points[:, 2]
+        turns = np.flatnonzero((z[1:-1] - z[:-2]) * (z[2:] - z[1:-1]) < 0) + 1
+        return [(float(self.points[k, 0]), float(self.points[k, 1])) for k in turns]
+
+
+@frozen
+class ProjectedCurves:
+    """All curves that can bound the projection of a slab.
+
+    Parameters
+    ----------
+    segments : lines and arcs.
+    cuts : segments with points at which they are to be cut besides.
+    others : of curves that are neither, the face's index and (N, 2) points in mm.
+    """
+
+    segments: tuple[Segment, ...]
+    cuts: tuple[tuple[Segment, Point], ...]
+    others: tuple[tuple[int, NDArray[np.float64]], ...]
+
+
+def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
+    """The edges of all faces, each as often as a face has it."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Curve
+
+    found = []
+    for index, face in enumerate(faces):
+        for edge in sub_shapes(face.shape, "EDGE"):
+            if BRep_Tool.Degenerated_s(edge):
+                continue
+            found.append(edge_curve_of(index, BRepAdaptor_Curve(edge)))
+    return found
+
+
+def edge_curve_of(face: int, curve: Any) -> EdgeCurve:
+    """One edge seen from above."""
+    from OCP.GeomAbs import GeomAbs_CurveType
+
+    first, last = curve.FirstParameter(), curve.LastParameter()
+    kind = curve.GetType()
+    if kind == GeomAbs_CurveType.GeomAbs_Line:
+        parameters = np.array([first, last])
+        points = points_along(curve, parameters)
+        (x0, y0, _), (x1, y1, _) = points.tolist()
+        line = Line((x0, y0), (x1, y1)) if hypot(x1 - x0, y1 - y0) >= SHORTEST else None
+        return EdgeCurve(face, line, parameters, points, False, curve)
+    parameters = np.linspace(first, last, SAMPLES)
+    points = points_along(curve, parameters)
+    if kind == GeomAbs_CurveType.GeomAbs_Circle:
+        circle = curve.Circle()
+        normal = circle.Axis().Direction()
+        if hypot(normal.X(), normal.Y()) <= ALIGNED:
+            arc = level_arc(circle, first, last, points)
+            return EdgeCurve(face, arc, parameters, points, False, curve)
+    segment = flattened(points[:, :2])
+    if segment is None:
+        return EdgeCurve(face, None, parameters, points, is_wide(points[:, :2]), curve)
+    more = [
+        one
+        for value in (position_along(segment), height)
+        for one in extremes(curve, parameters, [value(point3(point)) for point in points], value)
+    ]
+    if more:
+        parameters = np.unique(np.concatenate([parameters, more]))
+        points = points_along(curve, parameters)
+        segment = flattened(points[:, :2]) or segment
+    return EdgeCurve(face, segment, parameters, points, False, curve)
+
+
+def is_wide(points: NDArray[np.float64]) -> bool:
+    """Whether points (N, 2) are no single point; an upright edge is one."""
+    return bool(np.ptp(points, axis=0).max() > SHORTEST)
+
+
+def height(point: Point3) -> float:
+    """The z of a point."""
+    return point[2]
+
+
+def position_along(segment: Segment) -> Callable[[Point3], float]:
+    """The parameter of points along a segment's carrier."""
+    return lambda point: segment.parameter((point[0], point[1]))
+
+
+def extremes(
+    curve: Any,
+    parameters: NDArray[np.float64],
+    values: Sequence[float],
+    value: Callable[[Point3], float],
+) -> list[float]:
+    """Parameters at which a value along a curve is largest or smallest around, by golden section."""
+    found = []
+    rises = np.diff(np.array(values))
+    for k in np.flatnonzero(rises[:-1] * rises[1:] < 0):
+        sign = 1.0 if rises[k] > 0 else -1.0
+        a, b = float(parameters[k]), float(parameters[k + 2])
+        for _ in range(60):
+            c, d = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
+            if sign * value(curve_point(curve, c)) > sign * value(curve_point(curve, d)):
+                b = d
+            else:
+                a = c
+        found.append((a + b) / 2)
+    return found
+
+
+def curve_point(curve: Any, parameter: float) -> Point3:
+    """A point of Open CASCADE's curve in mm."""
+    value = curve.Value(parameter)
+    return value.X(), value.Y(), value.Z()
+
+
+def point3(row: NDArray[np.float64]) -> Point3:
+    """A row of three numbers as a point."""
+    return float(row[0]), float(row[1]), float(row[2])
+
+
+def points_along(curve: Any, parameters: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (N, 3) of a curve in mm."""
+    return np.array([curve_point(curve, float(t)) for t in parameters])
+
+
+def level_arc(circle: Any, first: float, last: float, points: NDArray[np.float64]) -> Arc:
+    """A level circle's arc between two parameters, seen from above."""
+    center = circle.Location()
+    middle = points[len(points) // 2]
+    angle = atan2(middle[1] - center.Y(), middle[0] - center.X())
+    half = min((last - first) / 2, pi)
+    if half > pi - 1e-9:
+        half = pi
+    return Arc((center.X(), center.Y()), circle.Radius(), angle, half, 1.0)
+
+
+def flattened(points: NDArray[np.float64]) -> Segment | None:
+    """The line over which points (N, 2) lie, or the arc; None for any other curve.
+
+    An upright curve on a wall projects to a line or, on a round wall, to an arc.
+    """
+    middle = points.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(points - middle, full_matrices=False)
+    if sizes[1] <= 1e-7 * sqrt(len(points)):
+        along = (points - middle) @ axes[0]
+        start, end = middle + along.min() * axes[0], middle + along.max() * axes[0]
+        if hypot(*(end - start)) < SHORTEST:
+            return None
+        return Line((float(start[0]), float(start[1])), (float(end[0]), float(end[1])))
+    matrix = np.column_stack([2 * points, np.ones(len(points))])
+    solution = np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0]
+    center = solution[:2]
+    radii = np.hypot(*(points - center).T)
+    radius = float(radii.mean())
+    if np.abs(radii - radius).max() > 1e-7 or radius > 1e5:
+        return None
+    angles = np.unwrap(np.arctan2(points[:, 1] - center[1], points[:, 0] - center[0]))
+    low, high = float(angles.min()), float(angles.max())
+    half = (high - low) / 2
+    half = pi if half > pi - 1e-9 else half
+    return Arc((float(center[0]), float(center[1])), radius, (low + high) / 2, half, 1.0)
+
+
+def projected_curves(
+    faces: Sequence[SolidFace], edges: Sequence[EdgeCurve], low: float, high: float
+) -> ProjectedCurves:
+    """Every curve that can bound the projection of the slab between two z in mm."""
+    segments: list[Segment] = []
+    cuts: list[tuple[Segment, Point]] = []
+    others: list[tuple[int, NDArray[np.float64]]] = []
+    for edge in edges:
+        if edge.high < low - SAME_HEIGHT or edge.low > high + SAME_HEIGHT:
+            continue
+        if edge.segment is not None:
+            segments.append(edge.segment)
+            cuts += [(edge.segment, point) for z in (low, high) for point in crossings(edge, z)]
+        elif edge.is_other:
+            others.append((edge.face, edge.points[:, :2]))
+    for index, face in enumerate(faces):
+        if face.lie != "leaning" or face.high < low - SAME_HEIGHT or face.low > high + SAME_HEIGHT:
+            continue
+        levels = [z for z in (low, high) if face.low - SAME_HEIGHT <= z <= face.high + SAME_HEIGHT]
+        for found in (*folds(face), *(one for z in levels for one in level_cuts(face, z))):
+            if isinstance(found, Line | Arc):
+                segments.append(found)
+            else:
+                others.append((index, found))
+    return ProjectedCurves(tuple(segments), tuple(cuts), tuple(others))
+
+
+def crossings(edge: EdgeCurve, z: float) -> list[Point]:
+    """Points (x, y) at which an edge passes a height."""
+    heights = edge.points[:, 2] - z
+    passes = np.flatnonzero(heights[:-1] * heights[1:] < 0)
+    return [edge.point_at(int(k), height, z)[:2] for k in passes]
+
+
+Found = Segment | NDArray[np.float64]
+
+
+def folds(face: SolidFace) -> list[Found]:
+    """Where a leaning face stands upright, seen from above; more of it than the face has does no harm."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+
+    surface = BRepAdaptor_Surface(face.shape)
+    kind = surface.GetType()
+    if kind == Type.GeomAbs_Plane:
+        return []
+    if kind == Type.GeomAbs_Sphere:
+        ball = surface.Sphere()
+        return [whole_circle(ball.Location(), ball.Radius())]
+    if kind in (Type.GeomAbs_Cylinder, Type.GeomAbs_Cone):
+        return list(ruled_folds(surface, kind == Type.GeomAbs_Cylinder))
+    if kind == Type.GeomAbs_Torus:
+        ring = surface.Torus()
+        axis = ring.Axis().Direction()
+        if hypot(axis.X(), axis.Y()) <= ALIGNED:
+            radii = (ring.MajorRadius() + ring.MinorRadius(), ring.MajorRadius() - ring.MinorRadius())
+            return [whole_circle(ring.Location(), radius) for radius in radii if radius > SHORTEST]
+    return free_folds(surface)
+
+
+def whole_circle(center: Any, radius: float) -> Arc:
+    """A circle about a point, seen from above."""
+    return Arc((center.X(), center.Y()), radius, 0.0, pi, 1.0)
+
+
+def ruled_folds(surface: Any, is_cylinder: bool) -> Iterator[Line]:
+    """The rulings of a cylinder or a cone along which the normal is level.
+
+    The normal at angle u is n(u) = r(u) cos h - d sin h, for the radial direction r(u) = X cos u + Y sin u, the
+    axis d and half the cone's angle h (0 for a cylinder). Level is r(u)_z cos h = d_z sin h.
+    """
+    shape = surface.Cylinder() if is_cylinder else surface.Cone()
+    half = 0.0 if is_cylinder else shape.SemiAngle()
+    position = shape.Position()
+    x, y, d = position.XDirection().Z(), position.YDirection().Z(), position.Direction().Z()
+    size = hypot(x, y)
+    if size <= ALIGNED:
+        return
+    value = d * sin(half) / (cos(half) * size)
+    if abs(value) > 1:
+        return
+    low, high = surface.FirstVParameter(), surface.LastVParameter()
+    for turn in {acos(value), -acos(value)}:
+        u = atan2(y, x) + turn
+        a, b = surface.Value(u, low), surface.Value(u, high)
+        if hypot(b.X() - a.X(), b.Y() - a.Y()) >= SHORTEST:
+            yield Line((a.X(), a.Y()), (b.X(), b.Y()))
+
+
+def free_folds(surface: Any, steps: int = 25) -> list[Found]:
+    """Points (N, 2) of a free-form face, or a tilted ring, at which its normal is level, found on a grid."""
+    us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), steps)
+    vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), steps)
+    values = np.array([[normal_height(surface, u, v) for v in vs] for u in us])
+    points = []
+    for i, j in zip(*np.nonzero(values[:, :-1] * values[:, 1:] < 0), strict=True):
+        a, b = vs[j], vs[j + 1]
+        below = values[i, j] < 0
+        for _ in range(40):
+            middle = (a + b) / 2
+            a, b = (middle, b) if (normal_height(surface, us[i], middle) < 0) == below else (a, middle)
+        point = surface.Value(float(us[i]), float(a))
+        points.append((point.X(), point.Y()))
+    return [np.array(points)] if points else []
+
+
+def normal_height(surface: Any, u: float, v: float) -> float:
+    """The z of a surface's normal, of any length."""
+    from OCP.gp import gp_Pnt, gp_Vec
+
+    point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
+    surface.D1(float(u), float(v), point, along_u, along_v)
+    return float(along_u.X() * along_v.Y() - along_u.Y() * along_v.X())
+
+
+def level_cuts(face: SolidFace, z: float) -> list[Found]:
+    """The curves in which a level plane meets a leaning face's surface, seen from above."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+
+    surface = BRepAdaptor_Surface(face.shape)
+    kind = surface.GetType()
+    if kind == Type.GeomAbs_Plane:
+        return plane_cut(surface.Plane(), face, z)
+    if kind == Type.GeomAbs_Sphere:
+        ball = surface.Sphere()
+        square = ball.Radius() ** 2 - (z - ball.Location().Z()) ** 2
+        return [whole_circle(ball.Location(), sqrt(square))] if square > SHORTEST**2 else []
+    if kind == Type.GeomAbs_Cylinder:
+        cylinder = surface.Cylinder()
+        axis = cylinder.Axis().Direction()
+        if abs(axis.Z()) <= ALIGNED:
+            return lying_cut(surface, cylinder, z)
+    if kind == Type.GeomAbs_Cone:
+        cone = surface.Cone()
+        axis = cone.Axis().Direction()
+        if hypot(axis.X(), axis.Y()) <= ALIGNED:
+            apex = cone.Apex()
+            radius = abs((z - apex.Z()) * sin(cone.SemiAngle()) / cos(cone.SemiAngle()))
+            return [whole_circle(apex, radius)] if radius > SHORTEST else []
+    if kind == Type.GeomAbs_Torus:
+        ring = surface.Torus()
+        axis = ring.Axis().Direction()
+        if hypot(axis.X(), axis.Y()) <= ALIGNED:
+            square = ring.MinorRadius() ** 2 - (z - ring.Location().Z()) ** 2
+            reach = sqrt(max(square, 0.0))
+            radii = {ring.MajorRadius() + reach, ring.MajorRadius() - reach} if square >= 0 else set()
+            return [whole_circle(ring.Location(), radius) for radius in radii if radius > SHORTEST]
+    return cut_edges(face.shape, z)
+
+
+def plane_cut(plane: Any, face: SolidFace, z: float) -> list[Found]:
+    """The line in which a sloping plane passes a height, as long as the face is wide."""
+    normal, place = plane.Axis().Direction(), plane.Location()
+    across = hypot(normal.X(), normal.Y())
+    nx, ny = normal.X() / across, normal.Y() / across
+    # The point of the line nearest to the plane's location: n . (q - place) = 0 at z.
+    away = -(z - place.Z()) * normal.Z() / across
+    x, y = place.X() + away * nx, place.Y() + away * ny
+    corners = np.array([(px, py) for px in face.box[0::2] for py in face.box[1::2]])
+    along = (corners - (x, y)) @ np.array([-ny, nx])
+    low, high = float(along.min()), float(along.max())
+    if high - low < SHORTEST:
+        return []
+    return [Line((x - low * ny, y + low * nx), (x - high * ny, y + high * nx))]
+
+
+def lying_cut(surface: Any, cylinder: Any, z: float) -> list[Found]:
+    """The two rulings in which a lying cylinder passes a height."""
+    position = cylinder.Position()
+    center = cylinder.Location()
+    share = (z - center.Z()) / cylinder.Radius()
+    if abs(share) > 1:
+        return []
+    # The radial direction at u has the height X_z cos u + Y_z sin u, which has amplitude 1 on a lying cylinder.
+    top = atan2(position.YDirection().Z(), position.XDirection().Z())
+    low, high = surface.FirstVParameter(), surface.LastVParameter()
+    found: list[Found] = []
+    for turn in {acos(share), -acos(share)}:
+        a, b = surface.Value(top + turn, low), surface.Value(top + turn, high)
+        found.append(Line((a.X(), a.Y()), (b.X(), b.Y())))
+    return found
+
+
+def cut_edges(shape: Any, z: float) -> list[Found]:
+    """The curves in which a level plane cuts a face of any surface, by Open CASCADE."""
+    from OCP.BRepAdaptor import BRepAdaptor_Curve
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Section
+    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
+
+    cut = BRepAlgoAPI_Section(shape, gp_Pln(gp_Pnt(0.0, 0.0, z), gp_Dir(0.0, 0.0, 1.0)))
+    found: list[Found] = []
+    for edge in sub_shapes(cut.Shape(), "EDGE"):
+        curve = edge_curve_of(0, BRepAdaptor_Curve(edge))
+        if curve.segment is not None:
+            found.append(curve.segment)
+        elif curve.is_other:
+            found.append(curve.points[:, :2])
+    return found

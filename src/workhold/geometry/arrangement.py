@@ -1,0 +1,320 @@
+"""The arrangement of lines and arcs: all pieces into which they cut each other, and the loops along a region.
+
+Segments of one carrier are put together first, so a piece that many segments share is there once. A region is
+known by asking beside every piece whether its points belong to it; pieces with the region on one side only
+are its border.
+
+Glossary
+--------
+arrangement : the pieces of some curves between all points in which these meet (Agarwal and Sharir,
+    "Arrangements and their applications", 2000).
+position : place along a carrier: millimetres on a line, radians on a circle.
+span : a range of positions that some segment covers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
+from math import atan2, cos, hypot, pi, sin, tau
+
+import numpy as np
+from attrs import Factory, define, frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.geometry.loop import near_pairs
+from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, carrier_intersections
+
+__all__ = ["BorderPiece", "Carrier", "arrange", "border_loops", "border_pieces"]
+
+# Carriers, and points along one, that differ by less than this in mm are one.
+ONE = 1e-6
+# Pieces shorter than this in mm come of rounding and are left out.
+SHORT = 1e-5
+# How far beside a piece its two sides are looked at, in mm, and as a share of the piece.
+BESIDE, BESIDE_SHARE = 4e-4, 0.1
+
+
+@define
+class Carrier:
+    """A line or a circle with the spans that segments cover, and the positions at which it is cut.
+
+    Parameters
+    ----------
+    segment : one segment on it, which fixes positions: they are its parameters.
+    spans : (low, high) positions; of a circle low is in [-pi, pi) and high less than a turn above.
+    cuts : positions.
+    """
+
+    segment: Segment
+    spans: list[tuple[float, float]] = Factory(list)
+    cuts: list[float] = Factory(list)
+
+    @property
+    def slack(self) -> float:
+        """The position's change that is ``ONE`` long."""
+        return ONE if isinstance(self.segment, Line) else ONE / self.segment.radius
+
+    def holds(self, other: Segment) -> bool:
+        """Whether another segment lies on the same line or circle."""
+        own = self.segment
+        if isinstance(own, Line) and isinstance(other, Line):
+            (x, y), (tx, ty) = own.middle, own.tangent
+            return all(abs((px - x) * ty - (py - y) * tx) <= ONE for px, py in (other.start, other.end))
+        if isinstance(own, Arc) and isinstance(other, Arc):
+            apart = hypot(own.center[0] - other.center[0], own.center[1] - other.center[1])
+            return apart <= ONE and abs(own.radius - other.radius) <= ONE
+        return False
+
+    def position(self, point: Point) -> float:
+        """The position of the carrier's point nearest to a point."""
+        return self.segment.parameter(point)
+
+    def at(self, position: float) -> Point:
+        """The point at a position."""
+        return self.segment.at(position)
+
+    def left(self, position: float) -> Point:
+        """Unit vector to the left when positions grow; on a circle it points to the centre."""
+        if isinstance(self.segment, Line):
+            tx, ty = self.segment.tangent
+            return -ty, tx
+        angle = self.segment.mid_angle + position
+        return -cos(angle), -sin(angle)
+
+    def add(self, segment: Segment) -> None:
+        """Covers the span of a segment on this carrier, and cuts at its ends."""
+        if isinstance(segment, Arc) and segment.is_full:
+            self.spans.append((-pi, pi))
+            return
+        first, last = self.position(segment.start), self.position(segment.end)
+        if isinstance(segment, Arc):
+            if segment.sign < 0:
+                first, last = last, first
+            if last < first:
+                last += tau
+        self.spans.append((min(first, last), max(first, last)))
+        self.cuts += [first, last]
+
+    def covers(self, position: float) -> bool:
+        """Whether a span holds a position, ends included."""
+        turns = (0.0,) if isinstance(self.segment, Line) else (-tau, 0.0, tau)
+        slack = self.slack
+        return any(
+            low - slack <= position + turn <= high + slack for low, high in self.spans for turn in turns
+        )
+
+    def pieces(self) -> list[tuple[float, float]]:
+        """Pieces between neighbouring cuts that are covered."""
+        slack = self.slack
+        cuts = np.array(self.cuts)
+        if isinstance(self.segment, Arc):
+            cuts = (cuts + pi) % tau - pi
+            if len(cuts) == 0:
+                return [(-pi, 0.0), (0.0, pi)]
+        distinct = distinct_sorted(cuts, slack)
+        if isinstance(self.segment, Arc):
+            if len(distinct) > 1 and distinct[0] + tau - distinct[-1] <= slack:
+                distinct.pop()
+            distinct.append(distinct[0] + tau)
+            if len(distinct) == 2:
+                distinct.insert(1, distinct[0] + pi)
+        least = SHORT / ONE * slack
+        return [
+            (low, high)
+            for low, high in pairwise(distinct)
+            if high - low > least and self.covers((low + high) / 2)
+        ]
+
+
+def distinct_sorted(values: NDArray[np.float64], slack: float) -> list[float]:
+    """Sorted values without those that lie within the slack above another."""
+    distinct: list[float] = []
+    for value in np.sort(values):
+        if not distinct or value - distinct[-1] > slack:
+            distinct.append(float(value))
+    return distinct
+
+
+def arrange(segments: Iterable[Segment], cuts: Iterable[tuple[Segment, Point]] = ()) -> list[Carrier]:
+    """Carriers of some segments, cut wherever two of them meet.
+
+    Parameters
+    ----------
+    segments : in any order and direction; they may overlap.
+    cuts : further points at which the carrier of a segment is to be cut.
+    """
+    carriers: list[Carrier] = []
+    found: dict[tuple[int, ...], list[Carrier]] = {}
+    for segment in segments:
+        carrier_of(segment, carriers, found).add(segment)
+    for segment, point in cuts:
+        carrier = carrier_of(segment, carriers, found)
+        carrier.cuts.append(carrier.position(point))
+    carriers = [carrier for carrier in carriers if carrier.spans]
+    boxes = np.array([covered_box(carrier) for carrier in carriers]).reshape(-1, 4)
+    for a, b in near_pairs(boxes, boxes):
+        if a < b:
+            cut_each_other(carriers[a], carriers[b])
+    return carriers
+
+
+def carrier_of(
+    segment: Segment, carriers: list[Carrier], found: dict[tuple[int, ...], list[Carrier]]
+) -> Carrier:
+    """The carrier of a segment, made if it is not there; ``found`` holds carriers by rough place."""
+    keys = rough_keys(segment)
+    for key in keys:
+        for carrier in found.get(key, ()):
+            if carrier.holds(segment):
+                return carrier
+    carrier = Carrier(segment)
+    carriers.append(carrier)
+    found.setdefault(keys[0], []).append(carrier)
+    return carrier
+
+
+def rough_keys(segment: Segment) -> list[tuple[int, ...]]:
+    """Where a carrier may be kept: the cell of its place first, then the neighbouring cells."""
+    if isinstance(segment, Arc):
+        cell = [round(value / 1e-3) for value in (*segment.center, segment.radius)]
+        around = [(a, b, c) for a in (0, -1, 1) for b in (0, -1, 1) for c in (0, -1, 1)]
+        return [(cell[0] + a, cell[1] + b, cell[2] + c) for a, b, c in around]
+    tx, ty = segment.tangent
+    # A short segment leaves its direction open; the cells of lines are therefore by direction only.
+    cell = [round(atan2(ty, tx) % pi / 1e-2)]
+    last = round(pi / 1e-2)
+    return [((cell[0] + a) % last, 0) for a in (0, -1, 1)]
+
+
+def covered_box(carrier: Carrier) -> tuple[float, float, float, float]:
+    """A box around all that is covered, grown by ``ONE``."""
+    own = carrier.segment
+    if isinstance(own, Arc):
+        (x, y), r = own.center, own.radius + ONE
+        return x - r, y - r, x + r, y + r
+    low, high = min(a for a, _ in carrier.spans), max(b for _, b in carrier.spans)
+    x0, y0, x1, y1 = bounding_box(own.part(low, high))
+    return x0 - ONE, y0 - ONE, x1 + ONE, y1 + ONE
+
+
+def cut_each_other(a: Carrier, b: Carrier) -> None:
+    """Cuts two carriers where both are covered and meet, or where a span of one ends on the other."""
+    points = list(carrier_intersections(a.segment, b.segment))
+    for one, other in ((a, b), (b, a)):
+        for position in {end for span in one.spans for end in span}:
+            point = one.at(position)
+            foot = other.at(other.position(point))
+            if hypot(point[0] - foot[0], point[1] - foot[1]) <= ONE:
+                points.append(point)
+    for point in points:
+        first, second = a.position(point), b.position(point)
+        if a.covers(first) and b.covers(second):
+            a.cuts.append(first)
+            b.cuts.append(second)
+
+
+@frozen
+class BorderPiece:
+    """A piece of a region's border, run with the region on its left.
+
+    Parameters
+    ----------
+    carrier : the line or circle that it lies on.
+    low, high : positions on the carrier, in mm or radians.
+    forward : whether positions grow along the run.
+    """
+
+    carrier: Carrier
+    low: float
+    high: float
+    forward: bool
+
+    @property
+    def start(self) -> Point:
+        """First point of the run."""
+        return self.carrier.at(self.low if self.forward else self.high)
+
+    @property
+    def end(self) -> Point:
+        """Last point of the run."""
+        return self.carrier.at(self.high if self.forward else self.low)
+
+    def heading(self, *, at_end: bool) -> float:
+        """Direction of the run in radians, at its first point or its last."""
+        nx, ny = self.carrier.left(self.high if at_end == self.forward else self.low)
+        return atan2(-nx, ny) if self.forward else atan2(nx, -ny)
+
+    @property
+    def bulge(self) -> float:
+        """The DXF bulge of the run."""
+        if isinstance(self.carrier.segment, Line):
+            return 0.0
+        quarter = (self.high - self.low) / 4
+        return (sin(quarter) / cos(quarter)) * (1.0 if self.forward else -1.0)
+
+
+def border_pieces(carriers: Sequence[Carrier], inside: Callable[[Point], bool]) -> list[BorderPiece]:
+    """Pieces with a region on one side only.
+
+    Parameters
+    ----------
+    carriers : see :func:`arrange`; they hold the region's whole border.
+    inside : whether a point (x, y) that lies on no carrier belongs to the region.
+    """
+    found = []
+    for carrier in carriers:
+        unit = 1.0 if isinstance(carrier.segment, Line) else carrier.segment.radius
+        for low, high in carrier.pieces():
+            middle = (low + high) / 2
+            (x, y), (nx, ny) = carrier.at(middle), carrier.left(middle)
+            beside = min(BESIDE, BESIDE_SHARE * (high - low) * unit)
+            left = inside((x + beside * nx, y + beside * ny))
+            right = inside((x - beside * nx, y - beside * ny))
+            if left != right:
+                found.append(BorderPiece(carrier, low, high, left))
+    return found
+
+
+def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[list[BorderPiece]]:
+    """Pieces of a border joined to closed loops, each run with the region on the left.
+
+    Where several runs leave a point, the one that turns farthest to the left is taken: two corners of a region
+    that touch stay corners of one loop each.
+
+    Parameters
+    ----------
+    reach : largest gap in mm between the ends of neighbouring pieces.
+
+    Raises
+    ------
+    InputError
+        When a loop does not close, so that some of the border is missing.
+    """
+    left = set(range(len(pieces)))
+    starts = np.array([piece.start for piece in pieces]).reshape(-1, 2)
+    loops = []
+    while left:
+        first = min(left)
+        left.discard(first)
+        loop = [first]
+        while True:
+            x, y = pieces[loop[-1]].end
+            near = np.flatnonzero(np.hypot(starts[:, 0] - x, starts[:, 1] - y) <= reach)
+            free = [int(k) for k in near if k in left or k == first]
+            if not free:
+                raise InputError(f"the border ends at ({x:.6g}, {y:.6g})")
+            heading = pieces[loop[-1]].heading(at_end=True)
+            following = max(free, key=lambda k: turn_left(heading, pieces[k].heading(at_end=False)))
+            if following == first:
+                break
+            left.discard(following)
+            loop.append(following)
+        loops.append([pieces[k] for k in loop])
+    return loops
+
+
+def turn_left(before: float, after: float) -> float:
+    """Turn from one direction to another in radians, in (-pi, pi], positive to the left."""
+    return -((before - after + pi) % tau - pi)
