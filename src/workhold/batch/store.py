@@ -24,7 +24,8 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.atomic import plain_errors, write_bytes
-from workhold.files.result.writer import workpiece_entry
+from workhold.files.result.writer import solid_entry, workpiece_entry
+from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -48,7 +49,7 @@ FIRST, LAST = b'{"format": "workhold-', b"]}\n"
 
 def part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
     """The record of a drawing that was read."""
-    about = {"format": PART, **workpiece_entry(workpiece), "name": PART_NAME}
+    about = {"format": PART, **workpiece_entry(workpiece), **solid_entry(workpiece.solid), "name": PART_NAME}
     x0, y0, x1, y1 = workpiece.bounds
     return ended(
         about | {"faces": len(workpiece.faces), "size": [x1 - x0, y1 - y0], "remarks": list(remarks)}
@@ -83,7 +84,10 @@ def plain_record(content: bytes) -> dict[str, Any]:
 
 def workpiece_of(record: dict[str, Any]) -> Workpiece:
     """The part of a drawing's record."""
-    return Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"])
+    solid = record.get("solid") and SolidOutline(
+        **record["solid"], bands=record["bands"], faces=record.get("solid_faces", ())
+    )
+    return Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
 
 
 # Letters of a name that its folder has: so no folder has too many files.

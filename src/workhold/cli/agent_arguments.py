@@ -55,10 +55,25 @@ class LoadArguments(ToolArguments):
     fit: Positive | None = Field(
         default=None, description="how far lines and arcs may be from true curves that they stand for, in mm"
     )
-    axis: Literal["x", "y", "z"] | None = Field(
-        default=None, description="STEP: what the pegs are parallel to"
+    axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = Field(
+        default=None, description="STEP: the direction that points up, to which the pegs are parallel"
     )
     section: float | None = Field(default=None, description="STEP: take the section at this height, in mm")
+    peg_height: Positive | None = Field(
+        default=None,
+        description="STEP: how far pegs reach above the plane on which the part lies, in mm; the outline is what "
+        "they meet there, and only upright faces are touched",
+    )
+    head_room: float | None = Field(
+        default=None,
+        ge=0,
+        description="with peg_height: what is kept free above the pegs, in mm; usually 0.5",
+    )
+    least_band: float | None = Field(
+        default=None,
+        ge=0,
+        description="with peg_height: how high an upright face must be to be touched, in mm; usually 1",
+    )
     picture: bool = Field(default=False, description="show a picture, too")
 
     def reading(self) -> dict[str, Any]:

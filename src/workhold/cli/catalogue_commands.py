@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from attrs import asdict
 
 from workhold.cli.commands import option, spread
 from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
@@ -225,6 +226,7 @@ def features(
     loaded = reading.load(part)
     workpiece = loaded.workpiece
 
+    from workhold.cli.solid_tables import band_table, height_table
     from workhold.cli.table import print_tables
     from workhold.cli.tables import face_table, jumps_sentence, plural
 
@@ -237,7 +239,8 @@ def features(
         faces = plural(len(workpiece.faces), "face")
         size = f"{shown_unit.number(x1 - x0)} x {shown_unit.text(y1 - y0)}"
         table = face_table(workpiece, shown_unit)
-        print_tables(f"{workpiece.name}: {size}, {faces}", table, *jumps_sentence(workpiece))
+        of_solid = (*band_table(workpiece, shown_unit), *height_table(loaded.heights, shown_unit))
+        print_tables(f"{workpiece.name}: {size}, {faces}", table, *jumps_sentence(workpiece), *of_solid)
     if picture is not None:
         from workhold.drawing.part_pictures import draw_features
 
@@ -245,7 +248,10 @@ def features(
     if json_:
         from workhold.presenting.data import part_data
 
-        print_json(**part_data(workpiece, loaded.remarks), written=[] if picture is None else [str(picture)])
+        rows = {"heights": [asdict(row) for row in loaded.heights]} if loaded.heights else {}
+        print_json(
+            **part_data(workpiece, loaded.remarks), **rows, written=[] if picture is None else [str(picture)]
+        )
     elif picture is not None:
         print_tables(f"Drawn in {picture}.")
 

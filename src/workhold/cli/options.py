@@ -24,6 +24,7 @@ from workhold.cli.values import (
     whole_number,
 )
 from workhold.errors import InputError
+from workhold.model.solid import AXES
 
 if TYPE_CHECKING:
     from workhold.files.part.load import Loaded
@@ -89,6 +90,9 @@ CALLED = {
     "fit": "--fit",
     "axis": "--axis",
     "section": "--section",
+    "peg_height": "--peg-height",
+    "head_room": "--head-room",
+    "least_band": "--least-band",
 }
 
 PartArgument = Annotated[
@@ -126,7 +130,24 @@ class PartWords:
         "Unit of the drawing, where it is not that of --unit, or where the file says a wrong one.",
     )
     axis: str | None = option(
-        READING, "x|y|z", "STEP files: the direction that the pegs are parallel to; z if not given."
+        READING,
+        "[-]x|y|z",
+        "STEP files: the direction that points up, to which pegs are parallel; z if not given. With - the part "
+        "lies on its other side.",
+    )
+    peg_height: str | None = option(
+        READING,
+        "HEIGHT",
+        "STEP files: how far pegs reach above the plane on which the part lies. The outline is what they can "
+        "meet there, and only upright faces are touched.",
+    )
+    head_room: str | None = option(
+        READING, "LENGTH", "With --peg-height: what is kept free above the pegs; 0.5mm if not given."
+    )
+    least_band: str | None = option(
+        READING,
+        "LENGTH",
+        "With --peg-height: how high an upright face must be to be touched; 1mm if not given.",
     )
     section: str | None = option(
         READING,
@@ -159,8 +180,11 @@ class PartWords:
             "part_number": optional_count(CALLED["part_number"], self.part_number),
             "join_tolerance": length(CALLED["join_tolerance"], self.join_tolerance, unit),
             "fit": optional_positive_length(CALLED["fit"], self.fit, unit),
-            "axis": None if self.axis is None else choice(CALLED["axis"], self.axis, ("x", "y", "z")),
+            "axis": None if self.axis is None else choice(CALLED["axis"], self.axis, AXES),
             "section": optional_length(CALLED["section"], self.section, unit),
+            "peg_height": optional_positive_length(CALLED["peg_height"], self.peg_height, unit),
+            "head_room": optional_length(CALLED["head_room"], self.head_room, unit),
+            "least_band": optional_length(CALLED["least_band"], self.least_band, unit),
             "called": CALLED,
         }
 

@@ -80,7 +80,7 @@ def allowed_features(
     InputError
         For a face that does not exist, and when nothing is left.
     """
-    avoided = {face_of_segment(workpiece, number) for number in restrictions.avoid}
+    avoided = {face_of_segment(workpiece, number) for number in restrictions.avoid} | workpiece.untouchable
     touched = [feature for feature in features if feature.face not in avoided]
     if not touched:
         raise InputError(

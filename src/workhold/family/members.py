@@ -156,6 +156,11 @@ def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
 def other_side(query: Query) -> Query:
     """The query for the part turned over; angles in the vise stay as they are.
 
+    Raises
+    ------
+    InputError
+        For an outline at the height of pegs, which the other side does not have.
+
     Examples
     --------
     >>> from workhold import Vise, Workpiece
@@ -166,6 +171,11 @@ def other_side(query: Query) -> Query:
     ('wedge, side 2', [0.0, -10.0, -40.0], (1,))
     """
     part, asked = query.workpiece, query.restrictions
+    if part.solid is not None:
+        raise InputError(
+            f"{part.name} is an outline at the height of pegs, and on its other side it has another: give both "
+            "sides as parts of their own."
+        )
     loops = [mirrored(loop) for loop in part.loops]
     numbers = segment_numbers(part)
     return evolve(

@@ -16,13 +16,17 @@ __all__ = [
     "AXIS",
     "DRAWING_UNIT",
     "FIT",
+    "HEAD_ROOM",
     "JOIN_TOLERANCE",
     "LAYERS",
+    "LEAST_BAND",
     "MARK",
     "PART_NUMBER",
+    "PEG_HEIGHT",
     "SECTION",
     "UNIT",
     "UnitAskedError",
+    "by_height",
     "refuse_axis",
     "refuse_fit",
     "refuse_layers",
@@ -31,15 +35,17 @@ __all__ = [
 
 # The unit of a drawing that does not say its own, and the one that counts whatever it says.
 UNIT, DRAWING_UNIT = "<unit>", "<drawing_unit>"
-PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT, AXIS, SECTION = (
-    "<part_number>",
-    "<layers>",
-    "<join_tolerance>",
-    "<fit>",
+PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT = "<part_number>", "<layers>", "<join_tolerance>", "<fit>"
+# How a solid is looked at.
+AXIS, SECTION, PEG_HEIGHT, HEAD_ROOM, LEAST_BAND = (
     "<axis>",
     "<section>",
+    "<peg_height>",
+    "<head_room>",
+    "<least_band>",
 )
-MARK = re.compile("|".join((UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT, AXIS, SECTION)))
+OF_SOLIDS = (AXIS, SECTION, PEG_HEIGHT, HEAD_ROOM, LEAST_BAND)
+MARK = re.compile("|".join((UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT, *OF_SOLIDS)))
 # The arguments of ``workhold.load``; it knows one unit.
 IN_PYTHON = {"drawing_unit": "unit"}
 
@@ -90,14 +96,33 @@ def refuse_fit(fit: float | None) -> None:
         raise InputError(f"a JSON file holds lines and arcs only: leave {FIT} out.")
 
 
-def refuse_axis(axis: str | None, section: float | None) -> None:
+def refuse_axis(options: Mapping[str, object]) -> None:
     """Refuses a view of a solid for a file that holds a flat drawing.
+
+    Parameters
+    ----------
+    options : answers to questions by their names; those on solids are looked at.
 
     Raises
     ------
     InputError
-        When an axis or a section was chosen.
+        When an axis, a section or a height was chosen.
     """
-    if axis is not None or section is not None:
-        question = AXIS if axis is not None else SECTION
-        raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")
+    for question in OF_SOLIDS:
+        if options.get(question[1:-1]) is not None:
+            raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")
+
+
+def by_height(options: Mapping[str, object], fit: float | None) -> bool:
+    """Whether a solid is to be looked at by the height of the pegs.
+
+    Raises
+    ------
+    InputError
+        When a section or a fit is wanted besides.
+    """
+    asked = [mark for mark in (PEG_HEIGHT, HEAD_ROOM, LEAST_BAND) if options.get(mark[1:-1]) is not None]
+    for mark, value in ((SECTION, options.get("section")), (FIT, fit)):
+        if asked and value is not None:
+            raise InputError(f"an outline by height takes no {mark}: leave {mark} or {asked[0]} out.")
+    return bool(asked)

@@ -336,10 +336,21 @@ def merged(run: Sequence[Segment]) -> Segment:
     return evolve(first, mid_angle=start + first.sign * half_sweep, half_sweep=half_sweep)
 
 
-def faces_of_loop(segments: Sequence[Segment], first_number: int) -> list[Face]:
-    """Faces of one loop whose segments are numbered from ``first_number``; ordered by their numbers."""
+def faces_of_loop(
+    segments: Sequence[Segment], first_number: int, marks: Sequence[object] | None = None
+) -> list[Face]:
+    """Faces of one loop whose segments are numbered from ``first_number``; ordered by their numbers.
+
+    Parameters
+    ----------
+    marks : of every segment; segments of different marks are never one face. None where all are alike.
+    """
     count = len(segments)
-    starts = [k for k in range(count) if not same_carrier(segments[k - 1], segments[k])] or [0]
+    starts = [
+        k
+        for k in range(count)
+        if not same_carrier(segments[k - 1], segments[k]) or (marks is not None and marks[k - 1] != marks[k])
+    ] or [0]
     faces = []
     for position, start in enumerate(starts):
         stop = starts[position + 1] if position + 1 < len(starts) else starts[0] + count

@@ -34,6 +34,7 @@ from workhold.geometry.merged_runs import merged_chords, on_one_circle
 from workhold.geometry.segment import Arc, Point, Segment, bounding_box
 from workhold.limits import real
 from workhold.model.fixture import Pose
+from workhold.model.solid import SolidOutline
 from workhold.model.wall import Flush
 
 __all__ = ["Workpiece", "outline_diameter", "segments_diameter"]
@@ -58,6 +59,7 @@ class Workpiece:
     remarks : what was changed of the loops given, one sentence each.
     departure : how far the outline may be from the one that was drawn, in mm, where curves were read as lines
         and arcs.
+    solid : how the solid stands and the bands of the segments, for an outline by height; None for a prism.
 
     Examples
     --------
@@ -71,14 +73,17 @@ class Workpiece:
     loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of)
     remarks: tuple[str, ...] = field(default=(), eq=False)
     departure: float = 0.0
+    solid: SolidOutline | None = None
 
     def __attrs_post_init__(self) -> None:
+        if self.solid is not None:
+            self.solid.for_segments(sum(len(loop) for loop in self.loops))
         for loop in self.loops:
             loop.setflags(write=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # What was worked out stays behind, and the arrays are read-only again on the other side.
-        return Workpiece, (self.name, self.loops, (), self.departure)
+        return Workpiece, (self.name, self.loops, (), self.departure, self.solid)
 
     @classmethod
     def from_loops(
@@ -87,6 +92,7 @@ class Workpiece:
         loops: Sequence[ArrayLike],
         labels: Sequence[Sequence[str]] | None = None,
         departure: float = 0.0,
+        solid: SolidOutline | None = None,
     ) -> Workpiece:
         """Makes a part of loops of (x, y, bulge) vertices in mm, checked and turned so that material is on
         the left.
@@ -97,6 +103,7 @@ class Workpiece:
         loops : the outer loop first, then any holes; each (N, 3), run in either direction.
         labels : for every loop, what to call each of its segments in messages (such as ``LINE 2F``).
         departure : how far these loops may be from what was drawn, in mm; below ``READING`` it is none.
+        solid : with a band for every segment, in the order of these loops; None for a prism.
 
         Raises
         ------
@@ -121,6 +128,7 @@ class Workpiece:
         straightened = rounded = 0
         used: list[NDArray[np.float64]] = []
         drawn: list[LoopShape] = []
+        order: list[int] = []
         for index, loop in enumerate(loops):
             place = partial(segment_place, index)
             vertices = checked_vertices(loop, f"{name}: loop {index}", place)
@@ -133,6 +141,9 @@ class Workpiece:
             refuse_no_area(shape, f"{name}: loop {index}")
             if (signed_area(shape.segments) > 0) != (index == 0):
                 vertices = reversed_vertices(vertices)
+                order += reversed_numbers(len(order), len(vertices))
+            else:
+                order += range(len(order), len(order) + len(vertices))
             used.append(vertices)
             drawn.append(shape)
         boxes = np.array([shape.box for shape in drawn])
@@ -140,7 +151,9 @@ class Workpiece:
             if a < b:
                 refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
         refuse_misplaced_holes(name, drawn)
-        return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure))
+        if solid is not None:
+            solid = solid.for_segments(len(order)).reordered(order)
+        return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure), solid)
 
     @classmethod
     def from_points(
@@ -226,9 +239,16 @@ class Workpiece:
         faces: list[Face] = []
         number = 0
         for loop in self.loop_segments:
-            faces += faces_of_loop(loop, number)
+            bands = None if self.solid is None else self.solid.bands[number : number + len(loop)]
+            faces += faces_of_loop(loop, number, bands)
             number += len(loop)
         return tuple(faces)
+
+    @cached_property
+    def untouchable(self) -> frozenset[int]:
+        """Numbers of the faces that no peg, clamp or wall may touch, whatever is asked."""
+        segments = frozenset() if self.solid is None else self.solid.untouchable
+        return frozenset(face.number for face in self.faces if not segments.isdisjoint(face.segments))
 
     @cached_property
     def hull_edges(self) -> tuple[HullEdge, ...]:
@@ -258,13 +278,18 @@ class Workpiece:
     def placed(self, pose: Pose) -> Workpiece:
         """The workpiece as it lies in a pose; turning and moving it keep its bulges."""
         loops = (np.column_stack([*pose.apply(loop[:, 0], loop[:, 1]), loop[:, 2]]) for loop in self.loops)
-        return Workpiece(self.name, tuple(loops), departure=self.departure)
+        return Workpiece(self.name, tuple(loops), departure=self.departure, solid=self.solid)
 
     @property
     def center(self) -> Point:
         """Centre of the bounding box, the point that moments are taken about."""
         x0, y0, x1, y1 = self.bounds
         return (x0 + x1) / 2, (y0 + y1) / 2
+
+
+def reversed_numbers(first: int, count: int) -> list[int]:
+    """Numbers of a loop's segments as they follow each other once it is run the other way."""
+    return [first + count - 1 - k for k in range(count)]
 
 
 def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:

@@ -14,6 +14,7 @@ from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from attrs import asdict
 
 from workhold.errors import InputError
 from workhold.files.result.fixture_text import column_names, fixture_rows, seating_values
@@ -28,6 +29,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import settings_of
+from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import by_hand
 
@@ -76,7 +78,13 @@ def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, An
             for face in workpiece.faces
         ],
         "remarks": list(remarks),
+        **solid_data(workpiece.solid),
     }
+
+
+def solid_data(solid: SolidOutline | None) -> dict[str, Any]:
+    """Describes how the solid of an outline stands, and the heights at which each segment is touched."""
+    return {} if solid is None else {"solid": asdict(solid)}
 
 
 def face_data(face: Face) -> dict[str, Any]:

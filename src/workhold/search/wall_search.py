@@ -312,6 +312,7 @@ def allowed_edges(problem: Problem) -> list[int]:
     """
     part, asked = problem.workpiece, problem.restrictions
     avoided = {face.number for face in part.faces if not set(face.segments).isdisjoint(asked.avoid)}
+    avoided |= part.untouchable
     out = []
     for number, (theta, touching) in enumerate(
         zip(part.flush.theta.tolist(), part.flush.touching, strict=True)

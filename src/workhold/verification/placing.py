@@ -30,6 +30,7 @@ from workhold.model import fixture as model
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.model.requirements import Zone
+from workhold.model.workpiece import Workpiece
 from workhold.verification.ball_geometry import (
     ArcSide,
     BallOutline,
@@ -140,7 +141,10 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
     """The restriction that a fixture breaks, in one sentence without a full stop; empty when it keeps all."""
     restrictions = query.restrictions
     avoided = {face.number for face in query.workpiece.faces if set(face.segments) & set(restrictions.avoid)}
+    bare = faces_without_band(query.workpiece)
     for name, peg in hardware.placed(fixture):
+        if peg.face in bare:
+            return f"{name} touches face {peg.face}, over which no upright face of the solid stands"
         if peg.face in avoided:
             return f"{name} touches face {peg.face}, which is to be avoided"
         for zone in restrictions.zones:
@@ -155,7 +159,13 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
     )
     if restrictions.angles and not any(inside):
         return f"the part lies at {theta:g} degrees, which is outside the angles asked for"
-    return broken_at_wall(fixture, query, hardware, avoided) or hardware.crowding(fixture)
+    return broken_at_wall(fixture, query, hardware, avoided | bare) or hardware.crowding(fixture)
+
+
+def faces_without_band(workpiece: Workpiece) -> set[int]:
+    """Numbers of the faces with a segment that no upright face of the solid stands over."""
+    bands = () if workpiece.solid is None else workpiece.solid.bands
+    return {face.number for face in workpiece.faces if any(bands[k] is None for k in face.segments if bands)}
 
 
 def broken_at_wall(fixture: Fixture, query: Query, hardware: ToolkitRules, avoided: set[int]) -> str:

@@ -29,7 +29,7 @@ from workhold.verification.ball_geometry import (
     turned,
 )
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.placing import proven_pose, zone_distance
+from workhold.verification.placing import faces_without_band, proven_pose, zone_distance
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import WAYS, direction_of, directions_of, line_of, pieces_apart
 from workhold.verification.seat import LOCATORS, LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
@@ -175,7 +175,7 @@ class SeatOnPlate:
             f.number
             for f in self.query.workpiece.faces
             if set(f.segments) & set(self.query.restrictions.avoid)
-        }
+        } | faces_without_band(self.query.workpiece)
         for face, side in sorted(self.outline.faces.items()):
             if face in avoided:
                 continue

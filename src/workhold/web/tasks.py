@@ -53,6 +53,9 @@ CALLED = {
     "fit": '"Fit curves within"',
     "axis": "axis",
     "section": "the height of a section",
+    "peg_height": '"Peg height"',
+    "head_room": '"Head room"',
+    "least_band": "the least band",
 }
 ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
 

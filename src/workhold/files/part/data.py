@@ -13,28 +13,33 @@ The libraries build123d and CadQuery wrap shapes of Open CASCADE as ``wrapped``,
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, Drawing
-from workhold.files.questions import DRAWING_UNIT, refuse_axis, refuse_layers
+from workhold.files.questions import DRAWING_UNIT, by_height, refuse_axis, refuse_layers
 from workhold.files.text import json_value
+from workhold.model.solid import SolidOutline
 from workhold.units import unit_named
+
+if TYPE_CHECKING:
+    from workhold.files.step.by_height import HeightDrawing
 
 __all__ = ["JsonWorkpiece", "ObjectPart", "drawing_of_object", "read_json"]
 
 
 @frozen
 class JsonWorkpiece:
-    """A workpiece of a JSON file: its name, loops as rows x, y (mm) and bulge, and departure in mm."""
+    """A workpiece of a JSON file: its name, loops as rows x, y (mm) and bulge, departure in mm, and solid."""
 
     name: str | None
     loops: list[list[tuple[float, float, float]]]
     departure: float = 0.0
+    solid: SolidOutline | None = None
 
 
 def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
@@ -51,7 +56,9 @@ def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
         For text that is not JSON, or not of this shape, naming the place.
     """
     content = json_value(text)
+    solid: SolidOutline | None = None
     if isinstance(content, dict) and str(content.get("format", "")).startswith("workhold-result"):
+        solid = solid_of(content)
         content = content.get("workpiece")
     if not isinstance(content, dict):
         raise InputError(
@@ -66,7 +73,30 @@ def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
         raise InputError(f'The units "{units[:40]}" are not known: write "mm" or "inch".')
     scale = unit_named(units).millimetres
     loops = [[(x * scale, y * scale, bulge) for x, y, bulge in loop] for loop in content["loops"]]
-    return JsonWorkpiece(content.get("name"), loops, scale * (content.get("departure") or 0.0))
+    return JsonWorkpiece(content.get("name"), loops, scale * (content.get("departure") or 0.0), solid)
+
+
+def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:
+    """The solid of a result file's workpiece; None where it has none.
+
+    Raises
+    ------
+    InputError
+        When the solid or the bands are not of their shape.
+    """
+    workpiece, solid = content.get("workpiece"), content.get("solid")
+    if solid is None or not isinstance(workpiece, dict):
+        return None
+    try:
+        return SolidOutline(
+            **{key: solid[key] for key in ("axis", "height", "peg_height", "head_room", "least_band")},
+            bands=workpiece["bands"],
+            faces=workpiece.get("solid_faces") or (),
+        )
+    except (TypeError, ValueError, LookupError, AttributeError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("The solid of the result file is not complete: design it again.") from error
 
 
 WANTED = (
@@ -83,13 +113,13 @@ class ObjectPart:
 
     Parameters
     ----------
-    drawing : in mm.
+    drawing : in mm; of a solid at the height of the pegs, its outline there.
     name : what to call the part where nobody says.
     part_number : of the part to take of the drawing; None where it is taken already, or the largest is meant.
     layered : whether its layers can be chosen.
     """
 
-    drawing: Drawing
+    drawing: Drawing | HeightDrawing
     name: str
     part_number: int | None
     layered: bool = False
@@ -103,13 +133,12 @@ def drawing_of_object(
     layers: Sequence[str] | None,
     part_number: int | None,
     fit: float | None,
-    axis: str | None,
-    section: float | None,
+    **view: Any,
 ) -> ObjectPart:
     """What an object of another library holds.
 
-    The arguments are those of :func:`workhold.load`. A geometry of shapely has no unit and is in mm unless
-    one is given.
+    The arguments are those of :func:`workhold.load`; ``view`` is how a solid is looked at. A geometry of
+    shapely has no unit and is in mm unless one is given.
 
     Raises
     ------
@@ -117,14 +146,14 @@ def drawing_of_object(
         For an object that is none of these, and choices that do not apply to it.
     """
     if hasattr(part, "__geo_interface__") and hasattr(part, "geom_type"):
-        refuse_axis(axis, section)
+        refuse_axis(view)
         refuse_layers(layers)
         scale = unit_named(unit or usual_unit or "mm").millimetres
         return ObjectPart(Drawing(tuple(geometry_chains(part, scale))), "polygon", part_number)
     if hasattr(part, "modelspace") and hasattr(part, "header"):
         from workhold.files.dxf.reader import read_document
 
-        refuse_axis(axis, section)
+        refuse_axis(view)
         code = int(part.header.get("$INSUNITS", 0))
         drawing = read_document(part, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
         return ObjectPart(
@@ -133,13 +162,23 @@ def drawing_of_object(
     shapes = list(wrapped_shapes(part))
     if not shapes:
         raise InputError(f"a part cannot be read from it: {WANTED}.")
-    from workhold.files.step.reader import read_shapes
-
     refuse_layers(layers)
     if unit is not None:
         raise InputError(f"shapes of Open CASCADE are in mm: leave {DRAWING_UNIT} out.")
-    drawing, rest = read_shapes(shapes, axis=axis, section_height=section, part_number=part_number, fit=fit)
-    return ObjectPart(drawing, str(getattr(part, "label", "") or "shape"), rest)
+    name = str(getattr(part, "label", "") or "shape")
+    if by_height(view, fit):
+        from workhold.files.step.by_height import HeightView, shapes_by_height
+
+        heights = {key: view[key] for key in ("axis", "peg_height", "head_room", "least_band")}
+        return ObjectPart(
+            shapes_by_height(shapes, HeightView(**heights, part_number=part_number)), name, None
+        )
+    from workhold.files.step.reader import read_shapes
+
+    drawing, rest = read_shapes(
+        shapes, axis=view["axis"], section_height=view["section"], part_number=part_number, fit=fit
+    )
+    return ObjectPart(drawing, name, rest)
 
 
 def geometry_chains(geometry: Any, scale: float) -> Iterator[Chain]:

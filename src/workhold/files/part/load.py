@@ -7,7 +7,7 @@ from functools import partial
 from math import isfinite
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from attrs import evolve, frozen
@@ -35,13 +35,18 @@ from workhold.files.questions import (
     DRAWING_UNIT,
     PART_NUMBER,
     UnitAskedError,
+    by_height,
     refuse_axis,
     refuse_fit,
     refuse_layers,
     worded,
 )
+from workhold.model.solid import HeightRow, SolidOutline
 from workhold.model.workpiece import Workpiece
 from workhold.units import unit_named
+
+if TYPE_CHECKING:
+    from workhold.files.step.by_height import HeightDrawing
 
 __all__ = ["Loaded", "builtin_parts", "load", "read_workpiece"]
 
@@ -60,12 +65,14 @@ class Loaded:
     remarks : one sentence each: what was ignored, closed, dropped or chosen.
     parts : all parts the file holds, by decreasing area; ``workpiece`` is one of them.
     number : its number among them, from 1.
+    heights : of a solid seen at the height of the pegs, what other heights offer.
     """
 
     workpiece: Workpiece
     remarks: tuple[str, ...]
     parts: tuple[DrawnPart, ...]
     number: int = 1
+    heights: tuple[HeightRow, ...] = ()
 
 
 def load(
@@ -79,6 +86,9 @@ def load(
     fit: float | None = None,
     axis: str | None = None,
     section: float | None = None,
+    peg_height: float | None = None,
+    head_room: float | None = None,
+    least_band: float | None = None,
 ) -> Workpiece:
     """Loads a part from a file, by the name of a built-in model, or from an object of another library.
 
@@ -96,9 +106,15 @@ def load(
     fit : how far lines and arcs may be from the curves that they replace, in mm; None refuses curves that
         are no lines or arcs. The workpiece's ``departure`` says how far
         they are.
-    axis : "x", "y" or "z", the direction of a STEP file that the pegs are parallel to; z when None.
+    axis : "x", "y" or "z", the direction of a STEP file that the pegs are parallel to; z when None. With a minus
+        before it the part lies on its other side.
     section : take the section of a STEP file's solid at this height in mm above its lowest point, not its
         silhouette.
+    peg_height : see a STEP file's solid as pegs do that reach so many mm above the plane on which it lies: take
+        the outline of what they can meet, and touch only upright faces.
+    head_room : with a height of the pegs, what is kept free above them, in mm; 0.5 when None.
+    least_band : with a height of the pegs, how high an upright face must be there to be touched, in mm; 1 when
+        None.
 
     Raises
     ------
@@ -121,6 +137,9 @@ def load(
         fit=fit,
         axis=axis,
         section=section,
+        peg_height=peg_height,
+        head_room=head_room,
+        least_band=least_band,
     ).workpiece
     return workpiece if name is None else evolve(workpiece, name=name)
 
@@ -136,6 +155,9 @@ def read_workpiece(
     fit: float | None = None,
     axis: str | None = None,
     section: float | None = None,
+    peg_height: float | None = None,
+    head_room: float | None = None,
+    least_band: float | None = None,
     called: Mapping[str, str] | None = None,
 ) -> Loaded:
     """Loads a part as :func:`load` does, with remarks and the list of all parts in the file.
@@ -168,6 +190,7 @@ def read_workpiece(
         "fit": fit,
     }
     options |= {"axis": axis, "section": section}
+    options |= {"peg_height": peg_height, "head_room": head_room, "least_band": least_band}
     path = found(part) if isinstance(part, str | PathLike) else None
     try:
         if path is None:
@@ -190,6 +213,8 @@ def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) ->
         For an object that is none, has no outline, or to which a choice does not apply.
     """
     held = drawing_of_object(part, **options)
+    if not isinstance(held.drawing, Drawing):
+        return from_heights(held.name, held.drawing)
     return from_drawing(
         Path(held.name), held.drawing, held.part_number, join_tolerance, options["fit"], held.layered
     )
@@ -207,9 +232,8 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
     kind = kind_of(path, content)
     part_number, layers, fit = options["part_number"], options["layers"], options["fit"]
     if kind == "step":
-        taken = (options["unit"], layers, part_number, options["axis"], options["section"], fit)
-        return from_step(path, content, *taken)
-    refuse_axis(options["axis"], options["section"])
+        return from_step(path, content, options)
+    refuse_axis(options)
     if kind == "json":
         refuse_fit(fit)
         return from_json(path, content, options["unit"], layers, part_number, path == builtin_path(path.stem))
@@ -261,22 +285,14 @@ def from_json(
     name = read.name or path.stem
     rows = [np.array(loop, dtype=np.float64).reshape(-1, 3) for loop in read.loops]
     refuse_large(sum(len(loop) for loop in rows))
-    workpiece = built(name, [Loop(loop, ()) for loop in rows], with_labels=False, departure=read.departure)
+    loops = [Loop(loop, ()) for loop in rows]
+    workpiece = built(name, loops, with_labels=False, departure=read.departure, solid=read.solid)
     part = nest([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops])[:1]
     chosen_part(part, part_number)
     return Loaded(workpiece, workpiece.remarks, part)
 
 
-def from_step(
-    path: Path,
-    content: bytes,
-    unit: str | None,
-    layers: Sequence[str] | None,
-    part_number: int | None,
-    axis: str | None,
-    section: float | None,
-    fit: float | None,
-) -> Loaded:
+def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
     """A workpiece from the bytes of a STEP file.
 
     Raises
@@ -284,13 +300,40 @@ def from_step(
     InputError
         For wrong content, or choices that do not apply to STEP.
     """
+    refuse_layers(options["layers"])
+    if options["unit"] is not None:
+        raise InputError(f"the STEP file gives its own unit: leave {DRAWING_UNIT} out.")
+    if by_height(options, options["fit"]):
+        from workhold.files.step.by_height import HeightView, read_by_height_apart
+
+        keys = ("axis", "peg_height", "head_room", "least_band", "part_number")
+        view = HeightView(**{key: options[key] for key in keys})
+        return from_heights(path.stem, read_by_height_apart(content, view))
     from workhold.files.step.reader import read_step_apart
 
-    refuse_layers(layers)
-    if unit is not None:
-        raise InputError(f"the STEP file gives its own unit: leave {DRAWING_UNIT} out.")
-    drawing = read_step_apart(content, axis=axis, section_height=section, part_number=part_number, fit=fit)
-    return from_drawing(path, drawing, None, 0.0, fit)
+    drawing = read_step_apart(
+        content,
+        axis=options["axis"],
+        section_height=options["section"],
+        part_number=options["part_number"],
+        fit=options["fit"],
+    )
+    return from_drawing(path, drawing, None, 0.0, options["fit"])
+
+
+def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
+    """A workpiece from the outline of a solid at the height of the pegs.
+
+    Raises
+    ------
+    InputError
+        When the outline cannot be used.
+    """
+    refuse_large(sum(len(loop) for loop in drawing.loops))
+    loops = [Loop(loop, ("",) * len(loop)) for loop in drawing.loops]
+    workpiece = built(name, loops, with_labels=False, solid=drawing.solid)
+    remarks = (*drawing.remarks, *workpiece.remarks)
+    return Loaded(workpiece, remarks, nest(loops)[:1], heights=drawing.heights)
 
 
 def from_drawing(
@@ -364,7 +407,13 @@ def outline_of(
     return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts, part.number)
 
 
-def built(name: str, loops: Sequence[Loop], with_labels: bool = True, departure: float = 0.0) -> Workpiece:
+def built(
+    name: str,
+    loops: Sequence[Loop],
+    with_labels: bool = True,
+    departure: float = 0.0,
+    solid: SolidOutline | None = None,
+) -> Workpiece:
     """Builds the workpiece; its complaints lose the part's name, since the file's name stands before them.
 
     Raises
@@ -374,7 +423,7 @@ def built(name: str, loops: Sequence[Loop], with_labels: bool = True, departure:
     """
     labels = [loop.labels for loop in loops] if with_labels else None
     try:
-        return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels, departure)
+        return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels, departure, solid)
     except InputError as error:
         raise InputError(str(error).replace(f"{name}: ", "")) from error
 

@@ -167,6 +167,7 @@ class ContactPart(FormPart):
     y: float
     segment: Whole = Field(description="number of the face that is touched")
     force: float | Pair
+    band: Pair | None = Field(None, description="heights at which it may press on the face")
 
 
 class JawPegPart(ContactPart):

@@ -128,11 +128,14 @@ POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, '
 LEFT_OUT = "%.0s"
 
 
-def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure]) -> str:
+def fixture_template(
+    arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure], has_bands: bool = False
+) -> str:
     """The line of a fixture with its numbers left open, in the order of :meth:`WrittenBlock.line_columns`."""
+    band = ', "band": %s' * has_bands
     tips, travels = toolkit.tips, toolkit.travels
     carriers = [toolkit.carriers[number] for number in arrangement.carriers]
-    pegs = ", ".join(f"{{{peg_template(one, travels)}}}" for one in carriers if one.contact.is_placed)
+    pegs = ", ".join(f"{{{peg_template(one, travels)}{band}}}" for one in carriers if one.contact.is_placed)
     quality = ", ".join(f'"{figure.key}": {FIGURE[travels]}' for figure in figures)
     pushed = PUSHED[tips].format(*map(json.dumps, arrangement.directions))
     forces = f"[{FORCE[travels]}, {FORCE[travels]}]"
@@ -160,7 +163,8 @@ def peg_template(carrier: Carrier, travels: int) -> str:
 def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
     """The lines of a list of fixtures, block by block."""
     figures = known_figures(table)
-    templates = [fixture_template(one, toolkit, figures) for one in toolkit.arrangements]
+    has_bands = workpiece.solid is not None
+    templates = [fixture_template(one, toolkit, figures, has_bands) for one in toolkit.arrangements]
     for block in blocks(table, toolkit, workpiece):
         rows = zip(*block.line_columns(), strict=True)
         yield [templates[k] % row for k, row in zip(block.table.arrangement.tolist(), rows, strict=True)]
@@ -236,6 +240,14 @@ class WrittenBlock:
         angles, placed = flat_angles(self.table, self.toolkit, self.workpiece), self.placed
         return [[[row[k] for k in placed] for row in angles]]
 
+    def bands(self, contact: int) -> list[NDArray[Any]]:
+        """A column of the bands of a contact's faces as text; none where the workpiece has no bands."""
+        solid = self.workpiece.solid
+        if solid is None:
+            return []
+        texts = np.array([json.dumps(band) for band in solid.bands], dtype=object)
+        return [texts[self.table.face[:, contact]]]
+
     def row_columns(self) -> list[list[Any]]:
         """The columns of :func:`fixture_rows`."""
         table, columns = self.table, list[list[Any]]()
@@ -268,7 +280,7 @@ class WrittenBlock:
                 self.y[:, k],
                 table.face[:, k],
             ]
-            pegs += [*force[:, k].T]
+            pegs += [*force[:, k].T, *self.bands(k)]
         travelled: dict[int, list[NDArray[Any]]] = {0: [table.jaw_separation], 1: [], 2: [table.pairs]}
         behind = [*travelled[tips], *(quality[:, number] for number in self.known)]
         before, middle, after = ([array.tolist() for array in several] for several in (walls, pegs, behind))

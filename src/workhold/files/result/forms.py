@@ -23,6 +23,7 @@ from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.search_report import Proof, Undecided
+from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -67,6 +68,32 @@ class WorkpiecePart(FormPart):
     units: Literal["mm"]
     loops: list[list[list[float]]]
     departure: float = 0.0
+    bands: list[Pair | None] | None = Field(
+        None, description="heights at which each segment may be touched; none where it may not"
+    )
+    solid_faces: list[list[int]] | None = Field(None, description="faces of the solid over each segment")
+
+
+class SolidPart(FormPart):
+    """How the solid of an outline stands."""
+
+    axis: str
+    height: float
+    peg_height: float
+    head_room: float
+    least_band: float
+
+    def outline(self, workpiece: WorkpiecePart) -> SolidOutline:
+        """The solid with the bands of its outline.
+
+        Raises
+        ------
+        InputError
+            When there are no bands, or heights that are none.
+        """
+        if workpiece.bands is None:
+            raise InputError("it has a solid, but the workpiece has no bands.")
+        return SolidOutline(**self.model_dump(), bands=workpiece.bands, faces=workpiece.solid_faces or ())
 
 
 class FlatPart(FormPart):
@@ -218,6 +245,7 @@ class Head(FormPart):
     """Everything in the file but the fixtures."""
 
     format: Literal["workhold-result/1"]
+    solid: SolidPart | None = None
     workpiece: WorkpiecePart
     vise: VisePart | None = None
     toolkit: ToolkitPart | None = None
@@ -269,7 +297,10 @@ class Head(FormPart):
         """
         return Query(
             Workpiece.from_loops(
-                self.workpiece.name, self.workpiece.loops, departure=self.workpiece.departure
+                self.workpiece.name,
+                self.workpiece.loops,
+                departure=self.workpiece.departure,
+                solid=None if self.solid is None else self.solid.outline(self.workpiece),
             ),
             self.asked_toolkit(),
             self.types,

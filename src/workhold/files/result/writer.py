@@ -29,6 +29,7 @@ from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
+from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -39,6 +40,7 @@ __all__ = [
     "proof_entry",
     "result_text",
     "toolkit_fields",
+    "solid_entry",
     "workpiece_entry",
     "written",
     "write_result",
@@ -90,6 +92,7 @@ def head(result: Result) -> dict[str, Any]:
     """Everything in the file but the fixtures, at full precision."""
     return {
         "format": FORMAT,
+        **solid_entry(result.workpiece.solid),
         "workpiece": workpiece_entry(result.workpiece),
         **asked_entry(result.query),
         "counts": result.counts,
@@ -109,6 +112,30 @@ def workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
         "units": "mm",
         "loops": [(loop + 0.0).tolist() for loop in workpiece.loops],
         "departure": workpiece.departure,
+        **bands_entry(workpiece.solid),
+    }
+
+
+def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
+    """The bands of an outline's segments as they are written, and the solid's faces over each."""
+    if solid is None:
+        return {}
+    faces = {"solid_faces": [list(faces) for faces in solid.faces]} if solid.faces else {}
+    return {"bands": [None if band is None else list(band) for band in solid.bands], **faces}
+
+
+def solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
+    """How the solid of an outline stands, as it is written; nothing for a prism."""
+    if solid is None:
+        return {}
+    return {
+        "solid": {
+            "axis": solid.axis,
+            "height": solid.height,
+            "peg_height": solid.peg_height,
+            "head_room": solid.head_room,
+            "least_band": solid.least_band,
+        }
     }
 
 

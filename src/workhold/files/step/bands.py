@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import pairwise
 from math import pi, tan, tau
 
@@ -277,7 +278,7 @@ def strips_of_run(run: Sequence[Ends], walls: Walls, least: float) -> list[Strip
         while share < 1.0:
             here = band_at(one, walls, share)
             if length(here) < least - SAME_HEIGHT:
-                begin = first_share(share, lambda t, one=one: length(band_at(one, walls, t)) >= least)
+                begin = first_share(share, partial(is_long, one, walls, None, least))
                 close(k, share)
                 strips += strips_between(one, share, one, begin, None, [one])
                 share = begin
@@ -288,12 +289,7 @@ def strips_of_run(run: Sequence[Ends], walls: Walls, least: float) -> list[Strip
             if length(whole) >= least - SAME_HEIGHT:
                 common = whole
                 break
-            end = first_share(
-                share,
-                lambda t, one=one, own=sofar: (
-                    length(overlap(own, band_at(one, walls, t))) < least - SAME_HEIGHT
-                ),
-            )
+            end = first_share(share, partial(is_short, one, walls, sofar, least))
             if end - share > LEAST_SHARE:
                 common = overlap(sofar, band_at(one, walls, end))
                 close(k, end)
@@ -315,6 +311,16 @@ def band_at(one: Ends, walls: Walls, share: float) -> Band:
     if share >= 1 - INSIDE:
         return one.last or NOTHING
     return walls.band(one.piece, one.at(share))[0] or NOTHING
+
+
+def is_long(one: Ends, walls: Walls, sofar: Band | None, least: float, share: float) -> bool:
+    """Whether the band at a share of a piece has enough in common with what there is so far."""
+    return length(overlap(sofar, band_at(one, walls, share))) >= least - SAME_HEIGHT
+
+
+def is_short(one: Ends, walls: Walls, sofar: Band | None, least: float, share: float) -> bool:
+    """Whether the band at a share of a piece has too little in common with what there is so far."""
+    return not is_long(one, walls, sofar, least, share)
 
 
 def overlap(a: Band | None, b: Band) -> Band:

@@ -215,6 +215,6 @@ def other_axis(solid: Any, axis: str, before: str) -> str:
 
     surfaces = [BRepAdaptor_Surface(face) for face in sub_shapes(solid, "FACE")]
     for name, (_, _, up) in AXES.items():
-        if name != axis and all(lie_of(surface, up) != "leaning" for surface in surfaces):
+        if name != axis.lstrip("-") and all(lie_of(surface, up) != "leaning" for surface in surfaces):
             return before + name
     return ""

@@ -22,6 +22,7 @@ from workhold.files.step.bands import Strip, Walls, strips_of_loop
 from workhold.files.step.faces import SolidFace, solid_faces
 from workhold.files.step.material import Material
 from workhold.files.step.projected import EdgeCurve, ProjectedCurves, edge_curves, projected_curves
+from workhold.files.step.solids import bounding_box, sub_shapes
 from workhold.geometry.arrangement import BorderPiece, arrange, border_loops, border_pieces
 
 __all__ = ["HEAD_ROOM", "LEAST_BAND", "HeightOutline", "StandingSolid"]
@@ -151,8 +152,7 @@ def standing(shape: Any) -> StandingSolid:
     from OCP.gp import gp_Trsf, gp_Vec
     from OCP.TopLoc import TopLoc_Location
 
-    from workhold.files.step.solids import bounding_box
-
+    shape = sub_shapes(shape, "SOLID")[0]
     BRepLib.OrientClosedSolid_s(shape)
     low, _ = bounding_box(shape)
     move = gp_Trsf()

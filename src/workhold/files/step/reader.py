@@ -30,6 +30,7 @@ from workhold.files.step.solids import (
     AXES,
     Solid,
     along,
+    axis_named,
     bounding_box,
     chosen_solid,
     lost_remarks,
@@ -113,7 +114,7 @@ def read_step(
     content : the file's bytes.
     axis : "x", "y" or "z" (the default): the direction of the file that the pegs are parallel to. The part is
         seen from the axis's far end. So x and y of the outline are y and z of the file for "x", or z and x
-        for "y".
+        for "y". With a minus before it the part lies on its other side, turned over like a page.
     section_height : take the section at this height in mm above the part's lowest point, instead of the
         silhouette.
     part_number : which solid to take of several, from 1 by decreasing volume; the largest when None.
@@ -145,9 +146,7 @@ def read_solid(
     InputError
         See there.
     """
-    axis = "z" if axis is None else axis.strip().lower()
-    if axis not in AXES:
-        raise InputError(f"the axis '{axis[:40]}' is not known: give x, y or z.")
+    axis = axis_named(axis)
     solid = chosen_solid(solids, part_number)
     shape = along(solid.shape, axis)
     faces = solid_faces(shape)
@@ -300,12 +299,8 @@ def read_shapes(
         raise InputError("the shape has neither a face nor a solid: make a face of its outline first.")
     if section_height is not None:
         raise InputError("a section is taken of solids, and this is a face: leave the section out.")
-    axes = [axis.strip().lower()] if axis else [*AXES]
-    views = [
-        [one for face in faces for one in sub_shapes(along(face, name), "FACE")]
-        for name in axes
-        if name in AXES
-    ]
+    axes = [axis_named(axis)] if axis else [*AXES]
+    views = [[one for face in faces for one in sub_shapes(along(face, name), "FACE")] for name in axes]
     level = [view for view in views if lie_level(view)]
     if not level:
         raise InputError(

@@ -17,6 +17,7 @@ __all__ = [
     "AXES",
     "Solid",
     "along",
+    "axis_named",
     "chosen_solid",
     "lost_remarks",
     "numbered",
@@ -225,12 +226,31 @@ def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | None) -
     return [f"The file holds {len(solids)} solids: {listing}{more}. Solid {chosen.number} is used{because}."]
 
 
+def axis_named(axis: str | None) -> str:
+    """The name of an axis, z for None.
+
+    Raises
+    ------
+    InputError
+        When there is none of that name.
+    """
+    name = "z" if axis is None else axis.strip().lower().removeprefix("+")
+    if name.removeprefix("-") not in AXES:
+        raise InputError(f"the axis '{name[:40]}' is not known: give x, y or z, or -x, -y or -z.")
+    return name
+
+
 def along(shape: Any, axis: str) -> Any:
-    """A shape turned so that an axis of the file points up; coordinates only change places."""
+    """A shape turned so that an axis of the file points up; coordinates only change places and signs.
+
+    With a minus the part lies on its other side: what was x points to -x, as if it were turned over like a page.
+    """
     from OCP.gp import gp_Trsf
     from OCP.TopLoc import TopLoc_Location
 
-    rows = [[1.0 if column == source else 0.0 for column in range(3)] + [0.0] for source in AXES[axis]]
+    signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
+    sources = zip(signs, AXES[axis.lstrip("-")], strict=True)
+    rows = [[sign if column == source else 0.0 for column in range(3)] + [0.0] for sign, source in sources]
     turn = gp_Trsf()
     turn.SetValues(*rows[0], *rows[1], *rows[2])
     return shape.Moved(TopLoc_Location(turn))

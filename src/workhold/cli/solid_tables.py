@@ -1,0 +1,45 @@
+"""Tables of a solid seen at the height of the pegs: what is touched at which heights, and what others offer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from workhold.cli.table import Table
+from workhold.model.solid import HeightRow
+from workhold.model.workpiece import Workpiece
+from workhold.units import Unit
+
+__all__ = ["band_table", "height_table"]
+
+
+def band_table(workpiece: Workpiece, unit: Unit) -> list[Table]:
+    """Tabulates the heights at which each face is touched; nothing for a part without heights."""
+    solid = workpiece.solid
+    if solid is None:
+        return []
+    table = Table((">face", f"touched at heights {unit.abbreviation}", "faces of the solid"))
+    for face in workpiece.faces:
+        band = solid.bands[face.number]
+        words = "never" if band is None else " to ".join(unit.number(end) for end in band)
+        over = sorted({number for k in face.segments for number in (solid.faces[k] if solid.faces else ())})
+        table.add_row(str(face.number), words, ", ".join(str(number) for number in over))
+    return [table]
+
+
+def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
+    """Tabulates what the part offers to pegs of other heights; nothing where nobody looked."""
+    if not rows:
+        return []
+    short = unit.abbreviation
+    headings = (
+        f">pegs above {short}",
+        f">up to {short}",
+        f">outline {short}",
+        f">touchable {short}",
+        f">least band {short}",
+    )
+    table = Table(headings)
+    for row in rows:
+        lengths = (row.low, row.high, row.border, row.touchable, row.band)
+        table.add_row(*(unit.number(length) for length in lengths))
+    return [table]

@@ -1,0 +1,302 @@
+"""Parts in STEP files seen at the height of the pegs: the outline there, with what may be touched of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from attrs import asdict, astuple, evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import SAME_HEIGHT
+from workhold.errors import InputError
+from workhold.files.apart import run_apart
+from workhold.files.questions import HEAD_ROOM, LEAST_BAND, PEG_HEIGHT, SECTION
+from workhold.files.step.heights import HeightOutline, StandingSolid, standing
+from workhold.files.step.library import load_step_library
+from workhold.files.step.solids import (
+    along,
+    axis_named,
+    chosen_solid,
+    lost_remarks,
+    numbered,
+    read_solids,
+    solid_remarks,
+    sub_shapes,
+)
+from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.segment import Segment
+from workhold.model.solid import HeightRow, SolidOutline
+
+__all__ = [
+    "HeightDrawing",
+    "HeightRow",
+    "HeightView",
+    "read_by_height",
+    "read_by_height_apart",
+    "shapes_by_height",
+]
+
+# What is kept free above the pegs, and the shortest band that may be touched, both in mm, where nobody says.
+USUAL_HEAD_ROOM, USUAL_LEAST_BAND = 0.5, 1.0
+# Heights of the pegs that the table looks at, at most.
+MOST_ROWS = 60
+
+
+@frozen
+class HeightView:
+    """How a solid is looked at.
+
+    Parameters
+    ----------
+    axis : direction of the file that points up; z when None.
+    peg_height : up to which pegs reach above the plane on which the part lies, in mm; the part's height when None.
+    head_room, least_band : in mm; the usual ones when None.
+    part_number : which solid to take of several; the largest when None.
+    """
+
+    axis: str | None = None
+    peg_height: float | None = None
+    head_room: float | None = None
+    least_band: float | None = None
+    part_number: int | None = None
+
+    def __attrs_post_init__(self) -> None:
+        for name, value, least in (
+            (PEG_HEIGHT, self.peg_height, SAME_HEIGHT),
+            (HEAD_ROOM, self.head_room, 0.0),
+            (LEAST_BAND, self.least_band, 0.0),
+        ):
+            if value is not None and not least <= value < 1e6:
+                raise InputError(
+                    f"{name} cannot be {value:g} mm: give {'more than 0' if least else '0 or more'}."
+                )
+
+
+@frozen
+class HeightDrawing:
+    """The outline of a solid at the height of the pegs.
+
+    Parameters
+    ----------
+    loops : vertices (N, 3) in mm of every loop; the outer one first.
+    solid : how the solid stands, with the bands of the segments.
+    remarks : sentences for the user.
+    heights : what other heights of the pegs offer.
+    """
+
+    loops: tuple[NDArray[np.float64], ...]
+    solid: SolidOutline
+    remarks: tuple[str, ...]
+    heights: tuple[HeightRow, ...]
+
+
+def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
+    """Runs :func:`read_by_height` in a process of its own: damaged files crash or hang the library.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_by_height`, and for a file that the process does not survive.
+    """
+    loops, solid, remarks, rows = run_apart(__name__, content, asdict(view), "the STEP file")
+    return HeightDrawing(
+        tuple(np.array(loop) for loop in loops),
+        SolidOutline(*solid),
+        tuple(remarks),
+        tuple(HeightRow(*row) for row in rows),
+    )
+
+
+def prepare() -> None:
+    """Loads the library, see :func:`workhold.files.apart.run_apart`."""
+    load_step_library()
+
+
+def plain(content: bytes, **view: Any) -> Any:
+    """Loops, solid and remarks of :func:`read_by_height` as plain data.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_by_height`, and where the library or the arithmetic after it fails over the file.
+    """
+    try:
+        drawing = read_by_height(content, HeightView(**view))
+    except InputError:
+        raise
+    except Exception as error:
+        if not isinstance(
+            error, ArithmeticError | LookupError | RuntimeError | TypeError | ValueError
+        ) and not type(error).__module__.startswith("OCP"):
+            raise
+        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
+    solid = drawing.solid
+    heights = (solid.height, solid.peg_height, solid.head_room, solid.least_band)
+    loops = [loop.tolist() for loop in drawing.loops]
+    rows = [astuple(row) for row in drawing.heights]
+    return loops, (solid.axis, *heights, solid.bands, solid.faces), drawing.remarks, rows
+
+
+def read_by_height(content: bytes, view: HeightView) -> HeightDrawing:
+    """The outline of a solid in a STEP file at the height of the pegs.
+
+    Raises
+    ------
+    InputError
+        For files that cannot be read, and outlines that are not made of lines and arcs.
+    """
+    load_step_library()
+    solids = read_solids(content)
+    chosen = chosen_solid(solids, view.part_number)
+    drawing = drawn(chosen.shape, view)
+    remarks = (*lost_remarks(content, solids), *solid_remarks(solids, chosen, view.part_number))
+    return evolve(drawing, remarks=(*remarks, *drawing.remarks))
+
+
+def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
+    """The outline of one of some shapes of Open CASCADE at the height of the pegs.
+
+    Raises
+    ------
+    InputError
+        For shapes without a solid, and as :func:`read_by_height`.
+    """
+    load_step_library()
+    solids = numbered([solid for shape in shapes for solid in sub_shapes(shape, "SOLID")])
+    if not solids:
+        raise InputError(f"only a solid has heights, and the shape holds none: leave {PEG_HEIGHT} out.")
+    chosen = chosen_solid(solids, view.part_number)
+    drawing = drawn(chosen.shape, view)
+    return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
+
+
+def drawn(shape: Any, view: HeightView) -> HeightDrawing:
+    """The outline of a solid, with remarks on what may be touched and on a height that offers more.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_by_height`.
+    """
+    axis = axis_named(view.axis)
+    solid = standing(along(shape, axis))
+    room = USUAL_HEAD_ROOM if view.head_room is None else view.head_room
+    least = USUAL_LEAST_BAND if view.least_band is None else view.least_band
+    try:
+        outline = solid.outline(view.peg_height, room, least)
+    except InputError as error:
+        raise InputError(f"along {axis}: {error}; {advice(solid, room, least)}.") from error
+    loops = [vertices_of(loop) for loop in outline.loops]
+    areas = [signed_area(loop_segments(loop)) for loop in loops]
+    if sum(area > 0 for area in areas) > 1:
+        feet = sum(area > 0 for area in areas)
+        raise InputError(
+            f"along {axis} pegs of {outline.peg_height:g} mm meet the part in {feet} separate pieces: "
+            f"{advice(solid, room, least, one_piece=True)}."
+        )
+    order = sorted(range(len(loops)), key=lambda k: -areas[k])
+    bands = [strip.band for k in order for strip in outline.loops[k]]
+    faces = [strip.faces for k in order for strip in outline.loops[k]]
+    if not any(bands):
+        raise InputError(
+            f"along {axis} no upright face of the part is at least {least:g} mm high below {outline.peg_height:g} "
+            f"mm: {advice(solid, room, least)}."
+        )
+    found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces)
+    rows = height_table(solid, room, least)
+    remarks = height_remarks(outline, found, rows)
+    return HeightDrawing(tuple(loops[k] for k in order), found, tuple(remarks), tuple(rows))
+
+
+def vertices_of(loop: Sequence[Any]) -> NDArray[np.float64]:
+    """Vertices (N, 3) of a loop of strips, each running to the next."""
+    return np.array([(*strip.start, strip.bulge) for strip in loop])
+
+
+def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
+    """Area, border, touchable border and shortest band of an outline, in mm² and mm."""
+    border = touchable = area = 0.0
+    bands = []
+    for loop in outline.loops:
+        segments: Sequence[Segment] = loop_segments(vertices_of(loop))
+        area += signed_area(segments)
+        border += sum(segment.length for segment in segments)
+        for segment, strip in zip(segments, loop, strict=True):
+            if strip.band is not None:
+                touchable += segment.length
+                bands.append(strip.band[1] - strip.band[0])
+    return area, border, touchable, min(bands, default=0.0)
+
+
+def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
+    """Ranges of peg heights with what their outlines offer, from the lowest up; heights that are refused lack."""
+    levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
+    levels |= {round(z - room, 6) for z in levels} | {round(solid.height, 6)}
+    heights = sorted(z for z in levels if least < z <= solid.height + SAME_HEIGHT)
+    if len(heights) > MOST_ROWS:
+        heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, MOST_ROWS)]
+    rows: list[HeightRow] = []
+    for low, high in pairwise([0.0, *heights]):
+        try:
+            figures = measures(solid.outline(high, room, least))
+        except InputError:
+            continue
+        row = HeightRow(low, high, *figures)
+        if rows and rows[-1].high == low and is_like(rows[-1], row):
+            rows[-1] = evolve(row, low=rows[-1].low)
+        else:
+            rows.append(row)
+    return rows
+
+
+def is_like(a: HeightRow, b: HeightRow) -> bool:
+    """Whether two ranges offer the same outline, as far as its figures show."""
+    pairs = ((a.area, b.area), (a.border, b.border), (a.touchable, b.touchable))
+    return all(abs(one - other) <= 1e-6 * max(one, 1.0) for one, other in pairs)
+
+
+def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
+    """The range with the longest touchable border; of equal ones the highest pegs, whose bands are longest."""
+    most = max((row.touchable for row in rows), default=0.0)
+    return max(
+        (row for row in rows if row.touchable >= most * (1 - 1e-9) > 0),
+        key=lambda row: row.high,
+        default=None,
+    )
+
+
+def advice(solid: StandingSolid, room: float, least: float, one_piece: bool = False) -> str:
+    """What to give instead, in words."""
+    rows = height_table(solid, room, least)
+    if one_piece:
+        rows = [row for row in rows if is_one_piece(solid.outline(row.high, room, least))]
+    best = longest(rows)
+    if best is None:
+        return f"give another axis, or {SECTION}"
+    return f"give {PEG_HEIGHT} {best.high:.6g}, or another axis"
+
+
+def is_one_piece(outline: HeightOutline) -> bool:
+    """Whether an outline has one outer loop."""
+    return sum(signed_area(loop_segments(vertices_of(loop))) > 0 for loop in outline.loops) == 1
+
+
+def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]) -> list[str]:
+    """What an outline by height is, what may be touched of it, and a height at which more may be."""
+    _, border, touchable, band = measures(outline)
+    remarks = [
+        f"The part is {found.height:.6g} mm high along {found.axis}; the outline is what pegs of "
+        f"{outline.peg_height:.6g} mm, with {outline.head_room:g} mm free above, can meet."
+    ]
+    if touchable < border * (1 - 1e-9):
+        remarks.append(
+            f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of it, and only these are touched; the "
+            f"shortest is {band:.4g} mm high there."
+        )
+    best = longest(rows)
+    if best is not None and best.touchable > touchable * (1 + 1e-6):
+        remarks.append(f"With {PEG_HEIGHT} {best.high:.6g} most could be touched: {best.touchable:.4g} mm.")
+    return remarks

@@ -1,0 +1,121 @@
+"""What an outline by height keeps of its solid: how it stands, and the heights at which each segment is touched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from typing import Any
+
+from attrs import evolve, field, frozen
+
+from workhold.errors import InputError
+from workhold.limits import real
+
+__all__ = ["AXES", "Band", "HeightRow", "SolidOutline"]
+
+# The directions of a file that can point up.
+AXES = ("x", "y", "z", "-x", "-y", "-z")
+Band = tuple[float, float]
+
+
+def bands_of(values: Iterable[Any]) -> tuple[Band | None, ...]:
+    """Bands as pairs of floats, None where nothing may touch."""
+    return tuple(None if value is None else (real(value[0]), real(value[1])) for value in values)
+
+
+def numbers_of(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
+    """Numbers of faces as tuples."""
+    return tuple(tuple(int(number) for number in value) for value in values)
+
+
+@frozen
+class SolidOutline:
+    """The solid that an outline is of, seen at the height of the pegs.
+
+    Parameters
+    ----------
+    axis : direction of the file that points up, one of x, y, z, -x, -y, -z.
+    height : of the part, in mm.
+    peg_height : up to which pegs reach, in mm above the plane on which the part lies.
+    head_room : kept free above the pegs, in mm.
+    least_band : shortest band that may be touched, in mm.
+    bands : for every segment of the workpiece the heights (z0, z1) in mm at which an upright face of the solid
+        stands over all of it; None where nothing may touch.
+    faces : for every segment the numbers of these faces, as the file lists them; empty where a file does not
+        say.
+
+    Raises
+    ------
+    InputError
+        For an axis that there is none of, heights that are no lengths, and bands that end below their start.
+    """
+
+    axis: str
+    height: float = field(converter=real)
+    peg_height: float = field(converter=real)
+    head_room: float = field(converter=real)
+    least_band: float = field(converter=real)
+    bands: tuple[Band | None, ...] = field(converter=bands_of)
+    faces: tuple[tuple[int, ...], ...] = field(default=(), converter=numbers_of)
+
+    def __attrs_post_init__(self) -> None:
+        if self.axis not in AXES:
+            raise InputError(f"the axis '{self.axis[:40]}' is not known: give one of {', '.join(AXES)}.")
+        for name, value, least in (
+            ("height of the part", self.height, 0.0),
+            ("peg height", self.peg_height, 0.0),
+            ("head room", self.head_room, -1.0),
+            ("least band", self.least_band, -1.0),
+        ):
+            if not (isfinite(value) and value > least):
+                raise InputError(f"the {name} {value:g} is not a length: give one in mm.")
+        for band in self.bands:
+            if band is not None and not (isfinite(band[0]) and 0.0 <= band[0] <= band[1] < 1e9):
+                raise InputError(f"the band {band[0]:g} to {band[1]:g} mm is none: give its lower end first.")
+
+    @property
+    def untouchable(self) -> frozenset[int]:
+        """Numbers of the segments that nothing may touch."""
+        return frozenset(number for number, band in enumerate(self.bands) if band is None)
+
+    def for_segments(self, count: int) -> SolidOutline:
+        """The same, for an outline of so many segments.
+
+        Raises
+        ------
+        InputError
+            When there is not one band for each.
+        """
+        if len(self.bands) != count or len(self.faces) not in (0, count):
+            raise InputError(
+                f"the outline has {count} segments and {len(self.bands)} bands: give one band for each segment."
+            )
+        return self
+
+    def reordered(self, order: Sequence[int]) -> SolidOutline:
+        """The same with the bands of the segments in another order."""
+        return evolve(
+            self,
+            bands=[self.bands[k] for k in order],
+            faces=[self.faces[k] for k in order] if self.faces else (),
+        )
+
+
+@frozen
+class HeightRow:
+    """A range of peg heights over which the outline stays as it is.
+
+    Parameters
+    ----------
+    low, high : in mm; the outline is that of pegs as high as ``high``.
+    area : of the outline, in mm².
+    border, touchable : length of its border, and of what may be touched of it, in mm.
+    band : shortest band of what may be touched, in mm; 0 where there is none.
+    """
+
+    low: float
+    high: float
+    area: float
+    border: float
+    touchable: float
+    band: float
