@@ -254,7 +254,7 @@ class Problem:
         one, other = ((each.peg_radius, each.body_radius, each.flat) for each in carriers)
         loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if one == other else 2]]
         allowed = loci
-        if restrictions:
+        if restrictions or workpiece.untouchable:
             allowed = [
                 allowed_features(locus, workpiece, restrictions, carrier.body_radius)
                 for locus, carrier in zip(loci, carriers, strict=False)

@@ -32,8 +32,8 @@ __all__ = ["Band", "Strip", "Walls", "strips_of_loop"]
 
 # Heights (z0, z1) in mm above the plane on which the part lies.
 Band = tuple[float, float]
-# How far inside a piece its ends are looked at, as a share of it.
-INSIDE = 1e-7
+# How far inside a piece its ends are looked at: a share of it, and in units of what makes two points one.
+INSIDE, STEP = 1e-7, 3.0
 # Heights that differ by less, in mm, are one: of an edge, and of a band that goes on from piece to piece.
 ONE_HEIGHT, SAME_BAND = 1e-9, 1e-5
 # Shares of a piece below this are not worth a strip of their own.
@@ -75,9 +75,9 @@ class Wall:
     is_left: bool
     edges: tuple[tuple[EdgeCurve, NDArray[np.float64]], ...]
 
-    def intervals(self, position: float) -> list[Band]:
-        """Ranges of z in mm that the face covers at a position, from the lowest up."""
-        heights = sorted(z for edge, places in self.edges for z in heights_at(edge, places, position))
+    def intervals(self, position: float, beside: float) -> list[Band]:
+        """Ranges of z in mm that the face covers at a position, from the lowest up; see :meth:`Walls.band`."""
+        heights = sorted(z for edge, places in self.edges for z in heights_at(edge, places, position, beside))
         return list(zip(heights[0::2], heights[1::2], strict=False))
 
 
@@ -120,13 +120,22 @@ class Walls:
             ]
         return self.found[id(carrier)]
 
-    def band(self, piece: BorderPiece, position: float) -> tuple[Band | None, tuple[int, ...]]:
-        """The band at a position of a piece, and the indices of the walls that make it."""
+    def band(
+        self, piece: BorderPiece, position: float, beside: float = 0.0
+    ) -> tuple[Band | None, tuple[int, ...]]:
+        """The band at a position of a piece, and the indices of the walls that make it.
+
+        Parameters
+        ----------
+        position : on the piece's carrier.
+        beside : where the position is an end of the piece, a small step into it: the band is then the limit
+            from there, because at the end itself other edges begin.
+        """
         covered = [
             (max(start, self.low), min(end, self.high), wall.index)
             for wall in self.over(piece.carrier)
             if wall.is_left == piece.forward
-            for start, end in wall.intervals(position)
+            for start, end in wall.intervals(position, beside)
         ]
         covered = [one for one in covered if one[1] - one[0] > SAME_HEIGHT]
         if not covered:
@@ -156,19 +165,25 @@ def has_material_left(face: SolidFace, carrier: Carrier) -> bool:
     return bool(outward.X() * nx + outward.Y() * ny < 0)
 
 
-def heights_at(edge: EdgeCurve, places: NDArray[np.float64], position: float) -> list[float]:
-    """The z in mm at which an edge passes a position of the carrier that its points lie on at some places."""
+def heights_at(edge: EdgeCurve, places: NDArray[np.float64], position: float, beside: float) -> list[float]:
+    """The z in mm at which an edge passes a position, as its limit from a step beside.
+
+    Parameters
+    ----------
+    places : positions (N,) of the edge's points.
+    """
     found = []
-    segment = edge.segment
-    for turn in (0.0,) if isinstance(segment, Line) else (-tau, 0.0, tau):
-        away = places - (position + turn)
+    for turn in (0.0,) if isinstance(edge.segment, Line) else (-tau, 0.0, tau):
+        away = places - (position + turn + beside)
         for k in np.flatnonzero(away[:-1] * away[1:] < 0):
-            first, last = edge.points[k, 2], edge.points[k + 1, 2]
-            share = away[k] / (away[k] - away[k + 1])
-            if len(places) == 2 or abs(last - first) <= ONE_HEIGHT:
-                found.append(float(first + share * (last - first)))
+            ends = sorted((float(places[k]), float(places[k + 1])))
+            wanted = min(max(position + turn, ends[0]), ends[1])
+            first, last = float(edge.points[k, 2]), float(edge.points[k + 1, 2])
+            share = (wanted - float(places[k])) / float(places[k + 1] - places[k])
+            if len(places) == 2 or abs(last - first) <= ONE_HEIGHT or share in (0.0, 1.0):
+                found.append(first + share * (last - first))
             else:
-                found.append(refined(edge, int(k), places, position + turn))
+                found.append(refined(edge, int(k), places, wanted))
     return found
 
 
@@ -217,11 +232,16 @@ class Ends:
 
 
 def ends_of(piece: BorderPiece, walls: Walls) -> Ends:
-    """A piece with its band at both ends, looked at a hair inside."""
-    whole = Ends(piece, None, None, ())
-    first, used = walls.band(piece, whole.at(INSIDE))
-    last, more = walls.band(piece, whole.at(1 - INSIDE))
+    """A piece with its band at both ends."""
+    first, used = walls.band(piece, *end_of(piece, at_end=False))
+    last, more = walls.band(piece, *end_of(piece, at_end=True))
     return Ends(piece, first, last, tuple(sorted({*used, *more})))
+
+
+def end_of(piece: BorderPiece, *, at_end: bool) -> tuple[float, float]:
+    """The position of an end of a piece's run, and the step from there into the piece."""
+    step = min(STEP * piece.carrier.slack, (piece.high - piece.low) / 4)
+    return (piece.high, -step) if at_end == piece.forward else (piece.low, step)
 
 
 def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> list[Strip]:
@@ -315,7 +335,7 @@ def band_at(one: Ends, walls: Walls, share: float) -> Band:
 
 def is_long(one: Ends, walls: Walls, sofar: Band | None, least: float, share: float) -> bool:
     """Whether the band at a share of a piece has enough in common with what there is so far."""
-    return length(overlap(sofar, band_at(one, walls, share))) >= least - SAME_HEIGHT
+    return length(overlap(sofar, band_at(one, walls, share))) >= least - ONE_HEIGHT
 
 
 def is_short(one: Ends, walls: Walls, sofar: Band | None, least: float, share: float) -> bool:

@@ -12,9 +12,11 @@ head room : what is kept free above the pegs, in mm.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 from typing import Any
 
+import numpy as np
 from attrs import define, field, frozen
 
 from workhold.errors import InputError
@@ -117,7 +119,7 @@ class StandingSolid:
             raise InputError(
                 f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
             )
-        return border_loops(pieces)
+        return self.closed(pieces, curves)
 
     def refuse_others(self, curves: ProjectedCurves, low: float, high: float) -> None:
         """Refuses a curve that is neither line nor arc where material lies on one side of it only.
@@ -125,25 +127,41 @@ class StandingSolid:
         Raises
         ------
         InputError
-            Naming the face, and what helps.
+            Naming the face.
         """
         for index, points in curves.others:
-            ahead = points[1:] - points[:-1]
-            for (x, y), (dx, dy) in zip((points[:-1] + points[1:]) / 2, ahead, strict=True):
-                size = (dx * dx + dy * dy) ** 0.5
+            for before, (x, y), after in zip(points[:-2], points[1:-1], points[2:], strict=True):
+                dx, dy = after - before
+                size = float(np.hypot(dx, dy))
                 if size < 10 * BESIDE:
                     continue
                 nx, ny = -dy / size * BESIDE, dx / size * BESIDE
-                sides = {
-                    self.material.reaches_into((float(x + s * nx), float(y + s * ny)), low, high)
-                    for s in (40.0, -40.0)
-                }
-                if len(sides) == 2:
-                    face = self.faces[index]
-                    raise InputError(
-                        f"the outline has a curve that is neither line nor arc: a {face.kind} at heights "
-                        f"{max(face.low, 0):.6g} to {face.high:.6g} mm"
-                    )
+                left = self.material.reaches_into((float(x + nx), float(y + ny)), low, high)
+                if left != self.material.reaches_into((float(x - nx), float(y - ny)), low, high):
+                    raise other_curve(self.faces[index])
+
+    def closed(self, pieces: Sequence[BorderPiece], curves: ProjectedCurves) -> list[list[BorderPiece]]:
+        """The loops of a border's pieces.
+
+        Raises
+        ------
+        InputError
+            When they do not close, naming the face whose border is neither line nor arc, if there is one.
+        """
+        try:
+            return border_loops(pieces)
+        except InputError as error:
+            if curves.others:
+                raise other_curve(self.faces[curves.others[0][0]]) from error
+            raise
+
+
+def other_curve(face: SolidFace) -> InputError:
+    """The refusal of a face whose border in the outline is neither line nor arc."""
+    return InputError(
+        f"the outline has a curve that is neither line nor arc: a {face.kind} at heights "
+        f"{max(face.low, 0):.6g} to {face.high:.6g} mm"
+    )
 
 
 def standing(shape: Any) -> StandingSolid:

@@ -1,0 +1,335 @@
+"""Outlines of solids at the height of the pegs (docs/solids.md): what pegs can meet, and what they may touch."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone, BRepPrimAPI_MakeSphere
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fused, upright, write_step
+
+from workhold import Restrictions, Vise, Workpiece, design, load
+from workhold.errors import InputError
+from workhold.files.step.by_height import HeightView, shapes_by_height
+from workhold.files.step.heights import StandingSolid, standing
+from workhold.files.step.regions import area_of, section
+from workhold.files.step.solids import along
+from workhold.files.toolkit_file import load_toolkit
+from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.segment import segment_rows
+from workhold.kernels.base.distance import is_inside
+from workhold.model.solid import Band
+
+
+def strips(shape: Any, *heights: float, **more: float) -> list[tuple[tuple[float, ...], Band | None]]:
+    """Start, bulge and band of every segment of a solid's outline, rounded."""
+    outline = standing(shape).outline(*heights, **more)
+    return [
+        (
+            tuple(round(value, 6) + 0.0 for value in (*strip.start, strip.bulge)),
+            None if strip.band is None else (round(strip.band[0], 6), round(strip.band[1], 6)),
+        )
+        for loop in outline.loops
+        for strip in loop
+    ]
+
+
+def bands(shape: Any, *heights: float, **more: float) -> list[Band | None]:
+    """The bands of a solid's outline in running order."""
+    return [band for _, band in strips(shape, *heights, **more)]
+
+
+def area(solid: StandingSolid, low: float, high: float) -> float:
+    """Area of U(low, high)."""
+    loops = [[(*piece.start, piece.bulge) for piece in loop] for loop in solid.border(low, high)]
+    return sum(signed_area(loop_segments(np.array(loop))) for loop in loops)
+
+
+PLATE = box(60, 40, 20)
+FLANGED = fused(PLATE, box(80, 60, 5, (-10, -10, 20)))
+
+
+def test_prism() -> None:
+    """A prism has its drawing at every height, and pegs press on it as high as they reach."""
+    assert strips(PLATE, 12.0) == [
+        ((0, 40, 0), (0, 12)),
+        ((0, 0, 0), (0, 12)),
+        ((60, 0, 0), (0, 12)),
+        ((60, 40, 0), (0, 12)),
+    ]
+    assert bands(PLATE) == [(0, 20)] * 4
+
+
+def test_flange_is_met_from_its_underside_on() -> None:
+    """Pegs that end level with the underside of a flange are not in its way; with head room they are."""
+    solid = standing(FLANGED)
+    assert area(solid, -1, 20.0) == pytest.approx(2400)
+    assert area(solid, -1, 20.1) == pytest.approx(4800)
+    assert bands(FLANGED, 20.0, 0.0) == [(0, 20)] * 4
+    # With room kept free, the flange is met, and over its border no wall reaches below 20.
+    assert bands(FLANGED, 20.0, 0.5) == [None] * 4
+    assert bands(FLANGED, 22.0, 0.5) == [(20, 22)] * 4
+    assert bands(FLANGED) == [(20, 25)] * 4
+
+
+def test_fillets_and_chamfers_are_not_touched() -> None:
+    """Of a wall with a rounded foot and a broken upper edge, the flat part between is touched."""
+    rounded = filleted(PLATE, 3.0, at_height(0.0))
+    assert bands(rounded, 15.0) == [(3, 15)] * 4
+    broken = chamfered(PLATE, 2.0, at_height(20.0))
+    assert bands(broken, 20.0) == [(0, 18)] * 4
+    corners = filleted(PLATE, 5.0, upright)
+    assert bands(corners, 20.0) == [(0, 20)] * 8
+
+
+def inner_edge(low: Any, high: Any) -> bool:
+    """Whether an edge lies level at height 4, away from the plate's border."""
+    return at_height(4.0)(low, high) and low[0] > 1 and high[0] < 59 and low[1] > 1 and high[1] < 39
+
+
+def test_foot_that_is_wider_below_the_pegs() -> None:
+    """A foot keeps pegs away from the wall over it: its border is met, and touched as high as the foot is."""
+    foot = filleted(fused(box(60, 40, 4), box(30, 20, 20, (15, 10, 4))), 3.0, inner_edge)
+    assert bands(foot, 15.0) == [(0, 4)] * 4
+    assert bands(foot, 15.0, least_band=5.0) == [None] * 4
+
+
+def test_least_band_cuts_where_a_wall_slopes() -> None:
+    """A wall whose upper edge rises from 4 to 16 is touched where 7 of it are over the plate."""
+    slope = cut(
+        box(60, 40, 16),
+        BRepPrimAPI_MakeBox(
+            gp_Ax2(gp_Pnt(0, -5, 4), gp_Dir(-0.2, 0, 1), gp_Dir(1, 0, 0.2)), 90, 60, 60
+        ).Shape(),
+    )
+    found = dict(strips(slope, 16.0, least_band=7.0))
+    assert found[(0, 0, 0)] is None
+    assert found[(15, 0, 0)] == (0, 7)
+    assert found[(60, 0, 0)] == (0, 16)
+    # With a shorter least band the wall is one segment with what all of it has in common.
+    assert dict(strips(slope, 16.0, least_band=2.0))[(0, 0, 0)] == (0, 4)
+
+
+def test_leaning_strip_is_cut_in_pieces() -> None:
+    """Of a wall between two parallel slopes, pieces as long as can be have the least band in common."""
+    low = BRepPrimAPI_MakeBox(
+        gp_Ax2(gp_Pnt(-10, -5, -2), gp_Dir(-0.2, 0, 1), gp_Dir(1, 0, 0.2)), 120, 60, 200
+    ).Shape()
+    high = BRepPrimAPI_MakeBox(
+        gp_Ax2(gp_Pnt(-10, -5, 8), gp_Dir(-0.2, 0, 1), gp_Dir(1, 0, 0.2)), 120, 60, 200
+    ).Shape()
+    ramp = cut(BRepAlgoAPI_Common(box(60, 40, 40), low).Shape(), high)
+    side = [(x, band) for (x, y, _), band in strips(ramp, 40.0, least_band=4.0) if y == 0 and x < 60 and band]
+    assert len(side) >= 2
+    for (x, band), (following, _) in zip(side, [*side[1:], (60.0, None)], strict=True):
+        # Over all of the piece the wall is there: its lower edge at the far end, its upper at the near one.
+        assert band[0] >= 0.2 * following - 1e-5
+        assert band[1] <= 10 + 0.2 * x + 1e-5
+        assert band[1] - band[0] >= 4 - 1e-4
+
+
+def test_half_round_notch_from_below() -> None:
+    """Where the band's end rises without a jump, the wall stays one segment; at a jump it is cut."""
+    notched = cut(PLATE, cylinder(10, 60, (30, -5, 0), (0, 1, 0)))
+    assert dict(strips(notched, 15.0))[(0, 0, 0)] == (10, 15)
+    slotted = cut(PLATE, box(20, 60, 10, (20, -5, 0)))
+    found = dict(strips(slotted, 15.0))
+    assert (found[(0, 0, 0)], found[(20, 0, 0)], found[(40, 0, 0)]) == ((0, 15), (10, 15), (0, 15))
+
+
+def test_holes() -> None:
+    """Only a hole that is open over all heights of the pegs is one."""
+    drilled = cut(
+        PLATE,
+        cylinder(6, 40, (15, 20, -5)),
+        cylinder(4, 20, (40, 12, 8)),
+        cylinder(4, 14, (40, 28, -1)),
+        cylinder(3, 40, (55, 20, -5)),
+    )
+    outline = standing(drilled).outline(10.0, 0.5)
+    assert len(outline.loops) == 4  # through at 15, through at 55, blind from below with 12.5 > 10.5
+    assert area(standing(drilled), -1, 10.5) == pytest.approx(2400 - pi * (36 + 16 + 9), abs=1e-6)
+    assert area(standing(drilled), -1, 13.5) == pytest.approx(2400 - pi * (36 + 9), abs=1e-6)
+
+
+def solids() -> list[tuple[str, Any]]:
+    """Solids with steps, flanges, fillets, chamfers, draft, blind holes, slanted faces and balls."""
+    cone = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(30, 20, 5), gp_Dir(0, 0, 1)), 14, 6, 25).Shape()
+    ball = BRepPrimAPI_MakeSphere(gp_Pnt(58, 20, 10), 9).Shape()
+    stepped = fused(box(60, 40, 6), box(30, 20, 14, (10, 10, 6)), cylinder(6, 12, (48, 20, 6)))
+    return [
+        ("stepped", stepped),
+        ("flanged", FLANGED),
+        ("rounded", filleted(PLATE, 3.0, at_height(0.0))),
+        ("all rounded", filleted(PLATE, 4.0, lambda low, high: True)),
+        ("broken", chamfered(box(60, 40, 14), 1.5, lambda low, high: True)),
+        ("cone on a plate", fused(box(60, 40, 8), cone)),
+        ("cone below", fused(box(60, 40, 8, (0, 0, 25)), cone)),
+        ("ball at the end", fused(PLATE, ball)),
+        ("lying cylinder", fused(PLATE, cylinder(7, 80, (-10, 20, 10), (1, 0, 0)))),
+        ("cross hole", cut(PLATE, cylinder(5, 80, (-10, 20, 0), (1, 0, 0)))),
+    ]
+
+
+@pytest.mark.parametrize(("name", "shape"), solids(), ids=[name for name, _ in solids()])
+def test_sections_lie_within_and_fill(name: str, shape: Any) -> None:
+    """Every section below the pegs lies in the outline, and the outline is no larger than they make it.
+
+    The sections are Open CASCADE's; the areas that they cover are counted on a grid of points.
+    """
+    solid = standing(shape)
+    highest = solid.height
+    points = np.stack(np.meshgrid(np.arange(-14.31, 75, 1.713), np.arange(-14.13, 60, 1.317)), -1).reshape(
+        -1, 2
+    )
+    before = 0.0
+    for high in (0.31 * highest, 0.66 * highest, highest):
+        rows = segment_rows(
+            [
+                segment
+                for loop in solid.border(-1.0, high)
+                for segment in loop_segments(np.array([(*piece.start, piece.bulge) for piece in loop]))
+            ]
+        )
+        within = np.array([bool(is_inside(x, y, rows)) for x, y in points])
+        covered = np.array([solid.material.reaches_into((float(x), float(y)), -1.0, high) for x, y in points])
+        assert (within == covered).all()
+        size = area(solid, -1.0, high)
+        assert size >= before - 1e-9
+        before = size
+        for z in np.linspace(0.02, high - 0.02, 7):
+            assert area_of(section(solid.shape, float(z))) <= size * (1 + 1e-9)
+
+
+def test_solid_turned_over_twice() -> None:
+    """Turned over twice the part lies as before, and U(H) is the same from both sides but mirrored."""
+    shape = dict(solids())["stepped"]
+    twice = along(along(shape, "-z"), "-z")
+    assert strips(twice, 9.0) == strips(shape, 9.0)
+    assert area(standing(along(shape, "-z")), -1, 40) == pytest.approx(area(standing(shape), -1, 40))
+
+
+def test_axes_are_right_handed() -> None:
+    """The six axes turn the part and never mirror it: the corner cut off stays on the same side."""
+    marked = cut(box(30, 20, 10), box(5, 4, 3))
+    for axis in ("x", "y", "z", "-x", "-y", "-z"):
+        drawing = shapes_by_height([marked], HeightView(axis=axis, head_room=0.0))
+        assert drawing.solid.axis == axis
+        low = drawing.solid.height
+        assert low == pytest.approx({"x": 30, "y": 20, "z": 10}[axis[-1]])
+    over = shapes_by_height([marked], HeightView(axis="-z", peg_height=3.0, head_room=0.0)).loops[0]
+    assert over[:, 0].min() == pytest.approx(-30)
+    under = shapes_by_height([marked], HeightView(axis="z", peg_height=3.0, head_room=0.0)).loops[0]
+    assert [5.0, 4.0] in np.round(under[:, :2], 6).tolist()
+
+
+def pegs_touch(
+    solid: StandingSolid, workpiece: Workpiece, peg: Any, radius: float, pose: Any, room: float
+) -> None:
+    """Holds that a peg touches the solid over its band, and that with the room above it does not enter."""
+    heights = workpiece.solid
+    assert heights is not None
+    low, high = heights.bands[peg.face] or (0.0, 0.0)
+    x, y = pose.inverse.apply(peg.x, peg.y)
+    whole = cylinder(radius, heights.peg_height + room, (x, y, 0.0))
+    common = BRepAlgoAPI_Common(solid.shape, whole).Shape()
+    assert volume(common) < 1e-3
+    for z in (low, high - 1e-3):
+        thin = cylinder(radius, 1e-3, (x, y, z))
+        assert BRepExtrema_DistShapeShape(solid.shape, thin).Value() < 1e-6
+
+
+def volume(shape: Any) -> float:
+    """Volume in mm³."""
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties)
+    return abs(float(properties.Mass()))
+
+
+def test_fixtures_hold_the_solid(tmp_path: Path) -> None:
+    """Every listed peg touches the solid over its band and nothing else, by Open CASCADE's distances."""
+    shape = filleted(fused(box(60, 40, 14), box(24, 20, 10, (20, 10, 14))), 3.0, at_height(0.0))
+    part = load(write_step(tmp_path / "part.step", shape), peg_height=9.0)
+    assert part.solid is not None
+    assert [band and (round(band[0], 9), band[1]) for band in part.solid.bands] == [(3.0, 9.0)] * 4
+    toolkit = load_toolkit("clamp-plate-20mm").toolkit
+    result = design(part, toolkit, best=6)
+    assert len(result) > 0
+    solid = standing(shape)
+    for fixture in list(result)[:3]:
+        for peg in fixture.pegs:
+            carrier = toolkit.carrier(peg.carrier)
+            pegs_touch(solid, part, peg, carrier.peg_radius, fixture.pose, 0.5)
+
+
+def test_list_is_that_of_the_outline_with_faces_avoided(tmp_path: Path) -> None:
+    """A solid's list is the one of its outline with the faces that nothing may touch left alone."""
+    shape = chamfered(fused(box(60, 40, 14), box(30, 20, 3, (15, 40, 0))), 2.5, at_height(14.0))
+    part = load(write_step(tmp_path / "part.step", shape), peg_height=10.0, least_band=4.0)
+    assert part.solid is not None and None in part.solid.bands and any(part.solid.bands)
+    flat = Workpiece.from_loops(part.name, part.loops)
+    avoid = tuple(number for number, band in enumerate(part.solid.bands) if band is None)
+    vise = Vise(pitch=10, columns=2, peg_radius=3)
+    own = design(part, vise)
+    other = design(flat, vise, restrictions=Restrictions(avoid=avoid))
+    assert own.counts == other.counts
+    assert [fixture.pose for fixture in own] == [fixture.pose for fixture in other]
+
+
+def test_prism_file_is_its_drawing(tmp_path: Path) -> None:
+    """A prism read by height is the silhouette, with bands as high as the pegs reach."""
+    shape = cut(filleted(PLATE, 5.0, upright), cylinder(6, 40, (30, 20, -5)))
+    path = write_step(tmp_path / "part.step", shape)
+    by_height, silhouette = load(path, peg_height=15.0), load(path)
+    assert by_height.solid is not None and set(by_height.solid.bands) == {(0.0, 15.0)}
+    assert len(by_height.faces) == len(silhouette.faces)
+    assert by_height.bounds == pytest.approx(silhouette.bounds)
+
+
+REFUSED = [
+    (
+        "two feet",
+        fused(box(10, 40, 10), box(10, 40, 10, (50, 0, 0)), box(60, 40, 5, (0, 0, 10))),
+        {"peg_height": 8.0},
+        r"meet the part in 2 separate pieces: give peg_height 15, or another axis",
+    ),
+    ("no wall", BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, 0), 9).Shape(), {"peg_height": 9.0}, "no upright face"),
+    ("far below", box(20, 20, 20, (0, 0, 5)), {"peg_height": -1.0}, "peg_height cannot be -1 mm"),
+    ("unknown axis", PLATE, {"axis": "w", "peg_height": 5.0}, "the axis 'w' is not known"),
+    ("room", PLATE, {"head_room": -2.0}, "head_room cannot be -2 mm: give 0 or more"),
+    (
+        "section too",
+        PLATE,
+        {"section": 4.0, "peg_height": 5.0},
+        "takes no section: leave section or peg_height out",
+    ),
+    ("fit too", PLATE, {"fit": 0.1, "peg_height": 5.0}, "takes no fit: leave fit or peg_height out"),
+]
+
+
+@pytest.mark.parametrize(("name", "shape", "view", "sentence"), REFUSED, ids=[one[0] for one in REFUSED])
+def test_refusals(tmp_path: Path, name: str, shape: Any, view: dict[str, Any], sentence: str) -> None:
+    """What cannot be read is refused in one sentence that says what helps."""
+    with pytest.raises(InputError, match=sentence) as refused:
+        load(write_step(tmp_path / "part.step", shape), **view)
+    assert str(refused.value).count(". ") == 0
+
+
+def test_tilted_ring_is_refused_with_its_name(tmp_path: Path) -> None:
+    """A border that is neither line nor arc is refused with the face, and with a height that helps."""
+    ball = fused(box(60, 40, 10), cylinder(9, 30, (50, 20, 5), (1, 0, 1)))
+    with pytest.raises(InputError, match="neither line nor arc: a cylinder of radius 9 mm aslant") as refused:
+        load(write_step(tmp_path / "part.step", ball), peg_height=30.0)
+    assert "give peg_height" in str(refused.value)

@@ -1,0 +1,101 @@
+"""The border of a union of shapes, found on the arrangement of their outlines, has the union's area."""
+
+from __future__ import annotations
+
+from math import acos, hypot, pi, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from workhold.errors import InputError
+from workhold.geometry.arrangement import BorderPiece, arrange, border_loops, border_pieces
+from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.segment import Arc, Line, Point, Segment
+
+Box = tuple[float, float, float, float]
+Circle = tuple[float, float, float]
+
+
+def sides(box: Box) -> list[Segment]:
+    """The four sides of a box (x0, y0, x1, y1)."""
+    x0, y0, x1, y1 = box
+    corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+    return [Line(corners[k - 1], corners[k]) for k in range(4)]
+
+
+def round_side(circle: Circle) -> Segment:
+    """The outline of a circle (x, y, radius)."""
+    x, y, radius = circle
+    return Arc((x, y), radius, 0.3, pi, 1.0)
+
+
+def area(loops: list[list[BorderPiece]]) -> float:
+    """The area that loops enclose, holes taken away."""
+    vertices = [np.array([(*piece.start, piece.bulge) for piece in loop]) for loop in loops]
+    return sum(signed_area(loop_segments(loop)) for loop in vertices)
+
+
+def union_loops(boxes: list[Box], circles: list[Circle]) -> list[list[BorderPiece]]:
+    """The border of the union of boxes and circles."""
+
+    def inside(point: Point) -> bool:
+        x, y = point
+        return any(x0 < x < x1 and y0 < y < y1 for x0, y0, x1, y1 in boxes) or any(
+            hypot(x - cx, y - cy) < radius for cx, cy, radius in circles
+        )
+
+    segments = [side for box in boxes for side in sides(box)] + [round_side(circle) for circle in circles]
+    return border_loops(border_pieces(arrange(segments), inside))
+
+
+WHOLE = st.integers(0, 12)
+
+
+@given(st.lists(st.tuples(WHOLE, WHOLE, st.integers(1, 6), st.integers(1, 6)), min_size=1, max_size=6))
+def test_boxes_of_whole_numbers(corners: list[tuple[int, int, int, int]]) -> None:
+    """The area of a union of boxes on a grid is the number of cells that one of them holds.
+
+    Sides overlap, and corners touch, in most of these.
+    """
+    boxes = [(float(x), float(y), float(x + w), float(y + h)) for x, y, w, h in corners]
+    cells = {(a, b) for x, y, w, h in corners for a in range(x, x + w) for b in range(y, y + h)}
+    assert area(union_loops(boxes, [])) == pytest.approx(len(cells), abs=1e-9)
+
+
+@given(st.floats(0.3, 3.8), st.floats(0.5, 2.0), st.floats(0, 6))
+def test_two_circles(apart: float, radius: float, turn: float) -> None:
+    """Two circles cover the sum of their areas less that of the lens (Weisstein, "Circle-Circle Intersection")."""
+    other = (apart * np.cos(turn), apart * np.sin(turn), 2.0)
+    expected = pi * (radius**2 + 4.0)
+    if apart <= 2.0 - radius:
+        expected = 4.0 * pi
+    elif apart < 2.0 + radius:
+        a = radius**2 * acos((apart**2 + radius**2 - 4.0) / (2 * apart * radius))
+        b = 4.0 * acos((apart**2 + 4.0 - radius**2) / (4 * apart))
+        root = (-apart + radius + 2) * (apart + radius - 2) * (apart - radius + 2) * (apart + radius + 2)
+        expected -= a + b - sqrt(max(root, 0.0)) / 2
+    assert area(union_loops([], [(0.0, 0.0, radius), other])) == pytest.approx(expected, abs=2e-5)
+
+
+def test_hole_and_touching_arcs() -> None:
+    """A ring of four bars leaves a hole; a circle that touches a side from inside changes nothing."""
+    bars: list[Box] = [(0, 0, 10, 2), (0, 8, 10, 10), (0, 0, 2, 10), (8, 0, 10, 10)]
+    loops = union_loops(bars, [(1.0, 5.0, 1.0)])
+    assert len(loops) == 2
+    assert area(loops) == pytest.approx(64.0)
+
+
+def test_equal_carriers_are_one() -> None:
+    """Segments on one line, however they are run, are pieces of one carrier."""
+    found = arrange([Line((0, 0), (4, 0)), Line((6, 0), (2, 0)), Line((1, -1), (1, 1))])
+    assert [len(carrier.pieces()) for carrier in found] == [4, 2]
+
+
+def test_border_that_does_not_close() -> None:
+    """A border of which a piece is missing is refused with the place."""
+    open_sides = sides((0, 0, 4, 4))[:3]
+    pieces = border_pieces(arrange(open_sides), lambda p: 0 < p[0] < 4 and 0 < p[1] < 4)
+    with pytest.raises(InputError, match=r"the border ends at \("):
+        border_loops(pieces)
