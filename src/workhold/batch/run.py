@@ -119,10 +119,15 @@ class Part:
         """Takes note of what was read."""
         self.refusal = record["refusal"]
         if not self.refusal:
-            self.content = name_of(record["loops"], record["departure"])
+            self.content = name_of(record["loops"], record["departure"], *solid_key(record))
             self.faces, self.remarks = record["faces"], tuple(record["remarks"])
             width, height = record["size"]
             self.size = (width, height)
+
+
+def solid_key(record: Mapping[str, Any]) -> list[Any]:
+    """What tells outlines of one shape apart by what may be touched; nothing for a prism."""
+    return [record["solid"], record["bands"]] if record.get("solid") else []
 
 
 def reading_of(request: Request) -> Reading:

@@ -8,6 +8,8 @@ from itertools import count
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
+from attrs import asdict
+
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields
 from workhold.fixels.carrier import Carrier
@@ -82,6 +84,7 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
         "bounds": list(workpiece.bounds),
         "departure": workpiece.departure,
         "remarks": list(remarks),
+        "solid": None if workpiece.solid is None else asdict(workpiece.solid),
     }
 
 

@@ -19,6 +19,7 @@ from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.query import Query, asked_ranking
 from workhold.model.requirements import Load, Tolerance
+from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["ExploreForm", "JobForm", "LoadsForm", "WorkpieceForm", "asked_loads", "sentence_of"]
@@ -43,12 +44,29 @@ class Form(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
 
+BandForm = Annotated[list[Annotated[float, Field(ge=0, le=LARGEST)]], Field(min_length=2, max_length=2)]
+FacesForm = Annotated[list[Annotated[int, Field(ge=0, le=1_000_000)]], Field(max_length=10_000)]
+
+
+class SolidForm(Form):
+    """How the solid of an outline stands, and the heights at which each segment is touched; lengths in mm."""
+
+    axis: Literal["x", "y", "z", "-x", "-y", "-z"]
+    height: Annotated[float, Field(gt=0, le=LARGEST)]
+    peg_height: Annotated[float, Field(gt=0, le=LARGEST)]
+    head_room: Annotated[float, Field(ge=0, le=LARGEST)]
+    least_band: Annotated[float, Field(ge=0, le=LARGEST)]
+    bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
+    faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = []
+
+
 class WorkpieceForm(Form):
     """A part; lengths in mm."""
 
     name: Name = "part"
     loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
     departure: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
+    solid: SolidForm | None = None
 
     def workpiece(self, most_segments: int) -> Workpiece:
         """The part.
@@ -58,11 +76,16 @@ class WorkpieceForm(Form):
         InputError
             For loops that cannot be used, and for too many segments.
         """
-        return checked_part(self.name, self.loops, most_segments, self.departure)
+        solid = None if self.solid is None else SolidOutline(**self.solid.model_dump())
+        return checked_part(self.name, self.loops, most_segments, self.departure, solid)
 
 
 def checked_part(
-    name: str, loops: Sequence[Sequence[Sequence[float]]], most_segments: int, departure: float = 0.0
+    name: str,
+    loops: Sequence[Sequence[Sequence[float]]],
+    most_segments: int,
+    departure: float = 0.0,
+    solid: SolidOutline | None = None,
 ) -> Workpiece:
     """A part of loops in mm, with how far they may be from what was drawn.
 
@@ -78,7 +101,7 @@ def checked_part(
             "outline with lines and arcs instead of many short pieces."
         )
     try:
-        return Workpiece.from_loops(name, loops, departure=departure)
+        return Workpiece.from_loops(name, loops, departure=departure, solid=solid)
     except (ArithmeticError, ValueError) as error:
         if isinstance(error, InputError):
             raise

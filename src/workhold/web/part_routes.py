@@ -78,7 +78,13 @@ FitGiven = Annotated[
     float | None,
     Query(ge=0.0001, le=100, description="how far arcs may be from true curves that they stand for, in mm"),
 ]
-AxisGiven = Literal["x", "y", "z"] | None
+AxisGiven = Literal["x", "y", "z", "-x", "-y", "-z"] | None
+HeightGiven = Annotated[
+    float | None,
+    Query(gt=0, le=1e6, description="how far pegs reach above the plane the part lies on, in mm"),
+]
+RoomGiven = Annotated[float | None, Query(ge=0, le=1e6, description="kept free above the pegs, in mm")]
+BandGiven = Annotated[float | None, Query(ge=0, le=1e6, description="least height of a face to touch, in mm")]
 
 
 async def sent(
@@ -89,6 +95,9 @@ async def sent(
     join: JoinGiven = None,
     fit: FitGiven = None,
     axis: AxisGiven = None,
+    peg_height: HeightGiven = None,
+    head_room: RoomGiven = None,
+    least_band: BandGiven = None,
 ) -> Upload:
     """Collects a file that is sent, and the options of how to read it."""
     content = await request.body()
@@ -96,8 +105,8 @@ async def sent(
     name = shown_name(request.headers.get("x-filename", ""))
     if fit is not None and not name.lower().endswith(".json"):
         given["fit"] = fit
-    if axis is not None and name.lower().endswith((".step", ".stp")):
-        given["axis"] = axis
+    if name.lower().endswith((".step", ".stp")):
+        given |= {"axis": axis, "peg_height": peg_height, "head_room": head_room, "least_band": least_band}
     options = {key: value for key, value in given.items() if value is not None}
     return Upload(content, name, state_of(request).limits.segments, options)
 

@@ -256,6 +256,7 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
         part.loops,  # type: ignore[arg-type]
         upload.most_segments,
         part.departure,
+        part.solid,
     )
     name = stem or upload.name if part.name == path.stem else part.name
     return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)

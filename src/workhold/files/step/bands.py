@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.files.step.faces import SolidFace
 from workhold.files.step.projected import EdgeCurve
-from workhold.geometry.arrangement import BorderPiece, Carrier
 from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.geometry.subdivision import BorderPiece, CutCarrier
 
 __all__ = ["Band", "Strip", "Walls", "strips_of_loop"]
 
@@ -107,7 +107,7 @@ class Walls:
         """Points at which an outline is to be cut: where an edge of a wall is highest or lowest."""
         return [(segment, point) for edge, segment in self.upright_edges() for point in edge.turning_points()]
 
-    def over(self, carrier: Carrier) -> list[Wall]:
+    def over(self, carrier: CutCarrier) -> list[Wall]:
         """The walls that stand on a carrier."""
         if id(carrier) not in self.found:
             edges = defaultdict(list)
@@ -144,13 +144,13 @@ class Walls:
         return band, tuple(sorted({one[2] for one in covered}))
 
 
-def positions(carrier: Carrier, points: NDArray[np.float64]) -> NDArray[np.float64]:
+def positions(carrier: CutCarrier, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Positions (N,) of points on a carrier, on a circle without jumps."""
     found = np.array([carrier.position((x, y)) for x, y in points[:, :2].tolist()])
     return found if isinstance(carrier.segment, Line) else np.unwrap(found)
 
 
-def has_material_left(face: SolidFace, carrier: Carrier) -> bool:
+def has_material_left(face: SolidFace, carrier: CutCarrier) -> bool:
     """Whether a wall's material lies to the left as positions on its carrier grow."""
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.BRepGProp import BRepGProp_Face
@@ -249,7 +249,7 @@ def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> l
 
     Parameters
     ----------
-    loop : pieces in running order, see ``geometry.arrangement``.
+    loop : pieces in running order, see ``geometry.subdivision``.
     least : shortest band in mm that may be touched.
     """
     ends = [ends_of(piece, walls) for piece in loop]

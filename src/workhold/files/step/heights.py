@@ -25,7 +25,7 @@ from workhold.files.step.faces import SolidFace, solid_faces
 from workhold.files.step.material import Material
 from workhold.files.step.projected import EdgeCurve, ProjectedCurves, edge_curves, projected_curves
 from workhold.files.step.solids import bounding_box, sub_shapes
-from workhold.geometry.arrangement import BorderPiece, arrange, border_loops, border_pieces
+from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
 
 __all__ = ["HEAD_ROOM", "LEAST_BAND", "HeightOutline", "StandingSolid"]
 
@@ -113,7 +113,7 @@ class StandingSolid:
         curves = projected_curves(self.faces, self.edges, low, high)
         self.refuse_others(curves, low, high)
         more = walls.cuts() if walls else []
-        carriers = arrange(curves.segments, (*curves.cuts, *more))
+        carriers = subdivide(curves.segments, (*curves.cuts, *more))
         pieces = border_pieces(carriers, inside)
         if not pieces:
             raise InputError(

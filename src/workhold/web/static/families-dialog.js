@@ -101,7 +101,7 @@ async function search() {
   bar.removeAttribute("value");
   show(bar, true);
   try {
-    const workpieces = entries.filter((entry) => entry.part).map(({ name, part }) => ({ name, loops: part.loops, departure: part.departure ?? 0 }));
+    const workpieces = entries.filter((entry) => entry.part).map(({ name, part }) => ({ name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null }));
     const asked = { workpieces, toolkit: state.toolkit, types: state.types, contact_margin: state.contactMargin, tolerance: state.tolerance };
     const begun = await send("families", asked);
     if (mine !== latest) {

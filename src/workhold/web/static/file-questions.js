@@ -6,7 +6,7 @@ import { boundsOf, segmentPath, segmentsOf } from "./geometry.js";
 import { state } from "./state.js";
 import { bareLength, countText, length, number, unitWord } from "./units.js";
 
-/** @typedef {{unit?: string, part?: number, layer?: string[], join?: number, fit?: number, axis?: string}} How what has been answered so far */
+/** @typedef {{unit?: string, part?: number, layer?: string[], join?: number, fit?: number, axis?: string, peg_height?: number}} How what has been answered so far */
 
 /** Gaps up to this many mm are joined without asking. */
 const JOINED = 0.001;
@@ -146,11 +146,13 @@ function fitQuestion({ asked, part }, how, answer) {
 /** Along which axis a solid is held, and which of several it is. */
 function solidQuestion({ solid }, how, answer) {
   if (!solid) return null;
-  const buttons = ["x", "y", "z"].map((axis) => make("button", {
+  const buttons = ["x", "y", "z", "-x", "-y", "-z"].map((axis) => make("button", {
     type: "button", "aria-pressed": String((how.axis ?? "z") === axis), click: () => answer({ axis }),
-  }, axis));
+  }, axis.replace("-", "−")));
+  const height = /** @type {HTMLInputElement} */ (make("input.short", { type: "number", id: "peg-height", min: 0, step: "any", value: how.peg_height ?? "" }));
+  height.addEventListener("change", () => height.validity.valid && answer({ peg_height: Number(height.value) || undefined }));
   const which = /** @type {HTMLInputElement} */ (make("input.short", { type: "number", id: "solid", min: 1, step: 1, value: how.part ?? 1 }));
   which.addEventListener("change", () => which.validity.valid && answer({ part: Number(which.value) }));
-  return question("The pegs stand along", make("div.row-of-buttons", {},
-    make("div.segmented", {}, ...buttons), make("label.inline", {}, "Solid, the largest is 1", which)));
+  return question("Up is", make("div.row-of-buttons", {}, make("div.segmented", {}, ...buttons),
+    make("label.inline", {}, "Peg height", height, "mm; empty: the silhouette"), make("label.inline", {}, "Solid, the largest is 1", which)));
 }

@@ -18,7 +18,7 @@ export async function fragment() {
   const carried = Object.fromEntries(CARRIED.map((key) => [key, state[key]]));
   const text = JSON.stringify({
     ...carried,
-    part: state.part && { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0 },
+    part: state.part && { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0, solid: state.part.solid ?? null },
     job: state.job?.job ?? null,
     searched: state.job !== null,
     rank: state.selected?.rank ?? null,

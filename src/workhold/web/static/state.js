@@ -91,7 +91,7 @@ export function change(patch) {
 /** What the server is asked to search. */
 export function request() {
   return {
-    workpiece: { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0 },
+    workpiece: { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0, solid: state.part.solid ?? null },
     toolkit: state.toolkit,
     types: state.types,
     listing: state.listing,

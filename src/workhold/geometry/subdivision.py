@@ -1,4 +1,4 @@
-"""The arrangement of lines and arcs: all pieces into which they cut each other, and the loops along a region.
+"""The planar subdivision of lines and arcs: all pieces into which they cut each other, and loops along a region.
 
 Segments of one carrier are put together first, so a piece that many segments share is there once. A region is
 known by asking beside every piece whether its points belong to it; pieces with the region on one side only
@@ -6,8 +6,8 @@ are its border.
 
 Glossary
 --------
-arrangement : the pieces of some curves between all points in which these meet (Agarwal and Sharir,
-    "Arrangements and their applications", 2000).
+subdivision : the pieces of some curves between all points in which these meet (de Berg et al.,
+    "Computational Geometry", chapter 2).
 position : place along a carrier: millimetres on a line, radians on a circle.
 span : a range of positions that some segment covers.
 """
@@ -26,7 +26,7 @@ from workhold.errors import InputError
 from workhold.geometry.loop import near_pairs
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, carrier_intersections
 
-__all__ = ["BorderPiece", "Carrier", "arrange", "border_loops", "border_pieces"]
+__all__ = ["BorderPiece", "CutCarrier", "subdivide", "border_loops", "border_pieces"]
 
 # Carriers, and points along one, that differ by less than this in mm are one.
 ONE = 1e-6
@@ -37,7 +37,7 @@ BESIDE, BESIDE_SHARE = 4e-4, 0.1
 
 
 @define
-class Carrier:
+class CutCarrier:
     """A line or a circle with the spans that segments cover, and the positions at which it is cut.
 
     Parameters
@@ -137,7 +137,7 @@ def distinct_sorted(values: NDArray[np.float64], slack: float) -> list[float]:
     return distinct
 
 
-def arrange(segments: Iterable[Segment], cuts: Iterable[tuple[Segment, Point]] = ()) -> list[Carrier]:
+def subdivide(segments: Iterable[Segment], cuts: Iterable[tuple[Segment, Point]] = ()) -> list[CutCarrier]:
     """Carriers of some segments, cut wherever two of them meet.
 
     Parameters
@@ -145,8 +145,8 @@ def arrange(segments: Iterable[Segment], cuts: Iterable[tuple[Segment, Point]] =
     segments : in any order and direction; they may overlap.
     cuts : further points at which the carrier of a segment is to be cut.
     """
-    carriers: list[Carrier] = []
-    found: dict[tuple[int, ...], list[Carrier]] = {}
+    carriers: list[CutCarrier] = []
+    found: dict[tuple[int, ...], list[CutCarrier]] = {}
     for segment in segments:
         carrier_of(segment, carriers, found).add(segment)
     for segment, point in cuts:
@@ -161,15 +161,15 @@ def arrange(segments: Iterable[Segment], cuts: Iterable[tuple[Segment, Point]] =
 
 
 def carrier_of(
-    segment: Segment, carriers: list[Carrier], found: dict[tuple[int, ...], list[Carrier]]
-) -> Carrier:
+    segment: Segment, carriers: list[CutCarrier], found: dict[tuple[int, ...], list[CutCarrier]]
+) -> CutCarrier:
     """The carrier of a segment, made if it is not there; ``found`` holds carriers by rough place."""
     keys = rough_keys(segment)
     for key in keys:
         for carrier in found.get(key, ()):
             if carrier.holds(segment):
                 return carrier
-    carrier = Carrier(segment)
+    carrier = CutCarrier(segment)
     carriers.append(carrier)
     found.setdefault(keys[0], []).append(carrier)
     return carrier
@@ -188,7 +188,7 @@ def rough_keys(segment: Segment) -> list[tuple[int, ...]]:
     return [((cell[0] + a) % last, 0) for a in (0, -1, 1)]
 
 
-def covered_box(carrier: Carrier) -> tuple[float, float, float, float]:
+def covered_box(carrier: CutCarrier) -> tuple[float, float, float, float]:
     """A box around all that is covered, grown by ``ONE``."""
     own = carrier.segment
     if isinstance(own, Arc):
@@ -199,7 +199,7 @@ def covered_box(carrier: Carrier) -> tuple[float, float, float, float]:
     return x0 - ONE, y0 - ONE, x1 + ONE, y1 + ONE
 
 
-def cut_each_other(a: Carrier, b: Carrier) -> None:
+def cut_each_other(a: CutCarrier, b: CutCarrier) -> None:
     """Cuts two carriers where both are covered and meet, or where a span of one ends on the other."""
     points = list(carrier_intersections(a.segment, b.segment))
     for one, other in ((a, b), (b, a)):
@@ -226,7 +226,7 @@ class BorderPiece:
     forward : whether positions grow along the run.
     """
 
-    carrier: Carrier
+    carrier: CutCarrier
     low: float
     high: float
     forward: bool
@@ -255,12 +255,12 @@ class BorderPiece:
         return (sin(quarter) / cos(quarter)) * (1.0 if self.forward else -1.0)
 
 
-def border_pieces(carriers: Sequence[Carrier], inside: Callable[[Point], bool]) -> list[BorderPiece]:
+def border_pieces(carriers: Sequence[CutCarrier], inside: Callable[[Point], bool]) -> list[BorderPiece]:
     """Pieces with a region on one side only.
 
     Parameters
     ----------
-    carriers : see :func:`arrange`; they hold the region's whole border.
+    carriers : see :func:`subdivide`; they hold the region's whole border.
     inside : whether a point (x, y) that lies on no carrier belongs to the region.
     """
     found = []

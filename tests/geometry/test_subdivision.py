@@ -1,4 +1,4 @@
-"""The border of a union of shapes, found on the arrangement of their outlines, has the union's area."""
+"""The border of a union of shapes, found on the subdivision by their outlines, has the union's area."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.geometry.arrangement import BorderPiece, arrange, border_loops, border_pieces
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
 
 Box = tuple[float, float, float, float]
 Circle = tuple[float, float, float]
@@ -47,7 +47,7 @@ def union_loops(boxes: list[Box], circles: list[Circle]) -> list[list[BorderPiec
         )
 
     segments = [side for box in boxes for side in sides(box)] + [round_side(circle) for circle in circles]
-    return border_loops(border_pieces(arrange(segments), inside))
+    return border_loops(border_pieces(subdivide(segments), inside))
 
 
 WHOLE = st.integers(0, 12)
@@ -89,13 +89,13 @@ def test_hole_and_touching_arcs() -> None:
 
 def test_equal_carriers_are_one() -> None:
     """Segments on one line, however they are run, are pieces of one carrier."""
-    found = arrange([Line((0, 0), (4, 0)), Line((6, 0), (2, 0)), Line((1, -1), (1, 1))])
+    found = subdivide([Line((0, 0), (4, 0)), Line((6, 0), (2, 0)), Line((1, -1), (1, 1))])
     assert [len(carrier.pieces()) for carrier in found] == [4, 2]
 
 
 def test_border_that_does_not_close() -> None:
     """A border of which a piece is missing is refused with the place."""
     open_sides = sides((0, 0, 4, 4))[:3]
-    pieces = border_pieces(arrange(open_sides), lambda p: 0 < p[0] < 4 and 0 < p[1] < 4)
+    pieces = border_pieces(subdivide(open_sides), lambda p: 0 < p[0] < 4 and 0 < p[1] < 4)
     with pytest.raises(InputError, match=r"the border ends at \("):
         border_loops(pieces)
