@@ -2,7 +2,7 @@
 
 A number of a few bytes must not ask for all memory, or for arithmetic that says nothing. The limits hold
 alike for files, Python and the page. What a file or a request may be in bytes, segments and seconds is said
-where these are read (``files.part.load``, ``web.guard``).
+where these are read (``files.part.loaded``, ``web.guard``).
 """
 
 from __future__ import annotations

@@ -112,7 +112,7 @@ def test_its_drawing_for_cam_has_layers_of_its_own() -> None:
 
 def test_its_result_file_has_wall_and_jaw() -> None:
     """The shape of FLAT_JAW: the wall's ends by themselves, pegs with the role of the jaw, and the opening."""
-    template = fixture_template(TOOLKIT.arrangements[0], TOOLKIT, [])
+    template = fixture_template(TOOLKIT.arrangements[0], TOOLKIT, [], "")
     numbers = [float(k) for k in range(template.count("%") - template.count("%%"))]
     entry = json.loads(template % tuple(numbers))
     assert set(entry) == {"type", "wall", "pegs", "pose", "jaw_separation", "quality"}

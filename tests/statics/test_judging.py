@@ -11,6 +11,7 @@ from workhold import Workpiece
 from workhold.conventions import GENTLE_PEG, SMALL_FACE_POINTS, STRONG_POINTS, TILTED_POINTS
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.sheet_facts import SheetDetails, cautions_of, edge_distances
+from workhold.model.diameter import outline_diameter
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     JAW_FORCE_NEEDED,
@@ -22,7 +23,6 @@ from workhold.model.quality import (
 )
 from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.model.workpiece import outline_diameter
 from workhold.statics.judging import Judging
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import main_direction, quality_of, tilts

@@ -15,6 +15,7 @@ from held import contacts, force_directions, held, load_wrench
 from workhold import Plate, design
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distances
+from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -27,7 +28,7 @@ from workhold.model.quality import (
 )
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import FixtureTable, Result
-from workhold.model.workpiece import Workpiece, outline_diameter
+from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import quality_of
 

@@ -61,8 +61,8 @@ class LoadArguments(ToolArguments):
     section: float | None = Field(default=None, description="STEP: take the section at this height, in mm")
     peg_height: Positive | None = Field(
         default=None,
-        description="STEP: how far pegs reach above the plane on which the part lies, in mm; the outline is what "
-        "they meet there, and only upright faces are touched",
+        description="STEP: how far pegs reach above the plane on which the part lies, in mm; the outline "
+        "is what they meet there, and only upright faces are touched",
     )
     head_room: float | None = Field(
         default=None,

@@ -21,7 +21,7 @@ from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.cli.table import Table
-    from workhold.files.part.load import Loaded
+    from workhold.files.part.loaded import Loaded
     from workhold.files.toolkit_file import LoadedToolkit
     from workhold.fixels.table import Form
     from workhold.model.dowels import Limits

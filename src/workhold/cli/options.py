@@ -27,7 +27,7 @@ from workhold.errors import InputError
 from workhold.model.solid import AXES
 
 if TYPE_CHECKING:
-    from workhold.files.part.load import Loaded
+    from workhold.files.part.loaded import Loaded
     from workhold.model.result import Result
 
 __all__ = [
@@ -132,8 +132,8 @@ class PartWords:
     axis: str | None = option(
         READING,
         "[-]x|y|z",
-        "STEP files: the direction that points up, to which pegs are parallel; z if not given. With - the part "
-        "lies on its other side.",
+        "STEP files: the direction that points up, to which pegs are parallel; z if not given. With - the "
+        "part lies on its other side.",
     )
     peg_height: str | None = option(
         READING,

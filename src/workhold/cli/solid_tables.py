@@ -1,4 +1,4 @@
-"""Tables of a solid seen at the height of the pegs: what is touched at which heights, and what others offer."""
+"""Tables of a solid seen at the height of the pegs: which heights are touched, and what others offer."""
 
 from __future__ import annotations
 

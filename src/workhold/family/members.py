@@ -173,8 +173,8 @@ def other_side(query: Query) -> Query:
     part, asked = query.workpiece, query.restrictions
     if part.solid is not None:
         raise InputError(
-            f"{part.name} is an outline at the height of pegs, and on its other side it has another: give both "
-            "sides as parts of their own."
+            f"{part.name} is an outline at the height of pegs, and on its other side it has another: give "
+            "both sides as parts of their own."
         )
     loops = [mirrored(loop) for loop in part.loops]
     numbers = segment_numbers(part)

@@ -1,4 +1,4 @@
-"""The planar subdivision of lines and arcs: all pieces into which they cut each other, and loops along a region.
+"""The planar subdivision of lines and arcs: the pieces into which they cut each other, and loops of these.
 
 Segments of one carrier are put together first, so a piece that many segments share is there once. A region is
 known by asking beside every piece whether its points belong to it; pieces with the region on one side only
@@ -280,8 +280,8 @@ def border_pieces(carriers: Sequence[CutCarrier], inside: Callable[[Point], bool
 def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[list[BorderPiece]]:
     """Pieces of a border joined to closed loops, each run with the region on the left.
 
-    Where several runs leave a point, the one that turns farthest to the left is taken: two corners of a region
-    that touch stay corners of one loop each.
+    Where several runs leave a point, the one that turns farthest to the left is taken. So two corners of a
+    region that touch stay corners of one loop each.
 
     Parameters
     ----------

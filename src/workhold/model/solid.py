@@ -1,4 +1,4 @@
-"""What an outline by height keeps of its solid: how it stands, and the heights at which each segment is touched."""
+"""What an outline by height keeps of its solid: how it stands, and where its segments are touched."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ class SolidOutline:
     peg_height : up to which pegs reach, in mm above the plane on which the part lies.
     head_room : kept free above the pegs, in mm.
     least_band : shortest band that may be touched, in mm.
-    bands : for every segment of the workpiece the heights (z0, z1) in mm at which an upright face of the solid
-        stands over all of it; None where nothing may touch.
+    bands : for every segment of the workpiece the heights (z0, z1) in mm of upright faces over all of it;
+        None where nothing may touch.
     faces : for every segment the numbers of these faces, as the file lists them; empty where a file does not
         say.
 
@@ -79,7 +79,7 @@ class SolidOutline:
         return frozenset(number for number, band in enumerate(self.bands) if band is None)
 
     def for_segments(self, count: int) -> SolidOutline:
-        """The same, for an outline of so many segments.
+        """Checks that there is a band for each of so many segments, and returns itself.
 
         Raises
         ------
@@ -88,12 +88,12 @@ class SolidOutline:
         """
         if len(self.bands) != count or len(self.faces) not in (0, count):
             raise InputError(
-                f"the outline has {count} segments and {len(self.bands)} bands: give one band for each segment."
+                f"the outline has {count} segments and {len(self.bands)} bands: give one band for each."
             )
         return self
 
     def reordered(self, order: Sequence[int]) -> SolidOutline:
-        """The same with the bands of the segments in another order."""
+        """A copy with the bands of the segments in another order."""
         return evolve(
             self,
             bands=[self.bands[k] for k in order],

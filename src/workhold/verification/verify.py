@@ -11,10 +11,11 @@ from attrs import field, frozen
 from flint import arb, ctx
 
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.workpiece import Workpiece, outline_diameter
+from workhold.model.workpiece import Workpiece
 from workhold.verification.account import account_faults, seat_faults
 from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, norm
 from workhold.verification.contacts import Balance, BallContact, BallPose, closure_findings

@@ -28,7 +28,7 @@ from workhold.web.fixture_tasks import close, find_seating, make_paper
 from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
-    from workhold.files.part.load import Loaded
+    from workhold.files.part.loaded import Loaded
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
     from workhold.web.families import FamilyForm

@@ -109,6 +109,6 @@ def test_trouble_in_other_parts_does_not_matter(tmp_path: Path) -> None:
 
 def test_too_many_segments_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A scan of short chords is refused before anything slow begins."""
-    monkeypatch.setattr("workhold.files.part.load.MOST_SEGMENTS", 3)
+    monkeypatch.setattr("workhold.files.part.loaded.MOST_SEGMENTS", 3)
     with pytest.raises(InputError, match="the part has 4 segments, more than the 3"):
         read_dxf(tmp_path, rectangle)

@@ -128,11 +128,8 @@ POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, '
 LEFT_OUT = "%.0s"
 
 
-def fixture_template(
-    arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure], has_bands: bool = False
-) -> str:
+def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure], band: str) -> str:
     """The line of a fixture with its numbers left open, in the order of :meth:`WrittenBlock.line_columns`."""
-    band = ', "band": %s' * has_bands
     tips, travels = toolkit.tips, toolkit.travels
     carriers = [toolkit.carriers[number] for number in arrangement.carriers]
     pegs = ", ".join(f"{{{peg_template(one, travels)}{band}}}" for one in carriers if one.contact.is_placed)
@@ -163,8 +160,8 @@ def peg_template(carrier: Carrier, travels: int) -> str:
 def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
     """The lines of a list of fixtures, block by block."""
     figures = known_figures(table)
-    has_bands = workpiece.solid is not None
-    templates = [fixture_template(one, toolkit, figures, has_bands) for one in toolkit.arrangements]
+    band = ', "band": %s' * (workpiece.solid is not None)
+    templates = [fixture_template(one, toolkit, figures, band) for one in toolkit.arrangements]
     for block in blocks(table, toolkit, workpiece):
         rows = zip(*block.line_columns(), strict=True)
         yield [templates[k] % row for k, row in zip(block.table.arrangement.tolist(), rows, strict=True)]
@@ -242,11 +239,9 @@ class WrittenBlock:
 
     def bands(self, contact: int) -> list[NDArray[Any]]:
         """A column of the bands of a contact's faces as text; none where the workpiece has no bands."""
-        solid = self.workpiece.solid
-        if solid is None:
+        if (solid := self.workpiece.solid) is None:
             return []
-        texts = np.array([json.dumps(band) for band in solid.bands], dtype=object)
-        return [texts[self.table.face[:, contact]]]
+        return [np.array(list(map(json.dumps, solid.bands)), object)[self.table.face[:, contact]]]
 
     def row_columns(self) -> list[list[Any]]:
         """The columns of :func:`fixture_rows`."""

@@ -1,8 +1,8 @@
 """Bands: the heights at which a peg may press on each piece of an outline, from the solid's upright faces.
 
-Over a point of the outline's border an upright face covers ranges of height. The band of the point is the least
-interval that holds them within the heights that a peg reaches. Between the ends, lowest and highest points of
-the walls' edges, both of its ends run monotonically, so a piece has in common what its two ends have.
+Over a point of the outline's border an upright face covers ranges of height. The band of the point is the
+least interval that holds them within the heights that a peg reaches. Between the ends, lowest and highest
+points of the walls' edges, both of its ends run monotonically. So a piece has in common what its two ends have.
 
 Glossary
 --------
@@ -23,8 +23,8 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import SAME_HEIGHT
+from workhold.files.step.edge_curves import EdgeCurve
 from workhold.files.step.faces import SolidFace
-from workhold.files.step.projected import EdgeCurve
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.geometry.subdivision import BorderPiece, CutCarrier
 
@@ -76,7 +76,7 @@ class Wall:
     edges: tuple[tuple[EdgeCurve, NDArray[np.float64]], ...]
 
     def intervals(self, position: float, beside: float) -> list[Band]:
-        """Ranges of z in mm that the face covers at a position, from the lowest up; see :meth:`Walls.band`."""
+        """Ranges of z in mm that the face covers at a position, see :meth:`Walls.band`; the lowest first."""
         heights = sorted(z for edge, places in self.edges for z in heights_at(edge, places, position, beside))
         return list(zip(heights[0::2], heights[1::2], strict=False))
 
@@ -128,7 +128,7 @@ class Walls:
         Parameters
         ----------
         position : on the piece's carrier.
-        beside : where the position is an end of the piece, a small step into it: the band is then the limit
+        beside : where the position is an end of the piece, a small step into it. The band is then the limit
             from there, because at the end itself other edges begin.
         """
         covered = [
@@ -354,7 +354,7 @@ def length(band: Band) -> float:
 
 
 def first_share(start: float, holds: Callable[[float], bool], steps: int = 32) -> float:
-    """The least share after a start for which something that does not hold there holds; 1 if it never does."""
+    """The least share after a start from which on something holds that does not there; 1 for never."""
     low = start
     for step in range(1, steps + 1):
         high = start + (1.0 - start) * step / steps

@@ -52,7 +52,8 @@ class HeightView:
     Parameters
     ----------
     axis : direction of the file that points up; z when None.
-    peg_height : up to which pegs reach above the plane on which the part lies, in mm; the part's height when None.
+    peg_height : up to which pegs reach above the plane on which the part lies, in mm; the part's height when
+        None.
     head_room, least_band : in mm; the usual ones when None.
     part_number : which solid to take of several; the largest when None.
     """
@@ -202,8 +203,8 @@ def drawn(shape: Any, view: HeightView) -> HeightDrawing:
     faces = [strip.faces for k in order for strip in outline.loops[k]]
     if not any(bands):
         raise InputError(
-            f"along {axis} no upright face of the part is at least {least:g} mm high below {outline.peg_height:g} "
-            f"mm: {advice(solid, room, least)}."
+            f"along {axis} no upright face of the part is at least {least:g} mm high below "
+            f"{outline.peg_height:g} mm: {advice(solid, room, least)}."
         )
     found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces)
     rows = height_table(solid, room, least)
@@ -232,7 +233,7 @@ def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
 
 
 def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
-    """Ranges of peg heights with what their outlines offer, from the lowest up; heights that are refused lack."""
+    """Ranges of peg heights with what their outlines offer, without those whose outline is refused."""
     levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
     levels |= {round(z - room, 6) for z in levels} | {round(solid.height, 6)}
     heights = sorted(z for z in levels if least < z <= solid.height + SAME_HEIGHT)
@@ -259,7 +260,7 @@ def is_like(a: HeightRow, b: HeightRow) -> bool:
 
 
 def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
-    """The range with the longest touchable border; of equal ones the highest pegs, whose bands are longest."""
+    """The range with the longest touchable border; of equal ones that of the highest pegs."""
     most = max((row.touchable for row in rows), default=0.0)
     return max(
         (row for row in rows if row.touchable >= most * (1 - 1e-9) > 0),
@@ -293,8 +294,8 @@ def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[H
     ]
     if touchable < border * (1 - 1e-9):
         remarks.append(
-            f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of it, and only these are touched; the "
-            f"shortest is {band:.4g} mm high there."
+            f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of it, and only these are touched; "
+            f"the shortest is {band:.4g} mm high there."
         )
     best = longest(rows)
     if best is not None and best.touchable > touchable * (1 + 1e-6):

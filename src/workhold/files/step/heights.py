@@ -21,9 +21,10 @@ from attrs import define, field, frozen
 
 from workhold.errors import InputError
 from workhold.files.step.bands import Strip, Walls, strips_of_loop
+from workhold.files.step.edge_curves import EdgeCurve, edge_curves
 from workhold.files.step.faces import SolidFace, solid_faces
 from workhold.files.step.material import Material
-from workhold.files.step.projected import EdgeCurve, ProjectedCurves, edge_curves, projected_curves
+from workhold.files.step.projected import ProjectedCurves, projected_curves
 from workhold.files.step.solids import bounding_box, sub_shapes
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
 

@@ -1,8 +1,8 @@
 """The curves of a solid that can bound its projection along the axis, as lines and arcs in the plane.
 
-A point on the border of the projection of a slab of the solid is the image of an edge, of a place where a
-face stands upright (a fold), or of the cut at the slab's upper or lower end. What is too much does no harm: an
-arrangement only asks which pieces have material on one side. So curves are taken whole where that is simple.
+A point on the border of a slab's projection is the image of an edge, of a fold of a face, or of the cut at
+the slab's upper or lower end. Further curves do no harm. They cut the plane finer, and only pieces with
+material on one side are taken; so curves are taken whole where that is simple.
 
 Glossary
 --------
@@ -12,7 +12,7 @@ fold : where a leaning face stands upright: the contour generator of computer vi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from math import acos, atan2, cos, hypot, pi, sin, sqrt
 from typing import Any
 
@@ -21,70 +21,12 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT, SHORTEST
+from workhold.files.step.edge_curves import EdgeCurve, curve_of, height
 from workhold.files.step.faces import SolidFace
 from workhold.files.step.solids import sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
-__all__ = ["EdgeCurve", "ProjectedCurves", "edge_curves", "projected_curves"]
-
-# Points along a curve that is neither a line nor an arc in the plane, at which its two sides are looked at.
-SAMPLES = 33
-GOLDEN = (sqrt(5.0) - 1.0) / 2.0
-Point3 = tuple[float, float, float]
-
-
-@frozen
-class EdgeCurve:
-    """An edge of a face, seen from above.
-
-    Parameters
-    ----------
-    face : index of the face.
-    segment : the line or arc that it projects to; None for an upright edge and for any other curve.
-    parameters : (N,) parameters of Open CASCADE's curve, rising; between two of them the edge neither turns
-        back along its segment nor up or down.
-    points : (N, 3) the points there in mm.
-    is_other : whether it projects to a curve that is neither line nor arc.
-    curve : Open CASCADE's curve.
-    """
-
-    face: int
-    segment: Segment | None
-    parameters: NDArray[np.float64]
-    points: NDArray[np.float64]
-    is_other: bool
-    curve: Any
-
-    @property
-    def low(self) -> float:
-        """Lowest z of its points in mm."""
-        return float(self.points[:, 2].min())
-
-    @property
-    def high(self) -> float:
-        """Highest z of its points in mm."""
-        return float(self.points[:, 2].max())
-
-    def point_at(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
-        """The point between the points k and k + 1 at which a value that runs monotonically is as wanted."""
-        a, b = float(self.parameters[k]), float(self.parameters[k + 1])
-        first, last = value(point3(self.points[k])), value(point3(self.points[k + 1]))
-        if len(self.points) == 2:
-            share = (wanted - first) / (last - first)
-            return point3(self.points[0] + share * (self.points[1] - self.points[0]))
-        for _ in range(60):
-            middle = (a + b) / 2
-            if (value(curve_point(self.curve, middle)) < wanted) == (first < wanted):
-                a = middle
-            else:
-                b = middle
-        return curve_point(self.curve, (a + b) / 2)
-
-    def turning_points(self) -> list[Point]:
-        """Points (x, y) within the edge at which it is highest or lowest around."""
-        z = self.points[:, 2]
-        turns = np.flatnonzero((z[1:-1] - z[:-2]) * (z[2:] - z[1:-1]) < 0) + 1
-        return [(float(self.points[k, 0]), float(self.points[k, 1])) for k in turns]
+__all__ = ["ProjectedCurves", "projected_curves"]
 
 
 @frozen
@@ -101,146 +43,6 @@ class ProjectedCurves:
     segments: tuple[Segment, ...]
     cuts: tuple[tuple[Segment, Point], ...]
     others: tuple[tuple[int, NDArray[np.float64]], ...]
-
-
-def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
-    """The edges of all faces, each as often as a face has it."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-
-    found = []
-    for index, face in enumerate(faces):
-        for edge in sub_shapes(face.shape, "EDGE"):
-            if BRep_Tool.Degenerated_s(edge):
-                continue
-            found.append(edge_curve_of(index, BRepAdaptor_Curve(edge)))
-    return found
-
-
-def edge_curve_of(face: int, curve: Any) -> EdgeCurve:
-    """One edge seen from above."""
-    from OCP.GeomAbs import GeomAbs_CurveType
-
-    first, last = curve.FirstParameter(), curve.LastParameter()
-    kind = curve.GetType()
-    if kind == GeomAbs_CurveType.GeomAbs_Line:
-        parameters = np.array([first, last])
-        points = points_along(curve, parameters)
-        (x0, y0, _), (x1, y1, _) = points.tolist()
-        line = Line((x0, y0), (x1, y1)) if hypot(x1 - x0, y1 - y0) >= SHORTEST else None
-        return EdgeCurve(face, line, parameters, points, False, curve)
-    parameters = np.linspace(first, last, SAMPLES)
-    points = points_along(curve, parameters)
-    if kind == GeomAbs_CurveType.GeomAbs_Circle:
-        circle = curve.Circle()
-        normal = circle.Axis().Direction()
-        if hypot(normal.X(), normal.Y()) <= ALIGNED:
-            arc = level_arc(circle, first, last, points)
-            return EdgeCurve(face, arc, parameters, points, False, curve)
-    segment = flattened(points[:, :2])
-    if segment is None:
-        return EdgeCurve(face, None, parameters, points, is_wide(points[:, :2]), curve)
-    more = [
-        one
-        for value in (position_along(segment), height)
-        for one in extremes(curve, parameters, [value(point3(point)) for point in points], value)
-    ]
-    if more:
-        parameters = np.unique(np.concatenate([parameters, more]))
-        points = points_along(curve, parameters)
-        segment = flattened(points[:, :2]) or segment
-    return EdgeCurve(face, segment, parameters, points, False, curve)
-
-
-def is_wide(points: NDArray[np.float64]) -> bool:
-    """Whether points (N, 2) are no single point; an upright edge is one."""
-    return bool(np.ptp(points, axis=0).max() > SHORTEST)
-
-
-def height(point: Point3) -> float:
-    """The z of a point."""
-    return point[2]
-
-
-def position_along(segment: Segment) -> Callable[[Point3], float]:
-    """The parameter of points along a segment's carrier."""
-    return lambda point: segment.parameter((point[0], point[1]))
-
-
-def extremes(
-    curve: Any,
-    parameters: NDArray[np.float64],
-    values: Sequence[float],
-    value: Callable[[Point3], float],
-) -> list[float]:
-    """Parameters at which a value along a curve is largest or smallest around, by golden section."""
-    found = []
-    rises = np.diff(np.array(values))
-    for k in np.flatnonzero(rises[:-1] * rises[1:] < 0):
-        sign = 1.0 if rises[k] > 0 else -1.0
-        a, b = float(parameters[k]), float(parameters[k + 2])
-        for _ in range(60):
-            c, d = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-            if sign * value(curve_point(curve, c)) > sign * value(curve_point(curve, d)):
-                b = d
-            else:
-                a = c
-        found.append((a + b) / 2)
-    return found
-
-
-def curve_point(curve: Any, parameter: float) -> Point3:
-    """A point of Open CASCADE's curve in mm."""
-    value = curve.Value(parameter)
-    return value.X(), value.Y(), value.Z()
-
-
-def point3(row: NDArray[np.float64]) -> Point3:
-    """A row of three numbers as a point."""
-    return float(row[0]), float(row[1]), float(row[2])
-
-
-def points_along(curve: Any, parameters: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points (N, 3) of a curve in mm."""
-    return np.array([curve_point(curve, float(t)) for t in parameters])
-
-
-def level_arc(circle: Any, first: float, last: float, points: NDArray[np.float64]) -> Arc:
-    """A level circle's arc between two parameters, seen from above."""
-    center = circle.Location()
-    middle = points[len(points) // 2]
-    angle = atan2(middle[1] - center.Y(), middle[0] - center.X())
-    half = min((last - first) / 2, pi)
-    if half > pi - 1e-9:
-        half = pi
-    return Arc((center.X(), center.Y()), circle.Radius(), angle, half, 1.0)
-
-
-def flattened(points: NDArray[np.float64]) -> Segment | None:
-    """The line over which points (N, 2) lie, or the arc; None for any other curve.
-
-    An upright curve on a wall projects to a line or, on a round wall, to an arc.
-    """
-    middle = points.mean(axis=0)
-    _, sizes, axes = np.linalg.svd(points - middle, full_matrices=False)
-    if sizes[1] <= 1e-7 * sqrt(len(points)):
-        along = (points - middle) @ axes[0]
-        start, end = middle + along.min() * axes[0], middle + along.max() * axes[0]
-        if hypot(*(end - start)) < SHORTEST:
-            return None
-        return Line((float(start[0]), float(start[1])), (float(end[0]), float(end[1])))
-    matrix = np.column_stack([2 * points, np.ones(len(points))])
-    solution = np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0]
-    center = solution[:2]
-    radii = np.hypot(*(points - center).T)
-    radius = float(radii.mean())
-    if np.abs(radii - radius).max() > 1e-7 or radius > 1e5:
-        return None
-    angles = np.unwrap(np.arctan2(points[:, 1] - center[1], points[:, 0] - center[0]))
-    low, high = float(angles.min()), float(angles.max())
-    half = (high - low) / 2
-    half = pi if half > pi - 1e-9 else half
-    return Arc((float(center[0]), float(center[1])), radius, (low + high) / 2, half, 1.0)
 
 
 def projected_curves(
@@ -311,8 +113,8 @@ def whole_circle(center: Any, radius: float) -> Arc:
 def ruled_folds(surface: Any, is_cylinder: bool) -> Iterator[Line]:
     """The rulings of a cylinder or a cone along which the normal is level.
 
-    The normal at angle u is n(u) = r(u) cos h - d sin h, for the radial direction r(u) = X cos u + Y sin u, the
-    axis d and half the cone's angle h (0 for a cylinder). Level is r(u)_z cos h = d_z sin h.
+    The radial direction is r(u) = X cos u + Y sin u. With the axis d and half the cone's angle h, 0 of a
+    cylinder, the normal is r(u) cos h - d sin h. It is level where r(u)_z cos h = d_z sin h.
     """
     shape = surface.Cylinder() if is_cylinder else surface.Cone()
     half = 0.0 if is_cylinder else shape.SemiAngle()
@@ -417,7 +219,7 @@ def lying_cut(surface: Any, cylinder: Any, z: float) -> list[Found]:
     share = (z - center.Z()) / cylinder.Radius()
     if abs(share) > 1:
         return []
-    # The radial direction at u has the height X_z cos u + Y_z sin u, which has amplitude 1 on a lying cylinder.
+    # The radial direction at u rises by X_z cos u + Y_z sin u, which has amplitude 1 on a lying cylinder.
     top = atan2(position.YDirection().Z(), position.XDirection().Z())
     low, high = surface.FirstVParameter(), surface.LastVParameter()
     found: list[Found] = []
@@ -436,7 +238,7 @@ def cut_edges(shape: Any, z: float) -> list[Found]:
     cut = BRepAlgoAPI_Section(shape, gp_Pln(gp_Pnt(0.0, 0.0, z), gp_Dir(0.0, 0.0, 1.0)))
     found: list[Found] = []
     for edge in sub_shapes(cut.Shape(), "EDGE"):
-        curve = edge_curve_of(0, BRepAdaptor_Curve(edge))
+        curve = curve_of(0, BRepAdaptor_Curve(edge))
         if curve.segment is not None:
             found.append(curve.segment)
         elif curve.is_other:

@@ -243,7 +243,7 @@ def axis_named(axis: str | None) -> str:
 def along(shape: Any, axis: str) -> Any:
     """A shape turned so that an axis of the file points up; coordinates only change places and signs.
 
-    With a minus the part lies on its other side: what was x points to -x, as if it were turned over like a page.
+    With a minus the part lies on its other side, turned over like a page: what pointed to x points to -x.
     """
     from OCP.gp import gp_Trsf
     from OCP.TopLoc import TopLoc_Location

@@ -1,0 +1,186 @@
+"""A workpiece from the outline of a drawing or of a solid, with remarks on how it was read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from attrs import evolve, frozen
+
+from workhold.errors import InputError
+from workhold.files.outline.chain import Drawing, cleaned
+from workhold.files.outline.curves import (
+    curve_remarks,
+    departure_remark,
+    refuse_true_curves,
+    with_chords_merged,
+)
+from workhold.files.outline.diagnostics import (
+    refuse_nothing_closed,
+    refuse_open_outline,
+    stray_remarks,
+    with_layers_named,
+)
+from workhold.files.outline.joining import Loop, join
+from workhold.files.outline.nesting import DrawnPart, chosen_part, nest, refuse_loops_across
+from workhold.files.questions import PART_NUMBER
+from workhold.model.solid import HeightRow, SolidOutline
+from workhold.model.workpiece import Workpiece
+
+if TYPE_CHECKING:
+    from workhold.files.step.by_height import HeightDrawing
+
+__all__ = ["Loaded", "built", "from_drawing", "from_heights", "refuse_large"]
+
+# A part of more segments than this is a scan or a picture, and would keep every later step busy for hours.
+MOST_SEGMENTS = 20_000
+PART_LIST = 10
+
+
+@frozen
+class Loaded:
+    """A workpiece and remarks on how it was read.
+
+    Parameters
+    ----------
+    workpiece : the part, in mm.
+    remarks : one sentence each: what was ignored, closed, dropped or chosen.
+    parts : all parts the file holds, by decreasing area; ``workpiece`` is one of them.
+    number : its number among them, from 1.
+    heights : of a solid seen at the height of the pegs, what other heights offer.
+    """
+
+    workpiece: Workpiece
+    remarks: tuple[str, ...]
+    parts: tuple[DrawnPart, ...]
+    number: int = 1
+    heights: tuple[HeightRow, ...] = ()
+
+
+def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
+    """A workpiece from the outline of a solid at the height of the pegs.
+
+    Raises
+    ------
+    InputError
+        When the outline cannot be used.
+    """
+    refuse_large(sum(len(loop) for loop in drawing.loops))
+    loops = [Loop(loop, ("",) * len(loop)) for loop in drawing.loops]
+    workpiece = built(name, loops, with_labels=False, solid=drawing.solid)
+    remarks = (*drawing.remarks, *workpiece.remarks)
+    return Loaded(workpiece, remarks, nest(loops)[:1], heights=drawing.heights)
+
+
+def from_drawing(
+    path: Path,
+    drawing: Drawing,
+    part_number: int | None,
+    tolerance: float,
+    fit: float | None,
+    layered: bool = False,
+) -> Loaded:
+    """A workpiece from a drawing's chains; ``layered`` says whether its layers can be chosen.
+
+    Raises
+    ------
+    InputError
+        When no usable closed outline remains, or one with curves that nobody has allowed to be replaced.
+    """
+    try:
+        return outline_of(path, drawing, part_number, tolerance, fit, layered)
+    except InputError as error:
+        if not drawing.layers:
+            raise
+        raise with_layers_named(
+            error, drawing, partial(is_usable, path, part_number, tolerance, fit)
+        ) from error
+
+
+def is_usable(
+    path: Path, part_number: int | None, tolerance: float, fit: float | None, drawing: Drawing
+) -> bool:
+    """Whether a part can be read of a drawing."""
+    try:
+        outline_of(path, drawing, part_number, tolerance, fit, True)
+    except InputError:
+        return False
+    return True
+
+
+def outline_of(
+    path: Path, drawing: Drawing, part_number: int | None, tolerance: float, fit: float | None, layered: bool
+) -> Loaded:
+    """The workpiece, see :func:`from_drawing`.
+
+    Raises
+    ------
+    InputError
+        See there.
+    """
+    clean = cleaned(drawing.chains)
+    joined = join(clean.chains, tolerance)
+    if not joined.loops:
+        refuse_nothing_closed(joined.strays, drawing.remarks)
+    parts = nest(joined.loops)
+    part = chosen_part(parts, part_number)
+    if part_number is None:
+        refuse_open_outline(part, joined.strays)
+    labels = [label for loop in part.loops for label in loop.labels]
+    refuse_true_curves(labels, drawing.curves, fit, layered)
+    departure, of_curves = curve_remarks(labels, drawing.curves)
+    loops, more, of_chords = with_chords_merged(part.loops, drawing.curves, fit)
+    departure += more
+    merged = evolve(part, loops=loops)
+    refuse_large(merged.segment_count)
+    try:
+        workpiece = built(path.stem, loops, departure=departure)
+        refuse_loops_across(merged, [other for other in parts if other is not part])
+    except ZeroDivisionError as error:  # pragma: no cover - geometry checks first
+        raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
+    remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *of_curves, *of_chords, *workpiece.remarks)
+    remarks += (*departure_remark(departure), *stray_remarks(joined.strays))
+    return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts, part.number)
+
+
+def built(
+    name: str,
+    loops: Sequence[Loop],
+    with_labels: bool = True,
+    departure: float = 0.0,
+    solid: SolidOutline | None = None,
+) -> Workpiece:
+    """Builds the workpiece; its complaints lose the part's name, since the file's name stands before them.
+
+    Raises
+    ------
+    InputError
+        For loops that cannot be used.
+    """
+    labels = [loop.labels for loop in loops] if with_labels else None
+    try:
+        return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels, departure, solid)
+    except InputError as error:
+        raise InputError(str(error).replace(f"{name}: ", "")) from error
+
+
+def refuse_large(segments: int) -> None:
+    """Raises an InputError for a part of so many segments that no fixture search would end."""
+    if segments > MOST_SEGMENTS:
+        raise InputError(
+            f"the part has {segments} segments, more than the {MOST_SEGMENTS} this program takes: draw its "
+            "outline with lines and arcs instead of many short pieces."
+        )
+
+
+def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | None) -> list[str]:
+    """What to say about several parts in one file."""
+    if len(parts) == 1:
+        return []
+    more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
+    because = "" if asked is not None else f", the largest (choose another with {PART_NUMBER})"
+    listing = "; ".join(str(part) for part in parts[:PART_LIST])
+    used = f"Part {chosen.number} is used{because}."
+    return [f"The file holds {len(parts)} separate parts: {listing}{more}. {used}"]
