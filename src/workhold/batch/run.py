@@ -126,7 +126,7 @@ class Part:
 
 
 def solid_key(record: Mapping[str, Any]) -> list[Any]:
-    """What tells outlines of one shape apart by what may be touched; nothing for a prism."""
+    """What makes outlines of one shape two parts: what may be touched; nothing for a prism."""
     return [record["solid"], record["bands"]] if record.get("solid") else []
 
 

@@ -237,12 +237,6 @@ class WrittenBlock:
         angles, placed = flat_angles(self.table, self.toolkit, self.workpiece), self.placed
         return [[[row[k] for k in placed] for row in angles]]
 
-    def bands(self, contact: int) -> list[NDArray[Any]]:
-        """A column of the bands of a contact's faces as text; none where the workpiece has no bands."""
-        if (solid := self.workpiece.solid) is None:
-            return []
-        return [np.array(list(map(json.dumps, solid.bands)), object)[self.table.face[:, contact]]]
-
     def row_columns(self) -> list[list[Any]]:
         """The columns of :func:`fixture_rows`."""
         table, columns = self.table, list[list[Any]]()
@@ -261,7 +255,8 @@ class WrittenBlock:
             force, quality = significant(table.force) + 0.0, significant(quality) + 0.0
             low, high = (significant(ends).tolist() for ends in ratios(force))
             ratio = [low, ["null" if isnan(end) else repr(end) for end in high]]
-        walls, pegs = list[NDArray[Any]](), list[NDArray[Any]]()
+        solid, walls, pegs = self.workpiece.solid, list[NDArray[Any]](), list[NDArray[Any]]()
+        bands = [] if solid is None else [np.array([json.dumps(band) for band in solid.bands], object)]
         for ends in toolkit.ends_on_walls:
             several = self.contacts[ends]
             walls += [array[:, k] for k in several for array in (self.x, self.y)]
@@ -275,7 +270,7 @@ class WrittenBlock:
                 self.y[:, k],
                 table.face[:, k],
             ]
-            pegs += [*force[:, k].T, *self.bands(k)]
+            pegs += [*force[:, k].T, *(texts[table.face[:, k]] for texts in bands)]
         travelled: dict[int, list[NDArray[Any]]] = {0: [table.jaw_separation], 1: [], 2: [table.pairs]}
         behind = [*travelled[tips], *(quality[:, number] for number in self.known)]
         before, middle, after = ([array.tolist() for array in several] for several in (walls, pegs, behind))

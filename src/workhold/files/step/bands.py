@@ -2,7 +2,7 @@
 
 Over a point of the outline's border an upright face covers ranges of height. The band of the point is the
 least interval that holds them within the heights that a peg reaches. Between the ends, lowest and highest
-points of the walls' edges, both of its ends run monotonically. So a piece has in common what its two ends have.
+points of the walls' edges, both of its ends run monotonically. So a piece has in common what both ends have.
 
 Glossary
 --------

@@ -1,8 +1,8 @@
 """The curves of a solid that can bound its projection along the axis, as lines and arcs in the plane.
 
-A point on the border of a slab's projection is the image of an edge, of a fold of a face, or of the cut at
-the slab's upper or lower end. Further curves do no harm. They cut the plane finer, and only pieces with
-material on one side are taken; so curves are taken whole where that is simple.
+A point on the border of a slab's projection lies on an edge, on a fold of a face, or on the cut at either end
+of the slab. Further curves do no harm, because only pieces with material on one side are
+taken. So curves are taken whole where that is simple.
 
 Glossary
 --------
