@@ -45,6 +45,7 @@ from workhold.kernels.curves.three_and_one import three_and_one_cells
 from workhold.kernels.curves.two_and_two import STATISTICS, two_and_two_cells
 from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
+from workhold.kernels.proof.merging import merge_boxes
 from workhold.kernels.proof.newton_kantorovich import certified
 from workhold.kernels.seating.candidates import (
     complete_third,
@@ -169,6 +170,7 @@ def table_and_proof() -> Calls:
         np.zeros((0, 4, 2)),
     )
     yield certified, (records, checked, outline, fours, setting, fours, np.zeros(0, np.int8), *work)
+    yield merge_boxes, (fours, fours, none, none)
     yield interval_newton, (records, checked, setting, np.zeros((0, 2, 4, 4)))
     yield jacobians, (records, checked, setting)
     yield contacts_of, (records, checked, setting, pairs, np.zeros(0), fours, fours, *work)

@@ -13,7 +13,6 @@ four stages, and leaves with the first that decides it:
 from __future__ import annotations
 
 from math import inf, isfinite
-from operator import le
 from threading import Event, Lock
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -27,6 +26,7 @@ from workhold.kernels.base.given import Lattice, Setting
 from workhold.kernels.contact import record
 from workhold.kernels.contact.record import WORK_LENGTH
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
+from workhold.kernels.proof.merging import merge_boxes
 from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certified, discs_around
 from workhold.model.search_report import GIVEN_UP, UNBOUNDED, Undecided
 from workhold.proof.degenerate import hold_nothing
@@ -240,20 +240,13 @@ def merged(records: Array, problem: Problem) -> Array:
     same = np.asarray((records[1:, : record.PSI] == records[:-1, : record.PSI]).all(axis=1))
     reach = box_reach(records, problem.wrench_length)
     middle = records[:, record.PSI : record.REACH] * np.array([problem.wrench_length, 1.0, 1.0, 1.0])
-    may = [False, *(same & np.isfinite(reach[1:]).all(axis=1)).tolist()]
-    kept, corners, alone = list[int](), list[tuple[list[float], list[float]]](), list[bool]()
-    for k, box in enumerate(zip((middle - reach).tolist(), (middle + reach).tolist(), strict=True)):
-        if may[k] and all(map(le, box[0], corners[-1][1])) and all(map(le, corners[-1][0], box[1])):
-            corners[-1] = list(map(min, corners[-1][0], box[0])), list(map(max, corners[-1][1], box[1]))
-            alone[-1] = False
-        else:
-            kept.append(k)
-            corners.append(box)
-            alone.append(True)
-    for k, (low, high), as_is in zip(kept, corners, alone, strict=True):
-        if not as_is:
-            records[k] = around(records[k], np.array(low), np.array(high), problem.wrench_length)
-    return np.asarray(records[kept])
+    low, high = middle - reach, middle + reach
+    may, heads = np.zeros(len(records), np.int64), np.empty(len(records), np.int64)
+    may[1:] = same & np.isfinite(reach[1:]).all(axis=1)
+    heads = heads[: merge_boxes(low, high, may, heads)]
+    for k in heads[heads >= 0].tolist():
+        records[k] = around(records[k], low[k], high[k], problem.wrench_length)
+    return np.asarray(records[np.where(heads < 0, -1 - heads, heads)])
 
 
 def around(row: Array, low: Array, high: Array, length: float) -> Array:
