@@ -114,10 +114,11 @@ def seat(
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """Report whether the part ends up in the pose of fixture N when the vise is closed or the clamp
-    tightened: how wide open that may be when the part is let go and how far off it may lie, where else it can
-    come to rest, and what is read then. Of two clamps, report how the part is put in by hand and in which
-    order they are tightened.
+    """Report whether the part ends up in the pose of fixture N when the vise or the clamp is tightened.
+
+    It says how wide open that may be when the part is let go, and how far off the part may lie. It lists
+    where else the part can come to rest, and what is read then. Of two clamps it says how the part is put in
+    by hand and in which order they are tightened.
 
     Example: workhold seat part.json 1 --draw seats.svg
     """
@@ -335,11 +336,10 @@ def show(
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
 ) -> None:
-    """Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its
-    quality, and what loads do to it (those of the result, if none are given here).
+    """Show how to set up fixture N of a result: the holes for the pegs, the opening and the part's pose.
 
-    A hole is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from
-    below.
+    Its quality is shown as well, and what loads do to it: those of the result, if none are given here. A hole
+    is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
 
     Example: workhold show part.json 1 --draw setup.png
     """
