@@ -10,7 +10,8 @@ from attrs import NOTHING, fields, fields_dict
 
 from toolkit_values import VALUES, given
 from workhold.cli.catalogue_commands import own_figures
-from workhold.cli.toolkit_options import ToolkitWords, toolkits_to_try
+from workhold.cli.toolkit_lists import ListWords, toolkits_to_try
+from workhold.cli.toolkit_options import ToolkitWords
 from workhold.errors import InputError
 from workhold.files.input_forms import checked_toolkit
 from workhold.files.toolkit_file import described_toolkit, load_toolkit, preset_names
@@ -128,16 +129,17 @@ def test_the_page_reads_each_form_by_a_field_that_it_has() -> None:
 
 def test_a_list_of_pitches_makes_toolkits_of_which_all_that_is_needed_is_given() -> None:
     """A gripper's name says its columns, and a plate needs none; a vise without them is refused."""
+    varied = ListWords(pitch="10", peg_radius="3")
     for kind, said in (("gripper", 1), ("plate", None)):
-        (one,) = toolkits_to_try(None, kind, "10", None, "3", MILLIMETRE)
+        (one,) = toolkits_to_try(None, kind, varied, MILLIMETRE)
         assert one.fields.get("columns") == said
-    with pytest.raises(InputError, match="a list of pitches alone"):
-        toolkits_to_try(None, "vise", "10", None, "3", MILLIMETRE)
+    with pytest.raises(InputError, match="these lists alone make no vise: give --columns too"):
+        toolkits_to_try(None, "vise", varied, MILLIMETRE)
 
 
 def test_a_kind_picks_the_presets_that_have_its_fields() -> None:
     """A vise that opens is made of vises, and of no plate."""
-    picked = toolkits_to_try(None, "opening-vise", None, None, None, MILLIMETRE)
+    picked = toolkits_to_try(None, "opening-vise", ListWords(), MILLIMETRE)
     assert {one.name for one in picked} == {
         name for name in preset_names() if table_of(load_toolkit(name).kind) is table_of("opening-vise")
     }

@@ -15,7 +15,7 @@ from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
-from workhold.cli.toolkit_options import Named, query_of, toolkits_to_try, words_of
+from workhold.cli.toolkit_lists import ListWords, Named, query_of, toolkits_to_try, words_of
 from workhold.cli.values import length_unit, optional_count
 from workhold.errors import InputError
 
@@ -71,9 +71,7 @@ def batch(
         "--toolkit",
         "--toolkits",
     ),
-    pitch: str | None = option(TOOLKITS, "LIST", "Pitches, such as 8,10,12.5 or 10x12.5."),
-    columns: str | None = option(TOOLKITS, "LIST", "Numbers of columns, such as 1,2,4."),
-    peg_radius: str | None = option(TOOLKITS, "LIST", "Peg radii, such as 2.5,3."),
+    varied: ListWords,
     words: QueryWords,
     seated_by: SeatingWords,
     out: str = option(
@@ -124,7 +122,7 @@ def batch(
 
     names = (*table_names(), REPORT)
     refuse_output_folder(folder, names, (*parts, words.loads), force)
-    requests = requests_of(parts, toolkit, pitch, columns, peg_radius, (words, seated_by), reading, folder)
+    requests = requests_of(parts, toolkit, varied, (words, seated_by), reading, folder)
     from workhold.batch.durations import Measured
     from workhold.batch.run import BatchRun, run_batch
     from workhold.batch.store import FolderStore, store_at
@@ -218,9 +216,7 @@ def place_to_work(
 def requests_of(
     parts: Sequence[str],
     toolkit: list[str] | None,
-    pitch: str | None,
-    columns: str | None,
-    peg_radius: str | None,
+    varied: ListWords,
     words: AskedWords,
     reading: PartWords,
     folder: Path,
@@ -239,8 +235,8 @@ def requests_of(
     from workhold.files.part_list import part_list
 
     unit = length_unit(reading.unit)
-    lists = pitch is not None or toolkit is not None
-    named = asked_toolkits(toolkit, pitch, columns, peg_radius, reading) if lists else None
+    lists = varied.has_pitches or toolkit is not None
+    named = asked_toolkits(toolkit, varied, reading) if lists else None
     asked_of(words, unit)
     requests = []
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
@@ -258,7 +254,7 @@ def requests_of(
                 own_words = evolve(words[0], **job.query), evolve(words[1], **job.seating)
                 own = named
                 if job.toolkits is not None:
-                    own = asked_toolkits(list(job.toolkits), None, None, None, own_reading)
+                    own = asked_toolkits(list(job.toolkits), ListWords(), own_reading)
                 if own is None:
                     raise InputError(
                         "no toolkit is given: name one or more under toolkit, or for all of them."
@@ -272,9 +268,7 @@ def requests_of(
 
 def asked_toolkits(
     names: list[str] | None,
-    pitch: str | None,
-    columns: str | None,
-    peg_radius: str | None,
+    varied: ListWords,
     reading: PartWords,
 ) -> list[Named]:
     """Lists the toolkits of names, files and lists; of several names one may be a kind.
@@ -282,7 +276,7 @@ def asked_toolkits(
     Raises
     ------
     InputError
-        See :func:`workhold.cli.toolkit_options.toolkits_to_try`.
+        See :func:`workhold.cli.toolkit_lists.toolkits_to_try`.
     """
     from workhold.fixels.kinds import ALIASES, KINDS
 
@@ -293,12 +287,12 @@ def asked_toolkits(
             f"{kinds[0]} and {kinds[1]} are two kinds of toolkit: give one, and others by name or file."
         )
     others = [word for word in words if word not in kinds]
-    if kinds and pitch is None and not others:
+    if kinds and not varied.has_pitches and not others:
         raise InputError(
             f"{kinds[0]} is a kind of toolkit: give --pitch and --peg-radius too, or name toolkits."
         )
     kind = kinds[0] if kinds else None
-    return toolkits_to_try(others or None, kind, pitch, columns, peg_radius, length_unit(reading.unit))
+    return toolkits_to_try(others or None, kind, varied, length_unit(reading.unit))
 
 
 def asked_of(words: AskedWords, unit: Unit) -> dict[str, Any]:

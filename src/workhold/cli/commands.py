@@ -24,9 +24,17 @@ __all__ = ["PlainCommand", "PlainGroup", "forget", "option", "spread", "print_re
 
 
 def print_remark(message: str) -> None:
-    """Prints a remark in one line on stderr; where the disk is full the remark is lost, and nothing else."""
+    """Prints a remark on stderr, in one line unless a terminal has no room for it.
+
+    Where the disk is full the remark is lost, and nothing else.
+    """
+    from workhold.cli.table import sentence_lines, width_of
+
+    line = f"workhold: {plain(shortened(message))}"
+    if sys.stderr.isatty():
+        line = "\n".join(sentence_lines(line, width_of(sys.stderr)))
     try:
-        typer.echo(f"workhold: {plain(shortened(message))}", err=True)
+        typer.echo(line, err=True)
     except OSError as error:
         if error.errno not in NO_ROOM:
             raise
@@ -92,8 +100,9 @@ class PlainCommand(TyperCommand):
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Writes usage, text, and the parameters by their sections."""
         self.format_usage(ctx, formatter)
-        self.format_help_text(ctx, formatter)
+        write_text(self, formatter)
         write_sections(self, ctx, formatter)
+        restore_hyphens(formatter)
 
 
 class PlainGroup(TyperGroup):
@@ -120,13 +129,14 @@ class PlainGroup(TyperGroup):
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Writes usage, text, options, subcommands with their first paragraphs, and the epilog as it is."""
         self.format_usage(ctx, formatter)
-        self.format_help_text(ctx, formatter)
+        write_text(self, formatter)
         write_sections(self, ctx, formatter)
         commands = [
             (name, cleandoc(command.help or "").split("\n\n")[0]) for name, command in self.commands.items()
         ]
         with formatter.section(heading(COMMANDS)):
             formatter.write_dl(commands, col_max=WIDEST_ENTRY)
+        restore_hyphens(formatter)
         formatter.write(f"\n{cleandoc(self.epilog or '')}\n")
 
 
@@ -150,6 +160,31 @@ def heading(words: str) -> str:
     return typer.style(words, bold=True)
 
 
+# A hyphen at which no line is broken, so that names of options stay whole and can be copied.
+NO_BREAK = "\N{NON-BREAKING HYPHEN}"
+
+
+def unbroken(text: str) -> str:
+    """Replaces hyphens by those at which no line is broken.
+
+    >>> unbroken("--peg-radius").count("-")
+    0
+    """
+    return text.replace("-", NO_BREAK)
+
+
+def restore_hyphens(formatter: Any) -> None:
+    """Makes plain hyphens again of all that a help has so far."""
+    formatter.buffer[:] = [text.replace(NO_BREAK, "-") for text in formatter.buffer]
+
+
+def write_text(command: Any, formatter: Any) -> None:
+    """Writes the text of a command's help."""
+    formatter.write_paragraph()
+    with formatter.indentation():
+        formatter.write_text(unbroken(cleandoc(command.help or "")))
+
+
 def write_sections(command: Any, ctx: Any, formatter: Any) -> None:
     """Writes the parameters of a command, each in the section of its panel; those without one come last."""
     sections: dict[str, list[tuple[str, str]]] = {}
@@ -161,7 +196,8 @@ def write_sections(command: Any, ctx: Any, formatter: Any) -> None:
         if parameter.param_type_name == "argument":
             # Typer would add the type of the value, which is text for all of them.
             others, entry = ARGUMENTS, (parameter.metavar, entry[1])
-        sections.setdefault(getattr(parameter, "rich_help_panel", None) or others, []).append(entry)
+        panel = getattr(parameter, "rich_help_panel", None) or others
+        sections.setdefault(panel, []).append((entry[0], unbroken(entry[1])))
     for name in sorted(sections, key=lambda name: name == OPTIONS):
         with formatter.section(heading(name)):
             formatter.write_dl(sections[name], col_max=WIDEST_ENTRY)

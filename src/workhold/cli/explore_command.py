@@ -15,7 +15,8 @@ from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
-from workhold.cli.toolkit_options import TOOLKIT, query_of, toolkits_to_try
+from workhold.cli.toolkit_lists import SWEEP, ListWords, query_of, toolkits_to_try
+from workhold.cli.toolkit_options import TOOLKIT
 from workhold.cli.values import length_unit
 from workhold.errors import InputError
 from workhold.units import Unit
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from workhold.search.design import Explored
 
 __all__ = ["explore"]
-
-SWEEP = "Toolkits to try"
 
 
 @spread
@@ -41,26 +40,24 @@ def explore(
         "neither this nor --pitch is given.",
     ),
     toolkit: str | None = TOOLKIT,
-    pitch: str | None = option(SWEEP, "LIST", "Pitches, such as 8,10,12.5 or 10x12.5."),
-    columns: str | None = option(SWEEP, "LIST", "Numbers of columns, such as 1,2,4."),
-    peg_radius: str | None = option(SWEEP, "LIST", "Peg radii, such as 2.5,3."),
+    varied: ListWords,
     words: QueryWords,
     out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values."),
     force: ForceOption = False,
     json_: JsonOption = False,
     reading: PartWords,
 ) -> None:
-    """Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with its
-    figures.
+    """Try PART in many toolkits: how many fixtures each has, and the figures of its first choice.
 
-    The lists of pitches, columns and radii are combined with each other, and with each toolkit that is named.
+    The lists of figures are combined with each other, and with each toolkit that is named. Where none is
+    named, all presets that have such figures are tried.
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
     from workhold.files.atomic import text_file
 
     shown = length_unit(reading.unit)
-    toolkits = toolkits_to_try(vise, toolkit, pitch, columns, peg_radius, shown)
+    toolkits = toolkits_to_try(vise, toolkit, varied, shown)
     asked = words.asked(shown)
     if out is not None:
         refuse_output(

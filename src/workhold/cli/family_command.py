@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
 __all__ = ["family"]
 
-# Letters of a part's name that are shown, and up to which there is room for the figure as well.
-LONGEST_NAME, SHORT_NAME = 26, 16
+# Letters of a part's name that are shown.
+LONGEST_NAME = 26
 
 
 def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
@@ -116,9 +116,7 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
         *names,
         ">loss",
     )
-    # Long names, or the lengths of two clamps, leave no room for it on a terminal.
-    with_figure = len(settings) < 2 and max(len(one.member.name) for one in setup.holdings) <= SHORT_NAME
-    table = Table((*columns, f">{heading(found.figure, unit)}") if with_figure else columns)
+    table = Table((*columns, f">{heading(found.figure, unit)}"), spare=1)
     for one in setup.holdings:
         fixture = one.fixture
         pose = fixture.pose
@@ -131,7 +129,7 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
             unit.number(pose.y),
             *lengths,
             loss_text(one.loss),
-            *([figure_text(found.figure, one.figure, unit)] if with_figure else []),
+            figure_text(found.figure, one.figure, unit),
         )
     return table
 
@@ -236,9 +234,9 @@ def family(
 ) -> None:
     """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
 
-    A loss is a fixture's location error, or the first figure of --rank-by, over the best that the part has in
-    this vise or on this plate: 1 is the best, 2 is twice as bad. For each number of set-ups the least worst
-    loss is reported. Give --setups or --max-loss to see which pegs stand where and how each part lies.
+    A loss is a fixture's location error, or the first figure of --rank-by, over the best that the part has
+    here: 1 is the best, 2 is twice as bad. For each number of set-ups the least worst loss is reported. Give
+    --setups or --max-loss to see which pegs stand where and how each part lies.
 
     Example: workhold family drawings --vise plate-20mm --max-loss 1.25
     """

@@ -52,14 +52,10 @@ of its own, such as 0.5in. workhold COMMAND --help explains a command.
 COMMANDS = {
     "design": "Find every way to hold PART in a vise, or on a plate with a clamp or two.",
     "show": (
-        "Show how to set up fixture N of a result: the holes for the pegs, the opening, the part's pose, its "
-        "quality, and what loads do to it (those of the result, if none are given here)."
+        "Show how to set up fixture N of a result: the holes for the pegs, the opening and the part's pose."
     ),
     "seat": (
-        "Report whether the part ends up in the pose of fixture N when the vise is closed or the clamp "
-        "tightened: how wide open that may be when the part is let go and how far off it may lie, where "
-        "else it can come to rest, and what is read then. Of two clamps, report how the part is put in by "
-        "hand and in which order they are tightened."
+        "Report whether the part ends up in the pose of fixture N when the vise or the clamp is tightened."
     ),
     "sheet": (
         "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "
@@ -69,10 +65,7 @@ COMMANDS = {
         "Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a "
         "spreadsheet."
     ),
-    "explore": (
-        "Try PART in many toolkits: how many fixtures there are in each, and the first choice in each with "
-        "its figures."
-    ),
+    "explore": "Try PART in many toolkits: how many fixtures each has, and the figures of its first choice.",
     "copies": "Report how many copies of fixture N a plate holds at once, and where each stands.",
     "family": "Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
     "batch": (

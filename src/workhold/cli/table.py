@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterable
 from textwrap import wrap
 from typing import TextIO
 
@@ -16,8 +17,12 @@ __all__ = ["Table", "print_tables", "width_of"]
 
 # Between two columns where there is room, and where there is little.
 GAP, NARROW_GAP = 3, 2
-# The last column is wrapped down to this many letters.
-LEAST_WRAPPED = 24
+# A column of words is wrapped down to this many letters.
+LEAST_WRAPPED = 20
+# A word in such a column that is longer is broken where there is no room for it.
+LONGEST_WORD = 32
+# What to do for the columns that are left out.
+MORE = "A wider terminal or a pipe shows them; --json has all."
 
 
 @frozen
@@ -59,30 +64,43 @@ class Table:
         """Fits the table into a width.
 
         A table that is wider has its headings wrapped first. Then the spare columns are left out, which a
-        last line says. At last the content of the last column is wrapped.
+        last line says. Then columns of words are wrapped, the widest first. At last further columns are left
+        out from the right, but never the first. No number is cut.
         """
         right = [column.startswith(">") for column in self.columns]
         headings = [column.lstrip(">") for column in self.columns]
-        content = [max(map(len, column), default=0) for column in zip(*self.rows, strict=True)] or [0] * len(
-            headings
-        )
+        columns = list(zip(*self.rows, strict=True)) or [()] * len(headings)
+        content = [max(map(len, column), default=0) for column in columns]
         widths = [max(len(heading), most) for heading, most in zip(headings, content, strict=True)]
         tops, gap, kept = [[heading] for heading in headings], GAP, len(headings)
         rows, left_out = [[[word] for word in row] for row in self.rows], ""
         if width is not None and total(widths, gap) > width:
             gap = NARROW_GAP
             widths = [
-                max(most, *map(len, heading.split())) for heading, most in zip(headings, content, strict=True)
+                max(most, *map(len, heading.split() or [""]))
+                for heading, most in zip(headings, content, strict=True)
             ]
-            tops = [wrap(heading, room) for heading, room in zip(headings, widths, strict=True)]
+            least = [
+                room
+                if at_right
+                else min(room, max(min(longest_word((heading, *column)), LONGEST_WORD), LEAST_WRAPPED))
+                for heading, column, room, at_right in zip(headings, columns, widths, right, strict=True)
+            ]
             while total(widths[:kept], gap) > width and kept > len(headings) - self.spare:
                 kept -= 1
+            while total(least[:kept], gap) > width and kept > 1:
+                kept -= 1
+            widths = narrowed(widths[:kept], least[:kept], total(widths[:kept], gap) - width)
+            tops = [wrap(heading, room) for heading, room in zip(headings, widths, strict=False)]
+            rows = [
+                [
+                    [word] if at_right or len(word) <= room else wrap(word, room, break_on_hyphens=False)
+                    for word, room, at_right in zip(row, widths, right, strict=False)
+                ]
+                for row in self.rows
+            ]
             if kept < len(headings):
-                left_out = f"No room for: {', '.join(headings[kept:])}."
-            over = total(widths[:kept], gap) - width
-            if over > 0 and not right[kept - 1] and widths[kept - 1] - over >= LEAST_WRAPPED:
-                widths[kept - 1] -= over
-                rows = [[*row[: kept - 1], wrap(row[kept - 1][0], widths[kept - 1]) or [""]] for row in rows]
+                left_out = f"No room for: {', '.join(headings[kept:])}. {MORE}"
 
         def lines_of(cells: list[list[str]], low: bool) -> list[str]:
             high = max(map(len, cells[:kept]))
@@ -110,6 +128,26 @@ class Table:
         return Fitted(
             lines_of(tops, low=True), lines + wrap(left_out, max(width or 0, 1), break_long_words=False), red
         )
+
+
+def longest_word(texts: Iterable[str]) -> int:
+    """The letters of the longest word in some texts."""
+    return max((len(word) for text in texts for word in text.split()), default=0)
+
+
+def narrowed(widths: list[int], least: list[int], over: int) -> list[int]:
+    """Narrows columns by so many characters in all, always the widest that can be narrowed.
+
+    >>> narrowed([30, 10, 40], [24, 10, 24], 14)
+    [30, 10, 26]
+    """
+    made = list(widths)
+    for _ in range(max(over, 0)):
+        able = [k for k, room in enumerate(made) if room > least[k]]
+        if not able:
+            break
+        made[max(able, key=lambda k: (made[k], k))] -= 1
+    return made
 
 
 def total(widths: list[int], gap: int) -> int:
