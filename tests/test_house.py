@@ -415,3 +415,11 @@ def test_without_history_no_subject_is_too_long(project: Path, monkeypatch: pyte
 def test_every_rule_is_recorded() -> None:
     """The record of the project has the counts of each rule, and no others."""
     assert sorted(house.read_record(ROOT)) == sorted(rule.name for rule in house.rules_of(ROOT))
+
+
+def test_the_help_of_a_command_may_be_in_the_imperative() -> None:
+    """Other docstrings of the command line, and of other rooms, may not."""
+    text = '"""Write the sheet.\n\nExample: workhold sheet r.json 1\n"""'
+    assert places(rules.poor_openings(planted(text, "cli/some.py"))) == []
+    assert len(places(rules.poor_openings(planted(text)))) == 1
+    assert len(places(rules.poor_openings(planted('"""Write the sheet."""', "cli/some.py")))) == 1

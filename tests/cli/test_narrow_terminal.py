@@ -86,6 +86,15 @@ def test_any_table_fits_and_cuts_no_number(width: int, spare: int) -> None:
     assert set(LONG.split()) <= set(said.split())
 
 
+def test_a_word_wider_than_the_terminal_is_broken_and_keeps_its_letters() -> None:
+    """As the name of a file without blanks may be."""
+    table = Table(("file", ">figure mm"))
+    table.add_row("part" * 30, "1.5")
+    fitted = table.fitted(50)
+    assert max(map(len, fitted.lines)) <= 50 and "1.5" in fitted.lines[1]
+    assert "".join("".join(fitted.lines[1:]).replace("1.5", "").split()) == "part" * 30
+
+
 def test_without_a_limit_nothing_is_left_out_or_wrapped() -> None:
     """What is piped keeps every column on one line."""
     table = Table(("part", ">figure mm", "words"), spare=2)

@@ -81,6 +81,7 @@ def test_a_field_that_a_kind_does_not_have_is_refused(kind: str) -> None:
     [
         (("--toolkit", "fence", "--pitch", "20"), "makes no fence: give --peg-radius and --wall-offset too"),
         (("--vise", "plate-20mm", "--wall-offset", "8"), "--wall-offset is of fences: a vise has no wall"),
+        (("--toolkit", "vise", "--clamps", "2"), "--clamps is of plates: a vise has no clamp"),
         (("--clamps", "3"), "--clamps 3 is not known: give 1 or 2"),
         (("--travel", "10,20"), "the least and the most with a colon"),
         (("--wall-offset", "8,x"), "--wall-offset 'x' is not a length"),
