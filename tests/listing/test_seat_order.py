@@ -16,6 +16,8 @@ from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
 from workhold import Plate, Query, Result, answer
 from workhold.completeness import verify
+from workhold.conventions import SAME_PLACE
+from workhold.kernels.contact import record
 from workhold.listing import seat_order
 from workhold.listing.ranking import ranking_keys
 from workhold.listing.seat_order import SeatGroups, is_worse
@@ -147,6 +149,39 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.M
         answer(Query(part(NOTCHED), Plate((20, 16), 3, clamps=2), ranking=ranking, listing="all", best=10**6))
     assert len(seen) > 100
     assert not any(is_worse(bound[None], key)[0] for bound, key in seen)
+
+
+def contacts_of(query: Query, monkeypatch: pytest.MonkeyPatch) -> tuple[list[Any], list[Any]]:
+    """Contacts of three locators and a clamp of each direction, and the searches that found them."""
+    found: list[Any] = []
+    ordered = lattice_shares.ordered_groups
+
+    def noted(records: Any, problems: Any, query: Query) -> SeatGroups:
+        found[:] = records, problems
+        return ordered(records, problems, query)
+
+    monkeypatch.setattr(lattice_shares, "ordered_groups", noted)
+    answer(query, threads=1)
+    records, problems = found
+    return records, problems
+
+
+def test_locators_are_known_where_a_clamp_grazes_an_arc(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parts moved by less than contacts are said to be off are off by no more than their locators tell."""
+    query = Query(cad_part(5), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
+    random = np.random.default_rng(1)
+    for records, problem in zip(*contacts_of(query, monkeypatch), strict=True):
+        off = seat_order.places_off(records, problem)
+        said = records[:, record.LARGEST_RADIUS] + records[:, record.REACH] * problem.wrench_length
+        vague = said > SAME_PLACE
+        assert vague.any() and (off <= said).all() and (off[~vague] == said[~vague]).all()
+        assert (off <= SAME_PLACE).mean() > 0.999
+        for size in (1e-5, 1e-3, 0.1):
+            moved, away = records.copy(), random.uniform(-size, size, (len(records), 3))
+            moved[:, [record.TAIL_X, record.TAIL_Y]] += away[:, :2]
+            moved[:, record.PSI] += away[:, 2] / problem.wrench_length
+            moved[:, record.LARGEST_RADIUS] += 4 * size
+            assert (seat_order.places_off(moved, problem) + off >= np.hypot(*away.T[:2])).all()
 
 
 def test_keys_are_compared_in_lexicographic_order() -> None:

@@ -32,10 +32,10 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.contact.problem import Problem
+from workhold.contact.problem import ROUNDINGS, Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE, SQUARE_TILT
 from workhold.geometry.symmetry import rotated
-from workhold.kernels.base.feature import IS_ARC, RADIUS
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.listing.canonical_form import candidates_of
@@ -55,7 +55,7 @@ from workhold.model.quality import (
     WARNINGS,
 )
 from workhold.model.query import Query
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import Touched, locators_inverse, outward_normals, wrenches
 from workhold.statics.judging import Judging, is_astray, is_near_edge
 from workhold.statics.quality import extremes, face_sizes, main_direction, tilts
 
@@ -85,6 +85,10 @@ SHARE, ANGLE = 1e-6, 1e-4
 MOST_SHARE = 0.01
 # mm. Contacts this near to an end may be at a joint, and be listed on the face beside it.
 NEAR_END = 1e-4
+# Locators nearer than this part of the smallest radius are off a tangent by less than their square over it.
+NEAR = 0.5
+# How often places of locators are found from what they were before.
+ROUNDS = 3
 # The best that figures can be which locators do not bound; of others infinity, or 0 where less is better.
 BEST = {CLOSURE_MARGIN: 0.2, CLAMP_FREEDOM: 90.0}
 
@@ -190,7 +194,8 @@ def group_bounds(
     bounds = np.empty((len(first), len(query.ranking) + 1))
     for number, (part, problem) in enumerate(zip(records, problems, strict=True)):
         chosen = np.flatnonzero(direction == number)
-        bounds[chosen] = keys_bounding(part[first[chosen] - edges[number]], problem, query)
+        known_within = known[1][1][first[chosen]]
+        bounds[chosen] = keys_bounding(part[first[chosen] - edges[number]], known_within, problem, query)
     for values, doubts in known:
         middle, radius = values[order], 2.0 * doubts[order]
         low, high = np.minimum.reduceat(middle + radius, starts), np.maximum.reduceat(middle - radius, starts)
@@ -235,18 +240,53 @@ def seat_numbers(records: Array, problem: Problem) -> tuple[NDArray[np.uint64], 
     x, y = rotated(records[:, record.TAIL_X], records[:, record.TAIL_Y], theta)
     place = holes[0][0] * pitch[0] - x + ASIDE * (holes[0][1] * pitch[1] - y)
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH])
-    off = records[:, record.LARGEST_RADIUS] + turn * problem.wrench_length
+    off = places_off(records, problem)
     return low * MIXING[0] + middle * MIXING[1] + high * MIXING[2], (theta - START) % tau, turn, place, off
 
 
-def keys_bounding(records: Array, problem: Problem, query: Query) -> Array:
-    """Keys (N, R) that no fixture ranks before whose locators touch as those of records (N, 19) do."""
-    quality = best_figures(records, problem, query)
+def places_off(records: Array, problem: Problem) -> Array:
+    """How far (N,) centres of locators may be off in mm, in contacts (N, 19) that know it of all pegs alike.
+
+    Where a clamp grazes an arc, it is known badly, but the locators fix the part. Say their centres are within
+    r of where they belong. Then each is off the tangent there by no more than r^2 (1/R + 1/L) and its rest. So
+    the part is off by no more than that times the inverse of the locators' wrenches, which is a smaller r.
+    """
+    turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH] * problem.wrench_length)
+    off = np.asarray(records[:, record.LARGEST_RADIUS] + turn)
+    vague = np.flatnonzero((off > SAME_PLACE) & (off < inf))
+    c = candidates_of(records[vague], problem)
+    rows, point = problem.rows[c.feature[:, :LOCATORS]], c.point[:, :LOCATORS]
+    radius = np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)
+    across, along = point[..., 0] - rows[..., X], point[..., 1] - rows[..., Y]
+    straight = across * rows[..., AXIS_Y] - along * rows[..., AXIS_X]
+    rests = np.where(radius < inf, np.hypot(across, along) - rows[..., RADIUS], straight)
+    rounding = ROUNDINGS * (np.abs(rows[..., [X, Y, RADIUS]]).max(axis=-1) + problem.wrench_length)
+    rest = (np.abs(rests) + rounding).max(axis=1, initial=0.0)
+    bent = 1.0 / radius.min(axis=1, initial=inf) + 1.0 / problem.wrench_length
+    inverse = locators_inverse(wrenches(point, outward_normals(rows, point), problem.wrench_length))
+    # A movement in mm and mm turned over L moves no centre by four times its largest entry.
+    most = 4.0 * np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)
+    within = off[vague]
+    is_near = within * bent < NEAR
+    for _ in range(ROUNDS):
+        within = np.where(is_near, np.fmin(within, most * (rest + within * within * bent)), within)
+    off[vague] = np.minimum(off[vague], within + turn[vague])
+    return off
+
+
+def keys_bounding(records: Array, off: Array, problem: Problem, query: Query) -> Array:
+    """Keys (N, R) that no fixture ranks before whose locators touch as those of records (N, 19) do.
+
+    Parameters
+    ----------
+    off : (N,) how far places may be off in mm.
+    """
+    quality = best_figures(records, off, problem, query)
     keys = np.stack(ranking_keys(quality, query.ranking, query.tolerance), axis=1)
     return np.asarray(np.where(np.isnan(quality[:, LOCATION_ERROR, None]), -inf, keys))
 
 
-def best_figures(records: Array, problem: Problem, query: Query) -> Array:
+def best_figures(records: Array, off: Array, problem: Problem, query: Query) -> Array:
     """Figures of quality (N, F), none of a fixture with these locators being better.
 
     NaN stands where nothing is known.
@@ -279,7 +319,6 @@ def best_figures(records: Array, problem: Problem, query: Query) -> Array:
     # How far places may be off, and what that does to the inverse, to first order and generously.
     rows = problem.rows[c.feature[:, :LOCATORS]]
     curved = (1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)).max(axis=1, initial=0.0)
-    off = records[:, record.REACH] * touched.length + records[:, record.LARGEST_RADIUS]
     place = 4.0 * SAME_PLACE + 16.0 * off
     share = SHARE + 8.0 * norm * place * (1.0 / touched.length + curved)
     known = (share < MOST_SHARE) & (ends.min(axis=1, initial=inf) > NEAR_END) & (place < NEAR_END)
