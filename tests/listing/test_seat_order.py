@@ -191,5 +191,5 @@ def test_keys_are_compared_in_lexicographic_order() -> None:
 
 def test_a_group_holds_several_places_and_is_bounded_by_the_best() -> None:
     """Contacts on the same holes at the same angle may be of two seats: neither stands for the other."""
-    off = np.array([3.0, 1.0, 1.0, 2.0, 2.0])
-    assert seat_order.best_known(off, np.array([0, 3])).tolist() == [1, 3]
+    order, off = np.array([4, 3, 1, 2, 0]), np.array([3.0, 1.0, 1.0, 2.0, 2.0])
+    assert seat_order.best_known(order, off, np.array([0, 3])).tolist() == [1, 0]

@@ -39,6 +39,7 @@ from workhold.kernels.contact.clamp_pairs import (
 from workhold.kernels.contact.contact_matrix import contact_matrices_of
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.record import RECORD_LENGTH, WORK_LENGTH
+from workhold.kernels.contact.seat_numbers import numbers_of_seats
 from workhold.kernels.curves.sliding_pairs import sliding_three_and_one, sliding_two_and_two
 from workhold.kernels.curves.table import tail_curves
 from workhold.kernels.curves.three_and_one import three_and_one_cells
@@ -182,6 +183,8 @@ def clamps() -> Calls:
     given = Clamps(np.zeros(1, np.int64), whole, np.zeros((0, CLAMP_LENGTH)), np.zeros((0, HOLE_LENGTH)))
     hardware = Hardware(np.full((4, 4), -1), 0.0, 0.0, 0.0, False)
     yield pairs_of, (np.zeros((0, 2), np.int64), none, given, hardware, False)
+    records = np.zeros((0, RECORD_LENGTH)), np.zeros(3), np.zeros(2), 0.0
+    yield numbers_of_seats, (*records, none, np.zeros(0), np.zeros(0))
     yield closures_of, (np.zeros((0, 2, CLAMP_LENGTH)), np.zeros((0, 2)))
 
 

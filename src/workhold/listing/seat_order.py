@@ -32,12 +32,13 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.contact.frame import QUARTERS
 from workhold.contact.problem import ROUNDINGS, Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE, SQUARE_TILT
-from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
+from workhold.kernels.contact.seat_numbers import numbers_of_seats
 from workhold.listing.canonical_form import candidates_of
 from workhold.listing.ranking import ranking_keys
 from workhold.listing.results import RankedTable
@@ -72,13 +73,12 @@ WELL_KNOWN, AT_START = 1e-7, 1e-5
 START = 0.123456789
 # Radians and mm. What is surely farther apart is two seats.
 APART = 4e-8
-# What mixes two coordinates to one number.
-ASIDE = 0.7548776662
+# Bits of a number that are those of holes, and steps of orientation to a radian that the others count. A step
+# is less than half of ``SAME_POSE``.
+HOLES = -1 << 24
+STEPS = ((1 << 24) - 1) / tau
 # Contacts of the first seats that are looked at together; then twice as many each time.
 FIRST_CONTACTS = 1 << 12
-# Mixing numbers of the holes of three locators: that two triples agree only puts them together.
-COLUMN_STEP = np.uint64(0x9E3779B97F4A7C15)
-MIXING = (np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB), np.uint64(0xD6E8FEB86659FD93))
 # What figures may be off by: as parts of one, and in degrees.
 SHARE, ANGLE = 1e-6, 1e-4
 # Bounds that are off by more than this part of one are none.
@@ -149,16 +149,20 @@ def ordered_groups(records: Sequence[Array], problems: Sequence[Problem], query:
     holes, theta, turn, place, off = (
         np.concatenate(parts) for parts in zip(*map(seat_numbers, records, problems), strict=True)
     )
+    holes &= HOLES
     unsure = ~(turn <= WELL_KNOWN) | (theta < AT_START) | (theta > tau - AT_START)
-    loose = np.isin(holes, holes[unsure]) if unsure.any() else unsure
+    loose = is_among(holes, np.unique(holes[unsure]))
     theta[loose] = 0.0
-    order = np.lexsort([theta, holes])
+    # Numbers of whole steps of orientation stand in the bits that those of holes leave.
+    order = np.argsort(holes | (theta * STEPS).astype(np.int64))
     fresh = np.ones(len(order), np.bool_)
     fresh[1:] = (np.diff(holes[order]) != 0) | (np.diff(theta[order]) > 4 * SAME_POSE)
-    group = np.cumsum(fresh) - 1
-    order = order[np.lexsort([place[order], group])]
+    starts, group = np.flatnonzero(fresh), np.cumsum(fresh) - 1
+    by_place = place[order]
+    several = np.maximum.reduceat(by_place, starts) - np.minimum.reduceat(by_place, starts) > SAME_PLACE
+    mixed = np.flatnonzero(several[group])
+    order[mixed] = order[mixed[np.lexsort([by_place[mixed], group[mixed]])]]
     bounds = group_bounds(order, group, ((theta, turn), (place, off)), records, problems, query)
-    starts = np.flatnonzero(fresh)
     unknown = loose | ~(off <= SAME_PLACE)
     bounds[np.logical_or.reduceat(unknown[order], starts)] = -inf
     by_bound = np.lexsort(bounds.T[::-1])
@@ -185,10 +189,9 @@ def group_bounds(
     """
     place, off = (values[order] for values in known[1])
     fresh = np.ones(len(order), np.bool_)
-    leap = SAME_PLACE + 2.0 * np.maximum(off[1:], off[:-1])
-    fresh[1:] = (np.diff(group) > 0) | (np.diff(place) > leap)
+    fresh[1:] = (np.diff(group) > 0) | (np.diff(place) > SAME_PLACE)
     starts = np.flatnonzero(fresh)
-    first = order[best_known(off, starts)]
+    first = best_known(order, off, starts)
     edges = np.cumsum([0, *map(len, records)])
     direction = np.searchsorted(edges, first, side="right") - 1
     bounds = np.empty((len(first), len(query.ranking) + 1))
@@ -206,14 +209,20 @@ def group_bounds(
     return bounds[sorted_[np.diff(whose[sorted_], prepend=-1) > 0]]
 
 
-def best_known(off: Array, starts: IntArray) -> IntArray:
-    """Places (G,) of the first of the least numbers (M,) in each group."""
+def best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
+    """The lowest of numbers (M,) in an order that are off the least, of each place (G,)."""
     least = np.repeat(np.minimum.reduceat(off, starts), np.diff(starts, append=len(off)))
-    chosen = np.flatnonzero(off <= least)
-    return np.asarray(chosen[np.searchsorted(chosen, starts)])
+    return np.asarray(np.minimum.reduceat(np.where(off <= least, order, len(order)), starts))
 
 
-def seat_numbers(records: Array, problem: Problem) -> tuple[NDArray[np.uint64], Array, Array, Array, Array]:
+def is_among(numbers: IntArray, few: IntArray) -> BoolArray:
+    """Which numbers (N,) are among a few (F,) in ascending order."""
+    if len(few) == 0:
+        return np.zeros(len(numbers), np.bool_)
+    return np.asarray(few[np.minimum(np.searchsorted(few, numbers), len(few) - 1)] == numbers)
+
+
+def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Array, Array, Array]:
     """What distinguishes the seats of contacts (N, 19), whatever the direction of the clamp.
 
     Returns
@@ -222,26 +231,13 @@ def seat_numbers(records: Array, problem: Problem) -> tuple[NDArray[np.uint64], 
     plate. Then come orientations from ``START`` on, and how far they may be off. The last two are a number
     for the place of the part beside the holes in mm, and how far that may be off.
     """
-    frame, pitch = problem.frame, problem.toolkit.carriers[0].pitch
-    columns, rows = (
-        [records[:, first + k].astype(np.int64) for k in range(LOCATORS)]
-        for first in (record.COLUMNS, record.ROWS)
-    )
-    holes = [frame.step_back(column, row) for column, row in zip(columns, rows, strict=True)]
-    lowest = [np.minimum(np.minimum(*values[:2]), values[2]) for values in zip(*holes, strict=True)]
-    holes = [(column - lowest[0], row - lowest[1]) for column, row in holes]
-    one, two, three = (
-        column.astype(np.uint64) * COLUMN_STEP + row.astype(np.uint64) for column, row in holes
-    )
-    low, high = np.minimum(one, two), np.maximum(one, two)
-    low, middle = np.minimum(low, three), np.maximum(low, three)
-    middle, high = np.minimum(middle, high), np.maximum(middle, high)
-    theta = frame.quarters * (pi / 2) - records[:, record.PSI]
-    x, y = rotated(records[:, record.TAIL_X], records[:, record.TAIL_Y], theta)
-    place = holes[0][0] * pitch[0] - x + ASIDE * (holes[0][1] * pitch[1] - y)
+    frame, count = problem.frame, len(records)
+    holes, theta, place = np.empty(count, np.int64), np.empty(count), np.empty(count)
+    quarters = np.array([*QUARTERS[frame.quarters], frame.quarters * (pi / 2)], np.float64)
+    pitch = np.array(problem.toolkit.carriers[0].pitch, np.float64)
+    numbers_of_seats(records, quarters, pitch, START, holes, theta, place)
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH])
-    off = places_off(records, problem)
-    return low * MIXING[0] + middle * MIXING[1] + high * MIXING[2], (theta - START) % tau, turn, place, off
+    return holes, theta, turn, place, places_off(records, problem)
 
 
 def places_off(records: Array, problem: Problem) -> Array:

@@ -20,10 +20,11 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_POSE
+from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves.two_and_two import CANDIDATES
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
-from workhold.listing.collector import Batches, blocks_of
+from workhold.listing.collector import blocks_of
 from workhold.listing.placing import at_angle
 from workhold.listing.results import Work, stage, summed
 from workhold.listing.seat_order import ordered_groups
@@ -107,7 +108,7 @@ class LatticeShares:
             )
             self.cells += sum(block.cells for block in done)
             is_whole = is_whole and len(done) == len(blocks)
-            found.append(np.concatenate([Batches().rest(), *records]))
+            found.append(moved_together(records))
         return self.seats(found, (low, high)), is_whole
 
     def seats(self, records: Sequence[Array], within: tuple[float, float]) -> Iterator[Seats]:
@@ -167,6 +168,17 @@ class LatticeShares:
     def why_none(self) -> str:
         """Why a search that came to its end has no fixture."""
         return no_pair_note(self.collector.looked_at, self.account().verified)
+
+
+def moved_together(blocks: list[Array]) -> Array:
+    """The contacts of a direction's blocks, each (N, 19), as one array; the list is emptied, for both do not fit."""
+    out = np.empty((sum(map(len, blocks)), RECORD_LENGTH))
+    end = len(out)
+    while blocks:
+        block = blocks.pop()
+        out[end - len(block) : end] = block
+        end -= len(block)
+    return out
 
 
 def counting(progress: Progress | None, found: int) -> Progress | None:
