@@ -16,8 +16,10 @@ from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
 from workhold import Plate, Query, Result, answer
 from workhold.completeness import verify
-from workhold.conventions import SAME_PLACE
+from workhold.conventions import SAME_PLACE, SAME_POSE
+from workhold.geometry.symmetry import rotated
 from workhold.kernels.contact import record
+from workhold.kernels.contact.seat_numbers import ASIDE
 from workhold.listing import seat_order
 from workhold.listing.ranking import ranking_keys
 from workhold.listing.seat_order import SeatGroups, is_worse
@@ -184,6 +186,47 @@ def test_locators_are_known_where_a_clamp_grazes_an_arc(monkeypatch: pytest.Monk
             assert (seat_order.places_off(moved, problem) + off >= np.hypot(*away.T[:2])).all()
 
 
+def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seats nearer than places and orientations are told apart share a group, which has no bound then."""
+    query = Query(cad_part(5), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
+    records, problems = contacts_of(query, monkeypatch)
+    before = seat_order.ordered_groups(records, problems, query)
+    first = int(before.order[: before.ends[0]].min())
+    assert np.isfinite(before.bounds[0]).all() and first < len(records[0])
+    for turn, move in ((2 * SAME_POSE, 0.0), (0.0, 0.3 * SAME_PLACE)):
+        other = records[0][first].copy()
+        # The first turns the part about the middle of the plate, so that its place stays.
+        other[record.PSI] += turn
+        x, y = rotated(other[record.TAIL_X], other[record.TAIL_Y], turn)
+        other[record.TAIL_X], other[record.TAIL_Y] = x + move, y
+        groups = seat_order.ordered_groups([np.vstack([records[0], other]), *records[1:]], problems, query)
+        assert len(groups.ends) == len(before.ends)
+        number = np.searchsorted(groups.ends, np.flatnonzero(groups.order == len(records[0])), side="right")
+        assert np.isneginf(groups.bounds[number]).all()
+        assert np.isneginf(groups.bounds[:, 0]).sum() == np.isneginf(before.bounds[:, 0]).sum() + 1
+
+
+def test_numbers_of_seats_are_those_of_their_definition(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Holes agree wherever they are on the plate and in which order; places are those beside the lowest."""
+    query = Query(cad_part(9), Plate(pitch=(25, 20), peg_radius=3, clamps=2), best=5)
+    triples: dict[int, Any] = {}
+    for records, problem in zip(*contacts_of(query, monkeypatch), strict=True):
+        holes, theta, turn, place, _ = seat_order.seat_numbers(records, problem)
+        columns, rows = problem.frame.step_back(
+            *(records[:, k : k + 3].astype(np.int64) for k in (record.COLUMNS, record.ROWS))
+        )
+        both = np.stack([columns - columns.min(axis=1)[:, None], rows - rows.min(axis=1)[:, None]], axis=2)
+        for number, triple in zip(holes.tolist(), both.tolist(), strict=True):
+            assert triples.setdefault(number, sorted(triple)) == sorted(triple)
+        angle = problem.frame.quarters * np.pi / 2 - records[:, record.PSI]
+        at = np.exp(1j * angle) * (records[:, record.TAIL_X] + 1j * records[:, record.TAIL_Y])
+        beside = both[:, 0] * np.array([25, 20]) - np.stack([at.real, at.imag], axis=1)
+        assert np.allclose(place, beside @ np.array([1.0, ASIDE]), atol=1e-9)
+        assert np.allclose(np.exp(1j * (theta + seat_order.START)), np.exp(1j * angle))
+        assert (theta >= 0).all() and (turn == records[:, record.REACH]).all()
+    assert len({str(triple) for triple in triples.values()}) == len(triples) > 10
+
+
 def test_keys_are_compared_in_lexicographic_order() -> None:
     keys = np.array([[0.0, 5.0], [1.0, 0.0], [1.0, 2.0], [1.0, 3.0], [2.0, 0.0]])
     assert is_worse(keys, np.array([1.0, 2.0])).tolist() == [False, False, False, True, True]
@@ -191,5 +234,5 @@ def test_keys_are_compared_in_lexicographic_order() -> None:
 
 def test_a_group_holds_several_places_and_is_bounded_by_the_best() -> None:
     """Contacts on the same holes at the same angle may be of two seats: neither stands for the other."""
-    order, off = np.array([4, 3, 1, 2, 0]), np.array([3.0, 1.0, 1.0, 2.0, 2.0])
-    assert seat_order.best_known(order, off, np.array([0, 3])).tolist() == [1, 0]
+    order, off = np.array([4, 3, 1, 2, 0]), np.array([3.0, 1.0, 1.0, 1.0, 2.0])
+    assert seat_order.best_known(order, off, np.array([0, 3])).tolist() == [1, 2]
