@@ -21,6 +21,7 @@ from workhold.geometry.symmetry import rotated
 from workhold.kernels.contact import record
 from workhold.kernels.contact.seat_numbers import ASIDE
 from workhold.listing import seat_order
+from workhold.listing.packed_contacts import PackedContacts
 from workhold.listing.ranking import ranking_keys
 from workhold.listing.seat_order import SeatGroups, is_worse
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
@@ -165,7 +166,7 @@ def contacts_of(query: Query, monkeypatch: pytest.MonkeyPatch) -> tuple[list[Any
     monkeypatch.setattr(lattice_shares, "ordered_groups", noted)
     answer(query, threads=1)
     records, problems = found
-    return records, problems
+    return [part.take(slice(None)) for part in records], problems
 
 
 def test_locators_are_known_where_a_clamp_grazes_an_arc(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -190,7 +191,7 @@ def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> Non
     """Seats nearer than places and orientations are told apart share a group, which has no bound then."""
     query = Query(cad_part(5), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
     records, problems = contacts_of(query, monkeypatch)
-    before = seat_order.ordered_groups(records, problems, query)
+    before = seat_order.ordered_groups([PackedContacts.of([part]) for part in records], problems, query)
     first = int(before.order[: before.ends[0]].min())
     assert np.isfinite(before.bounds[0]).all() and first < len(records[0])
     for turn, move in ((2 * SAME_POSE, 0.0), (0.0, 0.3 * SAME_PLACE)):
@@ -199,11 +200,25 @@ def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> Non
         other[record.PSI] += turn
         x, y = rotated(other[record.TAIL_X], other[record.TAIL_Y], turn)
         other[record.TAIL_X], other[record.TAIL_Y] = x + move, y
-        groups = seat_order.ordered_groups([np.vstack([records[0], other]), *records[1:]], problems, query)
+        more = [np.vstack([records[0], other]), *records[1:]]
+        groups = seat_order.ordered_groups([PackedContacts.of([part]) for part in more], problems, query)
         assert len(groups.ends) == len(before.ends)
         number = np.searchsorted(groups.ends, np.flatnonzero(groups.order == len(records[0])), side="right")
         assert np.isneginf(groups.bounds[number]).all()
         assert np.isneginf(groups.bounds[:, 0]).sum() == np.isneginf(before.bounds[:, 0]).sum() + 1
+
+
+@pytest.mark.parametrize("large", [7.0, 1e6])
+def test_packed_contacts_are_the_records_in_their_order(large: float) -> None:
+    random = np.random.default_rng(3)
+    blocks = [np.hstack([random.integers(-9, 9, (n, 13)), random.normal(size=(n, 6))]) for n in (5, 0, 70000)]
+    blocks[0][2, 4], blocks[2][0, record.REACH] = large, np.inf
+    whole = np.concatenate(blocks)
+    packed = PackedContacts.of(blocks)
+    assert blocks == [] and np.array_equal(packed.take(slice(None)), whole)
+    assert np.array_equal(np.concatenate(list(packed.parts())), whole)
+    assert np.array_equal(packed.take(np.array([70001, 3])), whole[[70001, 3]])
+    assert [part.shape for part in PackedContacts.of([]).parts()] == [(0, 19)]
 
 
 def test_numbers_of_seats_are_those_of_their_definition(monkeypatch: pytest.MonkeyPatch) -> None:

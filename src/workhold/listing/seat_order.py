@@ -40,6 +40,7 @@ from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.seat_numbers import numbers_of_seats
 from workhold.listing.canonical_form import candidates_of
+from workhold.listing.packed_contacts import PackedContacts
 from workhold.listing.ranking import ranking_keys
 from workhold.listing.results import RankedTable
 from workhold.model.clamps import LOCATORS
@@ -137,18 +138,24 @@ def is_worse(keys: Array, last: Array) -> BoolArray:
     return worse
 
 
-def ordered_groups(records: Sequence[Array], problems: Sequence[Problem], query: Query) -> SeatGroups:
+def ordered_groups(
+    records: Sequence[PackedContacts], problems: Sequence[Problem], query: Query
+) -> SeatGroups:
     """Groups of the contacts of each direction.
 
     Parameters
     ----------
-    records : (N, 19) of each direction.
+    records : of each direction.
     problems : the search of each direction.
     query : what is asked.
     """
-    holes, theta, turn, place, off = (
-        np.concatenate(parts) for parts in zip(*map(seat_numbers, records, problems), strict=True)
-    )
+    numbers = [
+        seat_numbers(some, problem)
+        for part, problem in zip(records, problems, strict=True)
+        for some in part.parts()
+    ]
+    holes, theta, turn, place, off = (np.concatenate(parts) for parts in zip(*numbers, strict=True))
+    del numbers
     holes &= HOLES
     unsure = ~(turn <= WELL_KNOWN) | (theta < AT_START) | (theta > tau - AT_START)
     loose = is_among(holes, np.unique(holes[unsure]))
@@ -162,6 +169,7 @@ def ordered_groups(records: Sequence[Array], problems: Sequence[Problem], query:
     several = np.maximum.reduceat(by_place, starts) - np.minimum.reduceat(by_place, starts) > SAME_PLACE
     mixed = np.flatnonzero(several[group])
     order[mixed] = order[mixed[np.lexsort([by_place[mixed], group[mixed]])]]
+    del by_place
     bounds = group_bounds(order, group, ((theta, turn), (place, off)), records, problems, query)
     unknown = loose | ~(off <= SAME_PLACE)
     bounds[np.logical_or.reduceat(unknown[order], starts)] = -inf
@@ -176,7 +184,7 @@ def group_bounds(
     order: IntArray,
     group: IntArray,
     known: tuple[tuple[Array, Array], tuple[Array, Array]],
-    records: Sequence[Array],
+    records: Sequence[PackedContacts],
     problems: Sequence[Problem],
     query: Query,
 ) -> Array:
@@ -198,7 +206,7 @@ def group_bounds(
     for number, (part, problem) in enumerate(zip(records, problems, strict=True)):
         chosen = np.flatnonzero(direction == number)
         known_within = known[1][1][first[chosen]]
-        bounds[chosen] = keys_bounding(part[first[chosen] - edges[number]], known_within, problem, query)
+        bounds[chosen] = keys_bounding(part.take(first[chosen] - edges[number]), known_within, problem, query)
     for values, doubts in known:
         middle, radius = values[order], 2.0 * doubts[order]
         low, high = np.minimum.reduceat(middle + radius, starts), np.maximum.reduceat(middle - radius, starts)
@@ -243,9 +251,9 @@ def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Arr
 def places_off(records: Array, problem: Problem) -> Array:
     """How far (N,) centres of locators may be off in mm, in contacts (N, 19) that know it of all pegs alike.
 
-    Where a clamp grazes an arc, it is known badly, but the locators fix the part. Say their centres are within
-    r of where they belong. Then each is off the tangent there by no more than r^2 (1/R + 1/L) and its rest. So
-    the part is off by no more than that times the inverse of the locators' wrenches, which is a smaller r.
+    Where a clamp grazes an arc, it is known badly, but the locators fix the part. Say their centres are
+    within r of where they belong. Then each is off the tangent there by no more than r^2 (1/R + 1/L) and its
+    rest. So the part is off by no more than that times the inverse of the locators' wrenches, a smaller r.
     """
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH] * problem.wrench_length)
     off = np.asarray(records[:, record.LARGEST_RADIUS] + turn)

@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_POSE
-from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves.two_and_two import CANDIDATES
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
 from workhold.listing.collector import blocks_of
+from workhold.listing.packed_contacts import PackedContacts
 from workhold.listing.placing import at_angle
 from workhold.listing.results import Work, stage, summed
 from workhold.listing.seat_order import ordered_groups
@@ -92,7 +92,11 @@ class LatticeShares:
     def look(self, share: int, progress: Progress | None) -> tuple[Iterator[Seats], bool]:
         """The seats of a range, some at a time where only the best are asked for."""
         low, high = (np.linspace(0.0, tau, self.shares + 1) - SAME_POSE)[share : share + 2].tolist()
-        within, found, is_whole = (degrees(low - OVERLAP), degrees(high + OVERLAP)), list[Array](), True
+        within, found, is_whole = (
+            (degrees(low - OVERLAP), degrees(high + OVERLAP)),
+            list[PackedContacts](),
+            True,
+        )
         for place, search in enumerate(self.searches):
             part = stage(progress, place / len(self.searches), (place + 1) / len(self.searches))
             blocks = self.whole_turn[place]
@@ -108,24 +112,24 @@ class LatticeShares:
             )
             self.cells += sum(block.cells for block in done)
             is_whole = is_whole and len(done) == len(blocks)
-            found.append(moved_together(records))
+            found.append(PackedContacts.of(records))
         return self.seats(found, (low, high)), is_whole
 
-    def seats(self, records: Sequence[Array], within: tuple[float, float]) -> Iterator[Seats]:
-        """The seats of contacts (N, 19) of each direction.
+    def seats(self, records: Sequence[PackedContacts], within: tuple[float, float]) -> Iterator[Seats]:
+        """The seats of contacts of each direction.
 
         Where only the best are asked for, those that may be at them come first, and none that cannot.
         """
         query, total = self.collector.query, sum(map(len, records))
         if query.best is None or (self.shares == 1 and total <= COUNTED_WHOLE):
-            yield self.seats_among(records, within)
+            yield self.seats_among([part.take(slice(None)) for part in records], within)
             return
         groups = ordered_groups(records, [search.problem for search in self.searches], query)
         edges = np.cumsum([0, *map(len, records)])
         for chosen in groups.batches(self.collector.ranked):
             places = np.searchsorted(chosen, edges).tolist()
             some = [
-                part[chosen[first:end] - start]
+                part.take(chosen[first:end] - start)
                 for part, start, (first, end) in zip(records, edges, pairwise(places), strict=False)
             ]
             yield self.seats_among(some, within)
@@ -168,17 +172,6 @@ class LatticeShares:
     def why_none(self) -> str:
         """Why a search that came to its end has no fixture."""
         return no_pair_note(self.collector.looked_at, self.account().verified)
-
-
-def moved_together(blocks: list[Array]) -> Array:
-    """The contacts of a direction's blocks, each (N, 19), as one array; the list is emptied, for both do not fit."""
-    out = np.empty((sum(map(len, blocks)), RECORD_LENGTH))
-    end = len(out)
-    while blocks:
-        block = blocks.pop()
-        out[end - len(block) : end] = block
-        end -= len(block)
-    return out
 
 
 def counting(progress: Progress | None, found: int) -> Progress | None:
