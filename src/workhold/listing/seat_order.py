@@ -32,8 +32,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.contact.frame import QUARTERS
-from workhold.contact.problem import ROUNDINGS, Problem
+from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE, SQUARE_TILT
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
