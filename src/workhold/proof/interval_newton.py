@@ -5,8 +5,8 @@ there is one. At a nearly double solution three directions of the box are well d
 the box is turned into the directions of the Jacobian's singular vectors. There, boxes in which some contact
 equation has no zero, or in which some rule is broken everywhere, are dropped. The interval Newton method
 (Hansen and Sengupta) makes the others smaller, and shows that there is none or exactly one solution, which
-then is judged at rising precision. What remains is cut in three. What is left after ``MOST_BOXES`` boxes stays
-undecided.
+then is judged at rising precision. What remains is cut in three. What is left after ``MOST_BOXES`` boxes
+stays undecided.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT
 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
@@ -252,11 +252,9 @@ class SingularFrame:
 
     def unknowns(self, place: Sequence[arb]) -> list[arb]:
         """The unknowns at a place in the frame."""
-        steps = (self.turning * arb_mat(4, 1, place)).entries()
-        return [
-            m + (s / self.length if j == 0 else s)
-            for j, (m, s) in enumerate(zip(self.box.middle, steps, strict=True))
-        ]
+        turn, *rest = (self.turning * arb_mat(4, 1, place)).entries()
+        steps = turn / self.length, *rest
+        return [m + s for m, s in zip(self.box.middle, steps, strict=True)]
 
     def places(self, place: Sequence[arb]) -> BoxContacts:
         """The contacts at a place in the frame."""
@@ -359,14 +357,11 @@ def thirds(place: list[arb]) -> list[list[arb]]:
     A double solution is in the middle of most boxes. Cut there, it would be on the rim of both halves.
     """
     widths = [float(p.rad()) for p in place]
-    cut = widths.index(max(widths))
-    whole, side = widths[cut], (1.0 - MIDDLE) / 2.0
-    out = []
-    for center, half in ((side - 1.0, side), (1.0 - side, side), (0.0, MIDDLE)):
-        part = list(place)
-        part[cut] = arb((place[cut].mid() + center * whole).mid(), half * whole * OVERLAP)
-        out.append(part)
-    return out
+    whole, side = max(widths), (1.0 - MIDDLE) / 2.0
+    cut = widths.index(whole)
+    parts = (side - 1.0, side), (1.0 - side, side), (0.0, MIDDLE)
+    middles = [((place[cut].mid() + center * whole).mid(), half * whole * OVERLAP) for center, half in parts]
+    return [[*place[:cut], arb(*middle), *place[cut + 1 :]] for middle in middles]
 
 
 def judged(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxOutcome:
