@@ -77,7 +77,8 @@ def restricted(random: Random, free: Result) -> tuple[dict[str, object], list[bo
     at, side = random.choice(fixtures), random.choice([-HAIR, HAIR])
     kind = random.randrange(4)
     is_round = not isinstance(toolkit, Fence | FlatJaw)
-    if kind == 0 and is_round:
+    # A whole circle has no end, but a distance to the farthest place on it.
+    if kind == 0 and is_round and len(free.workpiece.loops) == 1:
         margin = max(at.quality["end_distance"] + side, 0.0)
         return {"contact_margin": margin}, [f.quality["end_distance"] >= margin for f in fixtures]
     if kind == 1 and is_round:
