@@ -19,7 +19,8 @@ from workhold.model.fixture import Fixture
 from workhold.model.requirements import Restrictions, circle_zone
 
 Key = tuple[object, ...]
-HAIR = 1e-5
+# Of degrees or mm: more than rules are loosened by.
+HAIR = 1e-4
 RANKINGS = (
     None,
     ["closure-margin"],
