@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from slow_fence import orientations
-from workhold import InputError
+from workhold import Fence, InputError, design
 from workhold.geometry.hull import HullEdge
 from workhold.model.workpiece import Workpiece
 
@@ -128,3 +128,11 @@ def test_they_are_where_the_lowest_point_jumps_as_the_part_turns(count: int, see
 def apart(a: tuple[float, float], b: tuple[float, float]) -> float:
     """Distance of two points."""
     return hypot(a[0] - b[0], a[1] - b[1])
+
+
+def test_an_arc_and_its_own_end_have_no_edge_between_them() -> None:
+    """The corner is on the circle but for rounding, whose square root is more than a micrometre."""
+    loop = [(19.401, 18.921, 0.0), (-18.602, 19.0, 0.117), (0.232, -17.441, -0.295)]
+    part = Workpiece.from_loops("wedge", [loop])
+    assert all(edge.length > 1.0 for edge in part.hull_edges)
+    assert len(design(part, Fence(pitch=10, peg_radius=3, wall_offset=6, clamp_radius=4))) > 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from flint import arb
 
 import ladders
 from exact_chords import exactly
@@ -76,6 +77,29 @@ def test_a_box_without_solutions_is_discarded(rest: float, turn: float) -> None:
 def test_an_exact_double_root_is_discarded(reach: float) -> None:
     """Its clamping force is 0: it is no fixture, and nothing is left undecided."""
     assert solutions_in(box(-2.5, 0.0, reach), LIMITS) == BoxOutcome((), "")
+
+
+def test_four_parallel_normals_take_few_boxes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The double solution is the middle of the box, which is in one part of three and would be in both halves."""
+    rest = [0.0, 0.0, 0.0, 0.0]
+    floor, ceiling = [0.0, 0, -43, 1, 0, 60, 0, 1, *rest], [0.0, 46.5, -21, -1, 0, 90, 0, 1, *rest]
+    eye, bore = [1.0, 60, -32, 1, 0, np.pi, 11, 1, *rest], [1.0, -60, -32, -1, 0, np.pi, 1, -1, *rest]
+    places = [(0.0, 0.0), (0.0, -120.0), (0.0, -110.0), (-10.0, 0.0)]
+    middle, reach = (np.pi / 2, -60.0, -43.0, 22.0), (1e-3, 1e-2, 1e-2, 2e-2)
+    double = CandidateBox([floor, eye, ceiling, bore], places, 2, middle, reach)
+    monkeypatch.setattr(settling, "MOST_BOXES", 75)
+    assert solutions_in(double, LIMITS) == BoxOutcome((), "")
+
+
+@pytest.mark.parametrize("center", [0.0, 3.0])
+def test_three_parts_cover_a_place(center: float) -> None:
+    """Neighbours overlap, and all are in the place but for a hair."""
+    whole = arb(center, 2.0)
+    parts = [part[1] for part in settling.thirds([arb(0, 1), whole, arb(0, 0.5)])]
+    low, mid, high = sorted(parts, key=lambda part: float(part.mid()))
+    assert low.overlaps(mid) and mid.overlaps(high)
+    assert float(low.lower()) <= center - 2.0 and float(high.upper()) >= center + 2.0
+    assert all(float(abs(part - center).upper()) < 2.001 for part in parts)
 
 
 def large(half: float) -> CandidateBox:

@@ -211,7 +211,8 @@ def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
         good = np.flatnonzero(farthest(pieces, normal) <= level + TOUCHING)
         for k in good.tolist():
             ends = [end_of(pieces, number, normal[k]) for number in (int(start[k]), int(end[k]))]
-            found.append(HullEdge(*ends))
+            if not is_on_arc(*ends):
+                found.append(HullEdge(*ends))
     # Longest first, and of equal ones those between corners, where a face ends at a tangent joint.
     found.sort(
         key=lambda edge: (-round(edge.length, 6), edge.start.radius + edge.end.radius, edge.start.faces)
@@ -229,6 +230,11 @@ def end_of(pieces: HullPieces, number: int, normal: Array) -> HullEnd:
     (x, y), radius = pieces.center[number].tolist(), float(pieces.radius[number])
     nx, ny = normal.tolist()
     return HullEnd((x + radius * nx, y + radius * ny), pieces.faces[number], (x, y), radius, along=False)
+
+
+def is_on_arc(one: HullEnd, other: HullEnd) -> bool:
+    """Whether one is an arc and the other that arc's own end: what is between them is rounding alone."""
+    return (one.radius == 0.0) != (other.radius == 0.0) and not set(one.faces).isdisjoint(other.faces)
 
 
 def is_part(edge: HullEdge, other: HullEdge) -> bool:

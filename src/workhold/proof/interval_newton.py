@@ -5,8 +5,8 @@ there is one. At a nearly double solution three directions of the box are well d
 the box is turned into the directions of the Jacobian's singular vectors. There, boxes in which some contact
 equation has no zero, or in which some rule is broken everywhere, are dropped. The interval Newton method
 (Hansen and Sengupta) makes the others smaller, and shows that there is none or exactly one solution, which
-then is judged at rising precision. What remains is halved. What is left after ``MOST_BOXES`` boxes stays
-undecided.
+then is judged at rising precision. What remains is cut in three. What is left after ``MOST_BOXES`` boxes
+stays undecided.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT
 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
@@ -48,6 +48,8 @@ MOST_BOXES = 10000
 RIM = 0.1
 # A place is looked at again when a step leaves less than this of a side.
 SMALLER = 0.7
+# The middle one of three parts has this part of a side, and each part is so much larger than its share.
+MIDDLE, OVERLAP = 0.125, 1.0002
 
 
 @frozen
@@ -250,11 +252,9 @@ class SingularFrame:
 
     def unknowns(self, place: Sequence[arb]) -> list[arb]:
         """The unknowns at a place in the frame."""
-        steps = [sum((float(self.right[j, k]) * place[k] for k in range(4)), arb(0)) for j in range(4)]
-        return [
-            m + (s / self.length if j == 0 else s)
-            for j, (m, s) in enumerate(zip(self.box.middle, steps, strict=True))
-        ]
+        turn, *rest = (self.turning * arb_mat(4, 1, place)).entries()
+        steps = turn / self.length, *rest
+        return [m + s for m, s in zip(self.box.middle, steps, strict=True)]
 
     def places(self, place: Sequence[arb]) -> BoxContacts:
         """The contacts at a place in the frame."""
@@ -331,7 +331,7 @@ def solutions_in(
             if smaller is not None and unique:
                 roots.append(smaller)
             elif smaller is not None:
-                waiting += [smaller] if is_smaller(smaller, place) else halves(smaller)
+                waiting += [smaller] if is_smaller(smaller, place) else thirds(smaller)
     return judged(frame, roots, limits)
 
 
@@ -351,16 +351,17 @@ def is_empty(box: CandidateBox, here: BoxContacts, limits: Limits) -> bool:
     return any(slack < 0 for slack in slacks(box, here, minors, limits))
 
 
-def halves(place: list[arb]) -> list[list[arb]]:
-    """Both halves of a place, cut where it is longest, a little more than half each."""
+def thirds(place: list[arb]) -> list[list[arb]]:
+    """A place cut in three where it is longest, a narrow part in the middle, all a little larger.
+
+    A double solution is in the middle of most boxes. Cut there, it would be on the rim of both halves.
+    """
     widths = [float(p.rad()) for p in place]
-    cut = widths.index(max(widths))
-    out = []
-    for side in (-1, 1):
-        half = list(place)
-        half[cut] = arb((place[cut].mid() + side * widths[cut] / 2).mid(), widths[cut] * 0.5001)
-        out.append(half)
-    return out
+    whole, side = max(widths), (1.0 - MIDDLE) / 2.0
+    cut = widths.index(whole)
+    parts = (side - 1.0, side), (1.0 - side, side), (0.0, MIDDLE)
+    middles = [((place[cut].mid() + center * whole).mid(), half * whole * OVERLAP) for center, half in parts]
+    return [[*place[:cut], arb(*middle), *place[cut + 1 :]] for middle in middles]
 
 
 def judged(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxOutcome:
