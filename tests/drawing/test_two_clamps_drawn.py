@@ -159,3 +159,31 @@ def test_a_machinist_would_set_it_so(name: str) -> None:
     # Nothing leans: where the clamps push, the locators that face them press.
     ways = [peg.carrier for peg in fixture.pegs[3:]]
     assert ways == ["clamp -x", "clamp -y"] and len(set(faces) & {peg.face for peg in fixture.pegs[3:]}) == 0
+
+
+def test_no_label_hides_a_dimension() -> None:
+    """No framed name and no number of a face covers a length to set: neither its line nor its arrows."""
+    strip = Workpiece.from_loops("strip", [[[0, 0, 0], [200, 0, 0], [200, 12, 0], [0, 12, 0]]])
+    plate = Plate(
+        pitch=20, peg_radius=3, clamp_radius=5, travel=(10, 40), clamps=2, directions=PAIRS["across"]
+    )
+    for fixture in design(strip, plate, best=12)[:12]:
+        svg = draw_fixture(fixture, strip, plate)
+        lines = [
+            [float(word) for word in re.findall(r"-?[\d.]+", piece.attrib["d"])]
+            for (group,) in [by_class(svg, "opening")]
+            for piece in group
+            if "d" in piece.attrib
+        ]
+        frames = [
+            [float(piece.attrib[name]) for name in ("x", "y", "width", "height")]
+            for (group,) in [by_class(svg, "labels")]
+            for piece in group
+            if "width" in piece.attrib
+        ]
+        assert lines and frames
+        for line in lines:
+            xs, ys = line[::2], line[1::2]
+            for x, y, width, height in frames:
+                clear_x = max(xs) < x or x + width < min(xs)
+                assert clear_x or max(ys) < y or y + height < min(ys)

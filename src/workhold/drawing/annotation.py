@@ -32,12 +32,15 @@ __all__ = [
     "angle_mark",
     "around",
     "dimension",
+    "dimension_box",
     "joined",
     "leader_end",
     "scale_bar",
 ]
 
 TIGHT = 34.0
+# How far the arrows of a tight dimension reach past its ends, and the room beside its line, page units.
+OUTSIDE_ARROW, HEAD = 24.0, 5.0
 # How far past the end of a line a text too long for it stands, page units.
 PAST_END = 8.0
 
@@ -67,8 +70,8 @@ def dimension(
         scene.arrow(((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), end, BLACK, 1.0, 11)
     else:
         scene.line([start, end], BLACK, 1.0)
-        scene.arrow((start[0] - 24 * ux, start[1] - 24 * uy), start, BLACK, 1.0, 11)
-        scene.arrow((end[0] + 24 * ux, end[1] + 24 * uy), end, BLACK, 1.0, 11)
+        scene.arrow((start[0] - OUTSIDE_ARROW * ux, start[1] - OUTSIDE_ARROW * uy), start, BLACK, 1.0, 11)
+        scene.arrow((end[0] + OUTSIDE_ARROW * ux, end[1] + OUTSIDE_ARROW * uy), end, BLACK, 1.0, 11)
     middle = ((start[0] + end[0]) / 2 + 0.75 * size * uy, (start[1] + end[1]) / 2 - 0.85 * size * abs(ux))
     if abs(ux) < abs(uy):
         middle = (min(start[0], end[0]) - 0.75 * size, (start[1] + end[1]) / 2)
@@ -80,6 +83,19 @@ def dimension(
         return Box.about(middle, size, text_width(text, size, bold))
     scene.text(middle, text, size, "middle", bold, halo=3)
     return Box.about(middle, text_width(text, size, bold), size)
+
+
+def dimension_box(start: Point, end: Point) -> Box:
+    """The page box of a level or upright dimension line with its arrows, without its text.
+
+    >>> dimension_box((10.0, 0.0), (20.0, 0.0)).x0
+    -19.0
+    """
+    low, high = (min(start[0], end[0]), min(start[1], end[1])), (max(start[0], end[0]), max(start[1], end[1]))
+    past = OUTSIDE_ARROW if hypot(end[0] - start[0], end[1] - start[1]) < TIGHT else 0.0
+    upright = abs(end[1] - start[1]) > abs(end[0] - start[0])
+    out_x, out_y = (0.0, past) if upright else (past, 0.0)
+    return Box(low[0] - out_x, low[1] - out_y, high[0] + out_x, high[1] + out_y).grown(HEAD)
 
 
 def round_length(length: float) -> float:

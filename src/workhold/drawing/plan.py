@@ -18,6 +18,7 @@ from workhold.drawing.annotation import (
     angle_mark,
     around,
     dimension,
+    dimension_box,
     joined,
     leader_end,
 )
@@ -171,7 +172,7 @@ def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
 def draw_travel(
     scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box, lengths: LengthUnit
 ) -> list[Box]:
-    """Dimensions the lengths to set, above the plates or at their right; returns the boxes of the words.
+    """Dimensions the lengths to set, above the plates or at their right; returns boxes of words and lines.
 
     All words are within the bounds. Of two lengths along the same way the second stands farther out.
     """
@@ -200,7 +201,8 @@ def draw_travel(
         past: Literal["upper", "lower"] | None = "upper"
         if top - room < (frame.y0 if shared else bounds.y0):
             past = "lower" if bottom + room <= bounds.y1 else None
-        boxes.append(dimension(group, start, end, words, SETTING_SIZE, bold=True, past=past))
+        box = dimension(group, start, end, words, SETTING_SIZE, bold=True, past=past)
+        boxes += [box, dimension_box(start, end)]
     return boxes
 
 
@@ -363,8 +365,7 @@ def face_tag(bench: Bench, face_number: int, view: View) -> Label:
     half = face.half_extent
     near = face.parameter(bench.contacts[index][0])
     labels = []
-    for share in (-0.85, -0.6, -0.35, 0.0, 0.35, 0.6, 0.85):
-        parameter = share * half
+    for parameter in (share * half for share in (-0.85, -0.6, -0.35, 0.0, 0.35, 0.6, 0.85)):
         nx, ny = face.normal(parameter)
         extra = 4 * abs(parameter - near) / half
         labels.append(
