@@ -20,7 +20,7 @@ from workhold.files.outline.joining import Loop
 from workhold.files.outline.nesting import chosen_part, nest
 from workhold.files.part.data import drawing_of_object
 from workhold.files.part.finding import builtin_parts, builtin_path, found, kind_of, read_bytes
-from workhold.files.part.loaded import Loaded, built, from_drawing, from_heights, refuse_large
+from workhold.files.part.loaded import Loaded, built, from_drawing, from_heights, refuse_large, with_bands
 from workhold.files.questions import (
     DRAWING_UNIT,
     UnitAskedError,
@@ -273,6 +273,14 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
         keys = ("axis", "peg_height", "head_room", "least_band", "part_number")
         view = HeightView(**{key: options[key] for key in keys})
         return from_heights(path.stem, read_by_height_apart(content, view))
+    if options["section"] is None and options["fit"] is None:
+        from workhold.files.step.by_height import read_silhouette_apart
+
+        drawing, solid = read_silhouette_apart(
+            content, axis=options["axis"], part_number=options["part_number"]
+        )
+        loaded = from_drawing(path, drawing, None, 0.0, None)
+        return loaded if solid is None else with_bands(loaded, solid)
     from workhold.files.step.reader import read_step_apart
 
     drawing = read_step_apart(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -13,9 +13,13 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
+from workhold.files.outline.chain import Drawing
 from workhold.files.questions import HEAD_ROOM, LEAST_BAND, PEG_HEIGHT, SECTION
 from workhold.files.step.heights import HeightOutline, StandingSolid, standing
 from workhold.files.step.library import load_step_library
+from workhold.files.step.reader import drawing_of
+from workhold.files.step.reader import plain as plain_silhouette
+from workhold.files.step.reader import prepare as prepare_reader
 from workhold.files.step.solids import (
     along,
     axis_named,
@@ -102,7 +106,33 @@ def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
     InputError
         As :func:`read_by_height`, and for a file that the process does not survive.
     """
-    loops, solid, remarks, rows = run_apart(__name__, content, asdict(view), "the STEP file")
+    return height_drawing_of(run_apart(__name__, content, {"view": asdict(view)}, "the STEP file"))
+
+
+def read_silhouette_apart(content: bytes, **options: Any) -> tuple[Drawing, HeightDrawing | None]:
+    """Runs ``files.step.reader.read_step`` in a process of its own, and looks at the solid by heights as well.
+
+    Parameters
+    ----------
+    options : of :func:`workhold.files.step.reader.read_step`, the axis and the part's number.
+
+    Returns
+    -------
+    The silhouette; and the same outline with its bands, None where it has none that can be touched, or is not
+    made of lines and arcs alone.
+
+    Raises
+    ------
+    InputError
+        As :func:`workhold.files.step.reader.read_step`.
+    """
+    silhouette, by_height = run_apart(__name__, content, {"silhouette": options}, "the STEP file")
+    return drawing_of(silhouette), None if by_height is None else height_drawing_of(by_height)
+
+
+def height_drawing_of(answered: Any) -> HeightDrawing:
+    """The drawing of what :func:`plain_drawing` makes."""
+    loops, solid, remarks, rows = answered
     return HeightDrawing(
         tuple(np.array(loop) for loop in loops),
         SolidOutline(*solid),
@@ -113,32 +143,66 @@ def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
 
 def prepare() -> None:
     """Loads the library, see :func:`workhold.files.apart.run_apart`."""
-    load_step_library()
+    prepare_reader()
 
 
-def plain(content: bytes, **view: Any) -> Any:
-    """Loops, solid and remarks of :func:`read_by_height` as plain data.
+def plain(
+    content: bytes, view: dict[str, Any] | None = None, silhouette: dict[str, Any] | None = None
+) -> Any:
+    """What :func:`read_by_height` reads as plain data, or the silhouette with it.
 
     Raises
     ------
     InputError
         As :func:`read_by_height`, and where the library or the arithmetic after it fails over the file.
     """
+    if silhouette is None:
+        return guarded(lambda: plain_drawing(read_by_height(content, HeightView(**(view or {})))))
+    drawing = plain_silhouette(content, **silhouette)
     try:
-        drawing = read_by_height(content, HeightView(**view))
+        return drawing, guarded(lambda: plain_drawing(silhouette_by_height(content, silhouette)))
+    except InputError:
+        return drawing, None
+
+
+def guarded(read: Callable[[], Any]) -> Any:
+    """What some reading returns.
+
+    Raises
+    ------
+    InputError
+        Its own, and one where the library or the arithmetic after it fails.
+    """
+    try:
+        return read()
     except InputError:
         raise
     except Exception as error:
-        if not isinstance(
-            error, ArithmeticError | LookupError | RuntimeError | TypeError | ValueError
-        ) and not type(error).__module__.startswith("OCP"):
+        kinds = ArithmeticError | LookupError | RuntimeError | TypeError | ValueError
+        if not isinstance(error, kinds) and not type(error).__module__.startswith("OCP"):
             raise
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
+
+
+def plain_drawing(drawing: HeightDrawing) -> Any:
+    """A drawing as plain data."""
     solid = drawing.solid
     heights = (solid.height, solid.peg_height, solid.head_room, solid.least_band)
     loops = [loop.tolist() for loop in drawing.loops]
     rows = [astuple(row) for row in drawing.heights]
     return loops, (solid.axis, *heights, solid.bands, solid.faces), drawing.remarks, rows
+
+
+def silhouette_by_height(content: bytes, options: Mapping[str, Any]) -> HeightDrawing:
+    """The silhouette of a solid as pegs see it that are as high as the part.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_by_height`.
+    """
+    chosen = chosen_solid(read_solids(content), options.get("part_number"))
+    return drawn(chosen.shape, HeightView(axis=options.get("axis")), of_silhouette=True)
 
 
 def read_by_height(content: bytes, view: HeightView) -> HeightDrawing:
@@ -174,7 +238,7 @@ def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
     return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
 
 
-def drawn(shape: Any, view: HeightView) -> HeightDrawing:
+def drawn(shape: Any, view: HeightView, of_silhouette: bool = False) -> HeightDrawing:
     """The outline of a solid, with remarks on what may be touched and on a height that offers more.
 
     Raises
@@ -207,8 +271,10 @@ def drawn(shape: Any, view: HeightView) -> HeightDrawing:
             f"{outline.peg_height:g} mm: {advice(solid, room, least)}."
         )
     found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces)
-    rows = height_table(solid, room, least)
-    remarks = height_remarks(outline, found, rows)
+    rows = [] if of_silhouette and is_prism(solid) else height_table(solid, room, least)
+    remarks = [] if of_silhouette else height_remarks(outline, found, rows)
+    if of_silhouette:
+        remarks = better_height(rows, measures(outline)[2])
     return HeightDrawing(tuple(loops[k] for k in order), found, tuple(remarks), tuple(rows))
 
 
@@ -297,7 +363,21 @@ def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[H
             f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of it, and only these are touched; "
             f"the shortest is {band:.4g} mm high there."
         )
+    return [*remarks, *better_height(rows, touchable)]
+
+
+def better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
+    """A sentence on the height of pegs that could touch most, if that is more than a length in mm."""
     best = longest(rows)
-    if best is not None and best.touchable > touchable * (1 + 1e-6):
-        remarks.append(f"With {PEG_HEIGHT} {best.high:.6g} most could be touched: {best.touchable:.4g} mm.")
-    return remarks
+    if best is None or best.touchable <= touchable * (1 + 1e-6):
+        return []
+    return [f"With {PEG_HEIGHT} {best.high:.6g} most could be touched: {best.touchable:.4g} mm."]
+
+
+def is_prism(solid: StandingSolid) -> bool:
+    """Whether a solid has the same section at every height."""
+    ends = (0.0, solid.height)
+    return all(
+        face.lie == "upright" or (face.lie == "level" and min(abs(face.low - z) for z in ends) <= SAME_HEIGHT)
+        for face in solid.faces
+    )

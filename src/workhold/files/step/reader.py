@@ -42,7 +42,16 @@ from workhold.files.step.solids import (
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["border_remarks", "read_shapes", "read_solid", "read_step", "read_step_apart"]
+__all__ = [
+    "border_remarks",
+    "drawing_of",
+    "plain",
+    "prepare",
+    "read_shapes",
+    "read_solid",
+    "read_step",
+    "read_step_apart",
+]
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
@@ -53,7 +62,11 @@ def read_step_apart(content: bytes, **options: Any) -> Drawing:
     InputError
         As :func:`read_step`, and for a file that the process does not survive.
     """
-    answered = run_apart(__name__, content, options, "the STEP file")
+    return drawing_of(run_apart(__name__, content, options, "the STEP file"))
+
+
+def drawing_of(answered: Any) -> Drawing:
+    """The drawing of what :func:`plain` makes."""
     chains = [
         Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels))
         for points, bulges, labels in answered[0]
