@@ -110,7 +110,7 @@ def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
 
 
 def read_silhouette_apart(content: bytes, **options: Any) -> tuple[Drawing, HeightDrawing | None]:
-    """Runs ``files.step.reader.read_step`` in a process of its own, and looks at the solid by heights as well.
+    """Runs ``files.step.reader.read_step`` in a process of its own, and looks at the solid by heights too.
 
     Parameters
     ----------
