@@ -87,6 +87,11 @@ def test_hole_and_touching_arcs() -> None:
     assert area(loops) == pytest.approx(64.0)
 
 
+def test_corners_that_touch_stay_loops_of_their_own() -> None:
+    """Two boxes that touch at a corner are two loops, and a hole that touches another is its own loop."""
+    assert sorted(len(loop) for loop in union_loops([(0, 0, 4, 4), (4, 4, 8, 8)], [])) == [4, 4]
+
+
 def test_equal_carriers_are_one() -> None:
     """Segments on one line, however they are run, are pieces of one carrier."""
     found = subdivide([Line((0, 0), (4, 0)), Line((6, 0), (2, 0)), Line((1, -1), (1, 1))])

@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from attrs import evolve
 from hypothesis import given
 from hypothesis import strategies as st
 
 from strategies import outlines
 from workhold.errors import InputError
 from workhold.geometry.loop import signed_area
+from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 SQUARE = [[0, 0, 0], [40, 0, 0], [40, 40, 0], [0, 40, 0]]
@@ -228,3 +230,17 @@ def test_loops_may_be_an_array() -> None:
     """Of three dimensions, where all have as many segments."""
     loops = np.array([[[0, 0, 0], [40, 0, 0], [40, 40, 0]], [[30, 10, 0], [34, 10, 0], [34, 14, 0]]])
     assert len(Workpiece.from_loops("part", loops).segments) == 6
+
+
+def test_bands_follow_loops_that_are_turned_round() -> None:
+    """Loops that are run the wrong way are turned, and each band stays with its segment."""
+    square = [[0, 0, 0], [0, 4, 0], [4, 4, 0], [4, 0, 0]]
+    bands = [(0.0, 1.0), (0.0, 2.0), None, (0.0, 4.0)]
+    solid = SolidOutline("z", 5.0, 4.0, 0.5, 1.0, bands, [[0], [1], [], [3]])
+    part = Workpiece.from_loops("square", [square], solid=solid)
+    assert part.solid is not None
+    by_middle = {segment.middle: band for segment, band in zip(part.segments, part.solid.bands, strict=True)}
+    assert by_middle == {(0, 2): (0, 1), (2, 4): (0, 2), (4, 2): None, (2, 0): (0, 4)}
+    assert [part.solid.bands[face.number] for face in part.faces if face.number in part.untouchable] == [None]
+    with pytest.raises(InputError, match="4 segments and 3 bands"):
+        Workpiece.from_loops("square", [square], solid=evolve(solid, bands=bands[:3], faces=()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,8 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone, BRepPrimA
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fused, upright, write_step
 
-from workhold import Restrictions, Vise, Workpiece, design, load
+from workhold import Fence, Plate, Restrictions, Vise, Workpiece, design, load, save, verify
+from workhold import open as workhold_open
 from workhold.errors import InputError
 from workhold.files.step.by_height import HeightView, shapes_by_height
 from workhold.files.step.heights import StandingSolid, standing
@@ -274,18 +276,38 @@ def test_fixtures_hold_the_solid(tmp_path: Path) -> None:
             pegs_touch(solid, part, peg, carrier.peg_radius, fixture.pose, 0.5)
 
 
-def test_list_is_that_of_the_outline_with_faces_avoided(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "toolkit",
+    [
+        Vise(pitch=10, columns=2, peg_radius=3),
+        Fence(pitch=20, peg_radius=3, wall_offset=10),
+        Plate(pitch=15, peg_radius=3),
+    ],
+    ids=lambda toolkit: type(toolkit).__name__,
+)
+def test_list_is_that_of_the_outline_with_faces_avoided(tmp_path: Path, toolkit: Any) -> None:
     """A solid's list is the one of its outline with the faces that nothing may touch left alone."""
-    shape = chamfered(fused(box(60, 40, 14), box(30, 20, 3, (15, 40, 0))), 2.5, at_height(14.0))
+    corner = gp_Ax2(gp_Pnt(40, 50, -1), gp_Dir(0, 0, 1), gp_Dir(1, -1, 0))
+    body = cut(box(70, 50, 14), BRepPrimAPI_MakeBox(corner, 100, 100, 40).Shape())
+    shape = fused(body, box(20, 3, 3, (10, -3, 0)))
     part = load(write_step(tmp_path / "part.step", shape), peg_height=10.0, least_band=4.0)
     assert part.solid is not None and None in part.solid.bands and any(part.solid.bands)
     flat = Workpiece.from_loops(part.name, part.loops)
     avoid = tuple(number for number, band in enumerate(part.solid.bands) if band is None)
-    vise = Vise(pitch=10, columns=2, peg_radius=3)
-    own = design(part, vise)
-    other = design(flat, vise, restrictions=Restrictions(avoid=avoid))
+    own = design(part, toolkit)
+    other = design(flat, toolkit, restrictions=Restrictions(avoid=avoid))
+    assert 0 < len(own) < len(design(flat, toolkit))
     assert own.counts == other.counts
     assert [fixture.pose for fixture in own] == [fixture.pose for fixture in other]
+
+
+def test_pieces_of_one_line_with_other_bands_are_other_faces(tmp_path: Path) -> None:
+    """A wall over a slot is three faces, though it is one line; where bands agree it is one."""
+    slotted = cut(PLATE, box(20, 60, 10, (20, -5, 0)))
+    part = load(write_step(tmp_path / "part.step", slotted), peg_height=15.0)
+    assert len(part.faces) == 8
+    above = load(write_step(tmp_path / "part.step", along(slotted, "-z")), peg_height=8.0)
+    assert len(above.faces) == 4
 
 
 def test_prism_file_is_its_drawing(tmp_path: Path) -> None:
@@ -333,3 +355,80 @@ def test_tilted_ring_is_refused_with_its_name(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="neither line nor arc: a cylinder of radius 9 mm aslant") as refused:
         load(write_step(tmp_path / "part.step", ball), peg_height=30.0)
     assert "give peg_height" in str(refused.value)
+
+
+def test_silhouette_has_its_bands(tmp_path: Path) -> None:
+    """Without a height of the pegs the outline is the silhouette with the bands of a part seen as high as it is."""
+    part = load(write_step(tmp_path / "flanged.step", FLANGED))
+    assert part.solid is not None
+    assert (part.solid.peg_height, set(part.solid.bands)) == (25.0, {(20.0, 25.0)})
+    lying = load(write_step(tmp_path / "lying.step", cylinder(7, 80, (0, 0, 0), (1, 0, 0))))
+    assert lying.solid is None
+    assert load(write_step(tmp_path / "section.step", FLANGED), section=10.0).solid is None
+
+
+def test_bands_in_files(tmp_path: Path) -> None:
+    """A result file has the solid, the bands, and each peg's band; reading and writing changes nothing."""
+    shape = fused(box(60, 40, 14), box(30, 20, 3, (15, 40, 0)))
+    part = load(write_step(tmp_path / "part.step", shape), peg_height=10.0, least_band=4.0)
+    vise = Vise(pitch=10, columns=2, peg_radius=3)
+    result = design(part, vise, best=4)
+    save(result, tmp_path / "result.json")
+    written = json.loads((tmp_path / "result.json").read_text())
+    assert written["solid"] == {
+        "axis": "z",
+        "height": 14.0,
+        "peg_height": 10.0,
+        "head_room": 0.5,
+        "least_band": 4.0,
+    }
+    bands = written["workpiece"]["bands"]
+    assert bands.count(None) == 3
+    for fixture in written["fixtures"]:
+        assert all(peg["band"] == bands[peg["segment"]] != None for peg in fixture["pegs"])  # noqa: E711
+    again = workhold_open(tmp_path / "result.json")
+    assert again.workpiece == part
+    save(again, tmp_path / "again.json")
+    assert (tmp_path / "again.json").read_bytes() == (tmp_path / "result.json").read_bytes()
+    assert load(tmp_path / "result.json") == part
+
+
+def test_verification_refuses_a_peg_on_a_face_without_band(tmp_path: Path) -> None:
+    """A fixture of the same outline that touches what no upright face stands over is refused by the judge."""
+    shape = fused(box(60, 40, 14), box(30, 20, 3, (15, 40, 0)))
+    part = load(write_step(tmp_path / "part.step", shape), peg_height=10.0, least_band=4.0)
+    vise = Vise(pitch=10, columns=2, peg_radius=3)
+    flat = design(Workpiece.from_loops(part.name, part.loops), vise)
+    save(flat, tmp_path / "flat.json")
+    forged = json.loads((tmp_path / "flat.json").read_text())
+    save(design(part, vise, best=1), tmp_path / "solid.json")
+    own = json.loads((tmp_path / "solid.json").read_text())
+    forged |= {"solid": own["solid"], "workpiece": own["workpiece"]}
+    (tmp_path / "forged.json").write_text(json.dumps(forged))
+    report = verify(workhold_open(tmp_path / "forged.json"))
+    assert (report.proven, report.undecided) == (len(design(part, vise)), 0)
+    reasons = {one.reason.partition(",")[2] for one in report.unproven}
+    assert reasons == {" over which no upright face of the solid stands"}
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"solid": {"axis": "w"}}, "the axis 'w' is not known"),
+        ({"bands": [[3, 1]] * 8}, "the band 3 to 1 mm is none"),
+        ({"bands": [[0, 1]]}, "8 segments and 1 bands"),
+        ({"bands": None}, "has a solid, but the workpiece has no bands"),
+    ],
+)
+def test_damaged_bands(tmp_path: Path, change: dict[str, Any], sentence: str) -> None:
+    """Bands of a file that cannot be are refused in one sentence."""
+    shape = fused(box(60, 40, 14), box(30, 20, 3, (15, 40, 0)))
+    part = load(write_step(tmp_path / "part.step", shape), peg_height=10.0)
+    save(design(part, Vise(pitch=10, columns=2, peg_radius=3), best=1), tmp_path / "result.json")
+    data = json.loads((tmp_path / "result.json").read_text())
+    data["solid"] |= change.get("solid", {})
+    if "bands" in change:
+        data["workpiece"]["bands"] = change["bands"]
+    (tmp_path / "result.json").write_text(json.dumps(data))
+    with pytest.raises(InputError, match=sentence):
+        workhold_open(tmp_path / "result.json")

@@ -67,12 +67,10 @@ class Wall:
     Parameters
     ----------
     index : of the face.
-    is_left : whether its material is to the left as positions on the carrier grow.
     edges : its edges that are not upright, each with its points' positions (N,) on the carrier.
     """
 
     index: int
-    is_left: bool
     edges: tuple[tuple[EdgeCurve, NDArray[np.float64]], ...]
 
     def intervals(self, position: float, beside: float) -> list[Band]:
@@ -114,16 +112,15 @@ class Walls:
             for edge, segment in self.upright_edges():
                 if carrier.holds(segment):
                     edges[edge.face].append((edge, positions(carrier, edge.points)))
-            self.found[id(carrier)] = [
-                Wall(index, has_material_left(self.faces[index], carrier), tuple(own))
-                for index, own in edges.items()
-            ]
+            self.found[id(carrier)] = [Wall(index, tuple(own)) for index, own in edges.items()]
         return self.found[id(carrier)]
 
     def band(
         self, piece: BorderPiece, position: float, beside: float = 0.0
     ) -> tuple[Band | None, tuple[int, ...]]:
         """The band at a position of a piece, and the indices of the walls that make it.
+
+        No wall there has its material on the other side: a peg would meet that, and the piece were no border.
 
         Parameters
         ----------
@@ -134,7 +131,6 @@ class Walls:
         covered = [
             (max(start, self.low), min(end, self.high), wall.index)
             for wall in self.over(piece.carrier)
-            if wall.is_left == piece.forward
             for start, end in wall.intervals(position, beside)
         ]
         covered = [one for one in covered if one[1] - one[0] > SAME_HEIGHT]
@@ -148,21 +144,6 @@ def positions(carrier: CutCarrier, points: NDArray[np.float64]) -> NDArray[np.fl
     """Positions (N,) of points on a carrier, on a circle without jumps."""
     found = np.array([carrier.position((x, y)) for x, y in points[:, :2].tolist()])
     return found if isinstance(carrier.segment, Line) else np.unwrap(found)
-
-
-def has_material_left(face: SolidFace, carrier: CutCarrier) -> bool:
-    """Whether a wall's material lies to the left as positions on its carrier grow."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.BRepGProp import BRepGProp_Face
-    from OCP.gp import gp_Pnt, gp_Vec
-
-    surface = BRepAdaptor_Surface(face.shape)
-    u = (surface.FirstUParameter() + surface.LastUParameter()) / 2
-    v = (surface.FirstVParameter() + surface.LastVParameter()) / 2
-    point, outward = gp_Pnt(), gp_Vec()
-    BRepGProp_Face(face.shape).Normal(u, v, point, outward)
-    nx, ny = carrier.left(carrier.position((point.X(), point.Y())))
-    return bool(outward.X() * nx + outward.Y() * ny < 0)
 
 
 def heights_at(edge: EdgeCurve, places: NDArray[np.float64], position: float, beside: float) -> list[float]:
