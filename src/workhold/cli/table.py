@@ -139,7 +139,7 @@ def narrowed(widths: list[int], least: list[int], over: int) -> list[int]:
     """Narrows columns by so many characters in all, always the widest that can be narrowed.
 
     >>> narrowed([30, 10, 40], [24, 10, 24], 14)
-    [30, 10, 26]
+    [28, 10, 28]
     """
     made = list(widths)
     for _ in range(max(over, 0)):
