@@ -12,8 +12,11 @@ import pytest
 
 from fakes import fake_result
 from workhold import __version__
+from workhold import open as open_result
 from workhold.cli.main import COMMANDS, command_of
+from workhold.files.glb.writer import fixture_glb
 from workhold.files.result.writer import write_result
+from workhold.model.bodies import BodySizes
 
 
 @pytest.fixture
@@ -44,9 +47,24 @@ def test_show_draws(run: Any, result_file: Path, tmp_path: Path, name: str, star
     assert (tmp_path / name).read_bytes().startswith(start)
 
 
+def test_show_writes_bodies(run: Any, result_file: Path, tmp_path: Path) -> None:
+    """The fixture's own file, over one that workhold wrote; the height that nobody said is told."""
+    result = open_result(result_file)
+    held = result[1], result.workpiece, result.toolkit
+    for thickness, given in ((10.0, ()), (25.4, ("--thickness", "1", "--unit", "inch"))):
+        outcome = run("show", result_file, 2, "--glb", tmp_path / "a.glb", *given)
+        assert outcome.exit_code == 0, outcome.stderr
+        assert f"Drawn in {tmp_path / 'a.glb'}." in outcome.stdout
+        assert ("10.000 mm high, as nobody said" in " ".join(outcome.stderr.split())) == (not given)
+        sizes = BodySizes.of(result.workpiece, thickness)
+        assert (tmp_path / "a.glb").read_bytes() == fixture_glb(*held, sizes)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (("r.json", "1", "--glb", "a.gltf"), "let the name end in .glb"),
+        (("r.json", "1", "--thickness", "5"), "give --glb too"),
         (("r.json", "0"), "there is no fixture 0: fixtures are counted from 1"),
         (("r.json", "7"), "lists 6 fixtures: there is no fixture 7"),
         (("r.json", "best"), "fixture 'best' is not a whole number"),

@@ -10,10 +10,12 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
+from workhold.cli.body_options import GLB, GLB_THICKNESS, asked_model, write_bodies
 from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
+from workhold.cli.seat_table import seat_table
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
     choice,
@@ -88,13 +90,6 @@ def load_tables(
 
 
 SIDES = ("both", "drawn", "turned-over")
-KINDS = {
-    "corner": "four pegs, one on a corner",
-    "pocket": "a peg in a corner of the part",
-    "curved": "held by curvature",
-    "loose": "not located",
-    "unsettled": "not settled",
-}
 
 
 def seat(
@@ -300,33 +295,12 @@ def wrong_words(
     return words
 
 
-def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
-    """Tabulates the seats: what is read, how the part lies, what touches, and how far it is held."""
-    of, fixture = unit.abbreviation, gauge.fixture
-    kinds = {**KINDS, "fixture": gauge.toolkit.setup_words.resting}
-    table = Table(
-        ("seat", f">reads {of}", f">differs {of}", ">turned by", "side", f">held {of}", "how it lies")
-    )
-    for k, one in enumerate(seats):
-        turned = 0.0 if one.is_own else (one.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
-        pegs = ", ".join(f"{fixture.pegs[c.peg].hole} {c.words}" for c in one.contacts)
-        words = "right" if one.is_own else "same place" if one.same_place else kinds[one.kind]
-        table.add_row(
-            str(k + 1),
-            unit.number(gauge.at(one.jaw_separation)),
-            unit.number(gauge.at(one.jaw_separation) - gauge.setting.length),
-            f"{one.pose.theta_deg:.1f}" if one.mirrored else f"{turned:.1f}",
-            "over" if one.mirrored else "up",
-            "-" if one.depth is None else unit.number(one.depth),
-            f"{words}{': ' if pegs else ''}{pegs}",
-        )
-    return table
-
-
 def show(
     result_file: ResultArgument,
     number: RankArgument,
     draw: str | None = option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
+    glb: str | None = GLB,
+    thickness: str | None = GLB_THICKNESS,
     force: ForceOption = False,
     load: list[str] | None = LOAD,
     loads: str | None = LOADS_FILE,
@@ -341,7 +315,7 @@ def show(
     Its quality is shown as well, and what loads do to it: those of the result, if none are given here. A hole
     is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
 
-    Example: workhold show part.json 1 --draw setup.png
+    Example: workhold show part.json 1 --draw setup.png --glb setup.glb
     """
     from workhold.statics.loads import jaw_stiffness, load_cases
 
@@ -351,6 +325,8 @@ def show(
     coefficient = positive_number("--friction", friction)
     asked = asked_loads(load, loads, shown_unit)
     picture = asked_picture(draw, (result_file, loads), force)
+    model = asked_model(glb, thickness, (result_file, loads), force)
+    height = optional_positive_length("--thickness", thickness, shown_unit)
 
     stiffness = jaw_stiffness(jaw)
     result = result_with(result_file, rank)
@@ -370,6 +346,8 @@ def show(
             fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit
         )
         write_picture(picture, svg)
+    if model is not None:
+        write_bodies(result, rank, model, height, shown_unit)
     if json_:
         from workhold.presenting.data import fixture_data, load_case_data
 
@@ -378,10 +356,10 @@ def show(
             listed=len(result),
             complete=bool(result.complete),
             loads=[load_case_data(case) for case in cases],
-            written=[] if picture is None else [str(picture)],
+            written=[str(path) for path in (picture, model) if path is not None],
         )
-    elif picture is not None:
-        print_tables(f"Drawn in {picture}.")
+    else:
+        print_tables(*(f"Drawn in {path}." for path in (picture, model) if path is not None))
 
 
 def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Unit) -> None:

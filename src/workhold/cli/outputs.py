@@ -64,6 +64,7 @@ MARKS = (
     b"/Producer (workhold)",
     b"$LASTSAVEDBY\n  1\nworkhold\n",
     b"'workhold','",
+    b'"generator":"workhold"',
 )
 
 

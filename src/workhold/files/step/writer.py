@@ -17,26 +17,22 @@ from math import cos, isfinite, pi, sin
 from pathlib import Path
 from typing import Any
 
-from workhold.errors import InputError, plain, shortened
+from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
+from workhold.files.step.colours import Colour, coloured
 from workhold.files.step.library import load_step_library
-from workhold.fixels.carrier import hole_name
-from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Box, Line, Point, Segment
+from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.dowels import JawPlate, plate_places
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.setup import PartZero, part_zero
-from workhold.model.shown import MOST_HOLES, ShownCarrier, shown
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["plates_step", "setup_step", "write_plates_step", "write_setup_step"]
 
 # The header's time stamp, so that the same set-up gives the same bytes.
 TIME_STAMP = "1970-01-01T00:00:00"
-LONGEST_NAME = 120
-# Of the part and of the plates, in mm, where nobody says.
-THICKNESS = 10.0
 
 
 def write_setup_step(
@@ -57,9 +53,10 @@ def write_setup_step(
     ----------
     fixture, workpiece, toolkit : the set-up.
     path : the file.
-    thickness : height of the part in mm; 10 if None, as of the plates.
-    plate_thickness : of all plates, in mm; their holes go through.
-    peg_height : how far the pegs stand out of the plates, in mm; as far as the part if None.
+    thickness : height of the part in mm; that of its solid if None, or 10.
+    plate_thickness : of all plates, in mm; 10 if None. Their holes go through.
+    peg_height : how far the pegs stand out of the plates, in mm; as far as the part's solid says, or as the
+        part itself, if None.
     peg_length : in mm; down to the plates' lower sides if None.
     zero : part zero; that of :func:`part_zero` without a wish if None.
 
@@ -96,48 +93,13 @@ def setup_step(
     InputError
         As :func:`write_setup_step`.
     """
-    if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0:
-        raise InputError(
-            f"pegs of radius 0 have no body to write to a STEP file: give the {toolkit.noun} a peg radius."
-        )
-    thickness = THICKNESS if thickness is None else thickness
-    plate_thickness = THICKNESS if plate_thickness is None else plate_thickness
-    top = thickness if peg_height is None else peg_height
-    length = top + plate_thickness if peg_length is None else peg_length
-    for name, value in (
-        ("thickness", thickness),
-        ("plate thickness", plate_thickness),
-        ("peg height", top),
-        ("peg length", length),
-    ):
-        if not (isfinite(value) and value > 0):
-            raise InputError(f"{name} {value} is not a positive length: give it in mm.")
+    sizes = BodySizes.of(workpiece, thickness, plate_thickness, peg_length, peg_height)
+    bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
     load_step_library()
-    name = plain(shortened(workpiece.name, LONGEST_NAME))
-    named = [(name, part_body(workpiece.placed(fixture.pose), thickness))]
-    seen = shown(fixture, toolkit, workpiece)
-    for each in seen.carriers:
-        for peg in each.pegs:
-            outline = peg_outline((peg.x, peg.y), each.carrier.peg_radius, each.carrier.flat, peg.flat_deg)
-            body = peg_body((peg.x, peg.y), each.carrier.peg_radius, top - length, top)
-            if len(outline) > 1:
-                # Round in its hole, and above the plate as its flat leaves it.
-                body = fused(
-                    peg_body((peg.x, peg.y), each.carrier.peg_radius, top - length, 0.0), outline, top
-                )
-            named.append((f"{each.carrier.peg} {peg.hole}", body))
-    for clamp in seen.clamps:
-        named.append((clamp.tip.hole, extruded(wire(clamp.outline()), [], 0.0, thickness)))
-        if clamp.hole is not None:
-            bolt = peg_body(clamp.hole, seen.carriers[0].carrier.peg_radius, -plate_thickness, 0.0)
-            named.append(
-                (f"bolt {hole_name(clamp.carrier.stands_on, clamp.tip.column, clamp.tip.row)}", bolt)
-            )
-    for wall in seen.walls:
-        named.append((wall.carrier.noun, extruded(wire(rectangle(wall.bar)), [], 0.0, thickness)))
-    named += [(each.carrier.title, plate_body(each, plate_thickness)) for each in seen.carriers]
-    named.append(("part zero X0 Y0", axes_at((zero or part_zero(workpiece)).point, fixture.pose, seen.pitch)))
-    return assembly(f"{name} set-up", named)
+    named = [(body.name, solid_of(body), COLOURS[body.kind]) for body in bodies]
+    pitch = min(min(carrier.pitch) for carrier in toolkit.plates)
+    axes = axes_at((zero or part_zero(workpiece)).point, fixture.pose, pitch)
+    return assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])
 
 
 def axes_at(point: Point, pose: Pose, length: float) -> Any:
@@ -157,59 +119,17 @@ def axes_at(point: Point, pose: Pose, length: float) -> Any:
     return axes
 
 
-def part_body(part: Workpiece, thickness: float) -> Any:
-    """The part, in its pose, as a solid from z = 0 up."""
-    outer, *holes = (wire(segments) for segments in part.loop_segments)
-    return extruded(outer, holes, 0.0, thickness)
-
-
-def peg_body(center: Point, radius: float, low: float, high: float) -> Any:
-    """A peg as a cylinder between two heights."""
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
-    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-
-    return BRepPrimAPI_MakeCylinder(
-        gp_Ax2(gp_Pnt(*center, low), gp_Dir(0.0, 0.0, 1.0)), radius, high - low
-    ).Solid()
-
-
-def fused(foot: Any, outline: Sequence[Segment], height: float) -> Any:
-    """A peg of its round foot and what stands on it, from z = 0 up."""
+def solid_of(body: FixtureBody) -> Any:
+    """A body as one solid."""
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
 
-    return BRepAlgoAPI_Fuse(foot, extruded(wire(outline), [], 0.0, height)).Shape()
-
-
-def plate_body(shown: ShownCarrier, thickness: float) -> Any:
-    """A plate with its holes, its upper side at z = 0."""
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-
-    radius, plate = shown.carrier.peg_radius, shown.plate
-    x0, y0, x1, y1 = plate.x0, plate.y0, plate.x1, plate.y1
-    border = wire(rectangle(plate))
-
-    def whole(hole: Point) -> bool:
-        return (
-            x0 < hole[0] - radius
-            and hole[0] + radius < x1
-            and y0 < hole[1] - radius
-            and hole[1] + radius < y1
-        )
-
-    centers = [hole.center for hole in shown.holes(MOST_HOLES)]
-    holes = [wire([Arc(hole, radius, 0.0, pi, -1.0)]) for hole in centers if whole(hole)]
-    body = extruded(border, holes, -thickness, 0.0)
-    # Plates that nearly meet leave no material around the holes of their last columns.
-    for hole in centers:
-        if not whole(hole):
-            body = BRepAlgoAPI_Cut(body, peg_body(hole, radius, -2 * thickness, thickness)).Shape()
-    return body
-
-
-def rectangle(box: Box) -> list[Line]:
-    """The sides of a box, counter-clockwise."""
-    corners = [(box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1)]
-    return [Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
+    first, *others = (
+        extruded(wire(slab.outer), [wire(hole) for hole in slab.holes], slab.low, slab.high)
+        for slab in body.slabs
+    )
+    for other in others:
+        first = BRepAlgoAPI_Fuse(first, other).Shape()
+    return first
 
 
 def wire(segments: Iterable[Segment]) -> Any:
@@ -252,8 +172,8 @@ def extruded(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
     return BRepPrimAPI_MakePrism(face, gp_Vec(0.0, 0.0, high - low), True).Shape()
 
 
-def assembly(name: str, named: Sequence[tuple[str, Any]]) -> bytes:
-    """The STEP file of an assembly of named bodies."""
+def assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> bytes:
+    """The STEP file of an assembly of bodies, each with its name and, where there is one, its colour."""
     from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
     from OCP.BRep import BRep_Builder
     from OCP.STEPCAFControl import STEPCAFControl_Writer
@@ -272,7 +192,7 @@ def assembly(name: str, named: Sequence[tuple[str, Any]]) -> bytes:
     BRep_Builder().MakeCompound(compound)
     root = shapes.AddShape(compound, True)
     TDataStd_Name.Set_s(root, TCollection_ExtendedString(name, True))
-    for word, body in named:
+    for word, body, _ in named:
         label = shapes.AddShape(body, False)
         TDataStd_Name.Set_s(label, TCollection_ExtendedString(word, True))
         placed = shapes.AddComponent(root, label, TopLoc_Location())
@@ -295,7 +215,7 @@ def assembly(name: str, named: Sequence[tuple[str, Any]]) -> bytes:
         use.SetId(TCollection_HAsciiString(str(number)))
     stream = BytesIO()
     writer.WriteStream(stream)
-    return stream.getvalue()
+    return coloured(stream.getvalue(), [colour for _, _, colour in named if colour is not None])
 
 
 def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> bytes:
@@ -315,7 +235,7 @@ def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> b
         raise InputError(f"thickness {thickness} is not a positive length: give it in mm.")
     load_step_library()
     named = [
-        (f"{plate.title} plate", drilled(plate, right, thickness))
+        (f"{plate.title} plate", drilled(plate, right, thickness), COLOURS[BodyKind.PLATE])
         for plate, right in zip(plates, plate_places(plates), strict=True)
     ]
     return assembly("jaw plates", named)

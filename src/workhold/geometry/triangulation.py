@@ -1,0 +1,202 @@
+"""Triangles of a polygon with holes, with no vertex but its own.
+
+The polygon is cut by diagonals into pieces that are monotone in y, and these into triangles (de Berg et al.,
+"Computational Geometry", chapter 3). Every side of the polygon is a side of one triangle and every diagonal
+one of two, whatever rounding does.
+
+Glossary
+--------
+split, merge : a vertex whose interior angle is more than a half turn with both neighbours below it, above it.
+helper : of a side, the lowest vertex above that sees the side along a horizontal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import atan2, tau
+
+from attrs import define, field
+
+from workhold.geometry.segment import Point
+
+__all__ = ["triangulate"]
+
+Triangle = tuple[int, int, int]
+
+
+def triangulate(loops: Sequence[Sequence[Point]]) -> list[Triangle]:
+    """Triangles, counter-clockwise, as numbers of vertices counted through all loops.
+
+    Parameters
+    ----------
+    loops : vertices of the border in running order with the material on the left: outer loops
+        counter-clockwise, holes clockwise; they meet nowhere.
+
+    Examples
+    --------
+    >>> triangulate([[(0, 0), (2, 0), (2, 1), (0, 1)]])
+    [(3, 0, 2), (2, 0, 1)]
+    """
+    sweep = Sweep([point for loop in loops for point in loop])
+    first = 0
+    for loop in loops:
+        count = len(loop)
+        for k in range(count):
+            sweep.after.append(first + (k + 1) % count)
+            sweep.before.append(first + (k - 1) % count)
+        first += count
+    sweep.run()
+    return [triangle for piece in sweep.pieces() for triangle in monotone_triangles(piece, sweep.points)]
+
+
+def turn(p: Point, q: Point, r: Point) -> float:
+    """Twice the area of a triangle, positive when it is counter-clockwise."""
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+
+
+@define
+class Sweep:
+    """A horizontal line that goes down over a polygon and finds its diagonals.
+
+    Parameters
+    ----------
+    points : the vertices.
+    after, before : number of each vertex's neighbours.
+    sides : those that the line crosses and that go down, from left to right, each as the vertex where it
+        begins.
+    helpers : by side.
+    merges : those vertices that the line has passed.
+    diagonals : for each vertex where some end, their other ends.
+    """
+
+    points: Sequence[Point]
+    after: list[int] = field(factory=list)
+    before: list[int] = field(factory=list)
+    sides: list[int] = field(factory=list)
+    helpers: dict[int, int] = field(factory=dict)
+    merges: set[int] = field(factory=set)
+    diagonals: dict[int, list[int]] = field(factory=dict)
+
+    def run(self) -> None:
+        """Goes over all vertices."""
+        points = self.points
+        order = sorted(range(len(points)), key=lambda k: (-points[k][1], points[k][0], k))
+        place = {vertex: k for k, vertex in enumerate(order)}
+        for v in order:
+            before, after = self.before[v], self.after[v]
+            comes_up, goes_down = place[before] > place[v], place[after] > place[v]
+            is_reflex = turn(points[before], points[v], points[after]) <= 0
+            if not comes_up:
+                self.end(before, v)
+            if comes_up != goes_down:
+                if comes_up:
+                    self.help_left(v, is_split=False)
+            elif is_reflex:
+                self.help_left(v, is_split=goes_down)
+                if not goes_down:
+                    self.merges.add(v)
+            if goes_down:
+                self.begin(v)
+
+    def begin(self, v: int) -> None:
+        """Takes in the side that begins at a vertex and goes down."""
+        self.sides.insert(self.count_left_of(v), v)
+        self.helpers[v] = v
+
+    def end(self, side: int, v: int) -> None:
+        """Drops the side that ends at a vertex."""
+        if self.helpers[side] in self.merges:
+            self.connect(v, self.helpers[side])
+        self.sides.remove(side)
+
+    def help_left(self, v: int, is_split: bool) -> None:
+        """Makes a vertex the helper of the side to its left, where material lies between them."""
+        side = self.sides[self.count_left_of(v) - 1]
+        if is_split or self.helpers[side] in self.merges:
+            self.connect(v, self.helpers[side])
+        self.helpers[side] = v
+
+    def count_left_of(self, v: int) -> int:
+        """How many sides cross the line to the left of a vertex."""
+        low, high, points = 0, len(self.sides), self.points
+        while low < high:
+            middle = (low + high) // 2
+            side = self.sides[middle]
+            if turn(points[side], points[self.after[side]], points[v]) > 0:
+                low = middle + 1
+            else:
+                high = middle
+        return low
+
+    def connect(self, v: int, other: int) -> None:
+        """Adds a diagonal."""
+        self.diagonals.setdefault(v, []).append(other)
+        self.diagonals.setdefault(other, []).append(v)
+
+    def pieces(self) -> list[list[int]]:
+        """The monotone pieces as vertices in running order."""
+        ways = {(v, after) for v, after in enumerate(self.after)}
+        ways |= {(v, other) for v, others in self.diagonals.items() for other in others}
+        out: list[list[int]] = []
+        for start in sorted(ways):
+            if start not in ways:
+                continue
+            piece, way = [], start
+            while way in ways:
+                ways.discard(way)
+                piece.append(way[0])
+                way = (way[1], self.leftmost(*way))
+            out.append(piece)
+        return out
+
+    def leftmost(self, u: int, v: int) -> int:
+        """Where the border of the piece on the left of a way goes on from its end."""
+        others = self.diagonals.get(v)
+        if not others:
+            return self.after[v]
+        (x, y), points = self.points[v], self.points
+        back = atan2(points[u][1] - y, points[u][0] - x)
+
+        def clockwise(w: int) -> float:
+            return (back - atan2(points[w][1] - y, points[w][0] - x)) % tau or tau
+
+        return min((w for w in (self.after[v], *others) if w != u), key=clockwise)
+
+
+def monotone_triangles(piece: Sequence[int], points: Sequence[Point]) -> list[Triangle]:
+    """Triangles of a piece that every horizontal line meets in one span.
+
+    Parameters
+    ----------
+    piece : numbers of its vertices, counter-clockwise.
+    """
+    count = len(piece)
+    order = sorted(range(count), key=lambda k: (-points[piece[k]][1], points[piece[k]][0], piece[k]))
+    top, bottom = order[0], order[-1]
+    # From the top counter-clockwise the left border comes first.
+    length = (bottom - top) % count
+    is_left = [(k - top) % count < length for k in range(count)]
+    out: list[Triangle] = []
+
+    def add(a: int, b: int, c: int, left: bool) -> None:
+        ends = (piece[a], piece[b], piece[c])
+        out.append(ends if left else (ends[0], ends[2], ends[1]))
+
+    stack = order[:2]
+    for j in range(2, count):
+        k = order[j]
+        if j == count - 1 or is_left[k] != is_left[stack[-1]]:
+            # Of the span's other border; the last vertex sees all that is left.
+            side = is_left[stack[-1]]
+            for a, b in pairwise(stack):
+                add(a, b, k, side)
+            stack = [stack[-1], k]
+            continue
+        last = stack.pop()
+        sign = 1.0 if is_left[k] else -1.0
+        while stack and sign * turn(points[piece[stack[-1]]], points[piece[last]], points[piece[k]]) > 0:
+            add(stack[-1], last, k, is_left[k])
+            last = stack.pop()
+        stack += [last, k]
+    return out

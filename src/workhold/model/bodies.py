@@ -1,0 +1,304 @@
+"""A fixture as bodies in space: part, pegs, clamps, walls and plates as prisms with names and kinds.
+
+STEP set-ups, GLB files and the view of the page are made from this one description. The frame is the
+toolkit's in mm, z up, 0 on top of the plates, where the part lies.
+
+Glossary
+--------
+body : a thing that can be touched, made of slabs that lie on one another.
+slab : an upright prism between two heights, over a border with openings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from enum import StrEnum
+from math import asin, atan2, isfinite, pi
+
+from attrs import frozen
+
+from workhold.errors import InputError, plain, shortened
+from workhold.fixels.carrier import hole_name
+from workhold.fixels.pegs import peg_outline
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Arc, Box, Line, Point, Segment
+from workhold.model.fixture import Fixture
+from workhold.model.shown import MOST_HOLES, Shown, ShownCarrier, shown
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["COLOURS", "THICKNESS", "FixtureBody", "BodyKind", "BodySizes", "Slab", "fixture_bodies"]
+
+Loop = tuple[Segment, ...]
+
+# Of the part and of the plates, in mm, where nobody says.
+THICKNESS = 10.0
+LONGEST_NAME = 120
+# A hole that would touch a side of its plate or another hole is made this much smaller, in mm, so that no
+# body touches itself.
+FILM = 1e-3
+
+
+class BodyKind(StrEnum):
+    """What a body is."""
+
+    PART = "part"
+    PEG = "peg"
+    CLAMP = "clamp"
+    PLATE = "plate"
+    WALL = "wall"
+    SUPPORT = "support"
+
+
+# Red, green and blue from 0 to 1, as on a screen (sRGB).
+COLOURS: dict[BodyKind, tuple[float, float, float]] = {
+    BodyKind.PART: (0.36, 0.56, 0.82),
+    BodyKind.PEG: (0.85, 0.55, 0.15),
+    BodyKind.CLAMP: (0.75, 0.25, 0.22),
+    BodyKind.PLATE: (0.72, 0.74, 0.76),
+    BodyKind.WALL: (0.45, 0.48, 0.52),
+    BodyKind.SUPPORT: (0.30, 0.62, 0.38),
+}
+
+
+@frozen
+class Slab:
+    """An upright prism.
+
+    Parameters
+    ----------
+    outer : its border, counter-clockwise, in mm.
+    holes : openings through it, clockwise.
+    low, high : heights in mm.
+    """
+
+    outer: Loop
+    holes: tuple[Loop, ...]
+    low: float
+    high: float
+
+
+@frozen
+class FixtureBody:
+    """A body of a fixture.
+
+    Parameters
+    ----------
+    name : such as "peg L-A1".
+    kind : what it is.
+    slabs : from below upward.
+    opening : unit vector along which it moves away when the toolkit is opened; None where it stands still.
+    """
+
+    name: str
+    kind: BodyKind
+    slabs: tuple[Slab, ...]
+    opening: Point | None = None
+
+
+@frozen
+class BodySizes:
+    """Heights of the bodies in mm, all of them known.
+
+    Parameters
+    ----------
+    thickness : of the part.
+    plate_thickness : of all plates.
+    top : how far the pegs stand out of the plates.
+    peg_length : of the pegs.
+    others : how far clamps and walls stand out of the plates.
+    is_assumed : whether nobody said how thick the part is.
+    """
+
+    thickness: float
+    plate_thickness: float
+    top: float
+    peg_length: float
+    others: float
+    is_assumed: bool
+
+    @classmethod
+    def of(
+        cls,
+        workpiece: Workpiece,
+        thickness: float | None = None,
+        plate_thickness: float | None = None,
+        peg_length: float | None = None,
+        peg_height: float | None = None,
+    ) -> BodySizes:
+        """Fills in what nobody says: heights of the part's solid, else the usual thickness.
+
+        Raises
+        ------
+        InputError
+            For a length that is not positive.
+        """
+        solid, assumed = workpiece.solid, False
+        if thickness is None:
+            assumed, thickness = solid is None, THICKNESS if solid is None else solid.height
+        plate_thickness = THICKNESS if plate_thickness is None else plate_thickness
+        usual = thickness if solid is None else min(solid.peg_height, thickness)
+        top = usual if peg_height is None else peg_height
+        length = top + plate_thickness if peg_length is None else peg_length
+        for name, value in (
+            ("thickness", thickness),
+            ("plate thickness", plate_thickness),
+            ("peg height", top),
+            ("peg length", length),
+        ):
+            if not (isfinite(value) and value > 0):
+                raise InputError(f"{name} {value} is not a positive length: give it in mm.")
+        return cls(thickness, plate_thickness, top, length, usual, assumed)
+
+
+def fixture_bodies(
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    sizes: BodySizes | None = None,
+    more: Sequence[FixtureBody] = (),
+) -> tuple[FixtureBody, ...]:
+    """All bodies of a fixture: the part, pegs, clamps with their bolts, walls, plates, then what is added.
+
+    Parameters
+    ----------
+    fixture, workpiece, toolkit : the set-up.
+    sizes : heights; those of :meth:`BodySizes.of` if None.
+    more : further bodies, such as supports under the part.
+
+    Raises
+    ------
+    InputError
+        For pegs of radius 0, which have no body.
+    """
+    if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0:
+        raise InputError(
+            f"pegs of radius 0 have no body to write or show: give the {toolkit.noun} a peg radius."
+        )
+    sizes = BodySizes.of(workpiece) if sizes is None else sizes
+    seen = shown(fixture, toolkit, workpiece)
+    outer, *holes = (tuple(loop) for loop in workpiece.placed(fixture.pose).loop_segments)
+    part = Slab(outer, tuple(holes), 0.0, sizes.thickness)
+    name = plain(shortened(workpiece.name, LONGEST_NAME))
+    return (
+        FixtureBody(name, BodyKind.PART, (part,)),
+        *pegs(seen, sizes),
+        *clamps(seen, sizes),
+        *(
+            FixtureBody(wall.carrier.noun, BodyKind.WALL, (Slab(rectangle(wall.bar), (), 0.0, sizes.others),))
+            for wall in seen.walls
+        ),
+        *(
+            FixtureBody(
+                each.carrier.title, BodyKind.PLATE, (drilled(each, sizes.plate_thickness),), opening(each)
+            )
+            for each in seen.carriers
+        ),
+        *more,
+    )
+
+
+def opening(carrier: ShownCarrier) -> Point | None:
+    """The direction in which a carrier moves when it is opened."""
+    return None if carrier.clamping is None else reverse(carrier.clamping)
+
+
+def reverse(direction: Point) -> Point:
+    """The opposite direction, without a zero that has a sign."""
+    return 0.0 - direction[0], 0.0 - direction[1]
+
+
+def pegs(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
+    """The pegs: round in their holes, and above the plate as their flats leave them."""
+    for each in seen.carriers:
+        carrier = each.carrier
+        for peg in each.pegs:
+            center = (peg.x, peg.y)
+            outline = tuple(peg_outline(center, carrier.peg_radius, carrier.flat, peg.flat_deg))
+            low = sizes.top - sizes.peg_length
+            slabs = [Slab(outline, (), low, sizes.top)]
+            if len(outline) > 1 and low < 0.0:
+                foot = tuple(peg_outline(center, carrier.peg_radius))
+                slabs = [Slab(foot, (), low, 0.0), Slab(outline, (), 0.0, sizes.top)]
+            yield FixtureBody(f"{carrier.peg} {peg.hole}", BodyKind.PEG, tuple(slabs), opening(each))
+
+
+def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
+    """The clamps that are bolted to a plate, each before its bolt."""
+    for clamp in seen.clamps:
+        body = Slab(clamp.outline(), (), 0.0, sizes.others)
+        yield FixtureBody(clamp.tip.hole, BodyKind.CLAMP, (body,), reverse(clamp.clamping))
+        if clamp.hole is not None:
+            round_part = tuple(peg_outline(clamp.hole, seen.carriers[0].carrier.peg_radius))
+            place = hole_name(clamp.carrier.stands_on, clamp.tip.column, clamp.tip.row)
+            bolt = Slab(round_part, (), -sizes.plate_thickness, 0.0)
+            yield FixtureBody(f"bolt {place}", BodyKind.CLAMP, (bolt,))
+
+
+def rectangle(box: Box) -> Loop:
+    """The sides of a box, counter-clockwise."""
+    corners = [(box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1)]
+    return tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))
+
+
+def drilled(carrier: ShownCarrier, thickness: float) -> Slab:
+    """A plate with its holes, its upper side at z = 0.
+
+    Plates that nearly meet leave no material around the holes of their last columns: these are notches.
+    """
+    box, radius = carrier.plate, carrier.carrier.peg_radius
+    radius = min(radius, min(carrier.carrier.pitch) / 2 - FILM)
+    holes: list[Loop] = []
+    notches: dict[int, list[tuple[Point, float]]] = {side: [] for side in range(4)}
+    for hole in carrier.holes(MOST_HOLES):
+        x, y = hole.center
+        room = (y - box.y0, box.x1 - x, box.y1 - y, x - box.x0)
+        own = radius - 2 * FILM if any(abs(far - radius) < FILM for far in room) else radius
+        side = min(range(4), key=lambda k: room[k])
+        if room[side] > own:
+            holes.append((Arc((x, y), own, 0.0, pi, -1.0),))
+        else:
+            notches[side].append(((x, y), own))
+    return Slab(notched(box, notches), tuple(holes), -thickness, 0.0)
+
+
+def notched(box: Box, notches: dict[int, list[tuple[Point, float]]]) -> Loop:
+    """The sides of a box, counter-clockwise from the lower one, with round notches from discs over them.
+
+    Parameters
+    ----------
+    notches : by number of the side, the centres within the box and the radii in mm of discs apart.
+    """
+    border: list[Segment] = []
+    for number, side in enumerate(rectangle(box)):
+        assert isinstance(side, Line)
+        (tx, ty), (sx, sy) = side.tangent, side.start
+        at = side.start
+        cut = sorted(
+            ((x - sx) * tx + (y - sy) * ty, (y - sy) * tx - (x - sx) * ty, radius, (x, y))
+            for (x, y), radius in notches[number]
+        )
+        for along, away, radius, center in cut:
+            half = (radius**2 - away**2) ** 0.5
+            begin, end = ((sx + (along + k) * tx, sy + (along + k) * ty) for k in (-half, half))
+            # The disc reaches over the side by less than its half: what is left inside is the larger arc.
+            arc = Arc(center, radius, *inner_arc(side, away / radius), -1.0)
+            border += [Line(at, begin), arc]
+            at = end
+        border.append(Line(at, side.end))
+    return tuple(border)
+
+
+def inner_arc(side: Line, share: float) -> tuple[float, float]:
+    """Middle angle and half the sweep, in radians, of a disc's border on the left of a line.
+
+    Parameters
+    ----------
+    share : distance of the disc's centre from the line over its radius, from 0 to 1.
+
+    Examples
+    --------
+    >>> inner_arc(Line((0, 0), (1, 0)), 0.0) == (pi / 2, pi / 2)
+    True
+    """
+    nx, ny = -side.tangent[1], side.tangent[0]
+    return atan2(ny, nx), pi / 2 + asin(share)
