@@ -22,7 +22,7 @@ class ReadBody:
     name: str
     kind: str
     material: str
-    opening: list[float] | None
+    opens: list[float] | None
     positions: NDArray[np.float64]
     normals: NDArray[np.float64]
     triangles: NDArray[np.int64]
@@ -96,7 +96,7 @@ def read_glb(content: bytes) -> tuple[dict[str, Any], list[ReadBody]]:
         assert len(positions) == len(normals) and indices.min() >= 0 and indices.max() < len(positions)
         extras = node["extras"]
         material = document["materials"][primitive["material"]]["name"]
-        opening = extras.get("opening")
+        opening = extras.get("opens")
         bodies.append(
             ReadBody(
                 node["name"],

@@ -86,13 +86,13 @@ class FixtureBody:
     name : such as "peg L-A1".
     kind : what it is.
     slabs : from below upward.
-    opening : unit vector along which it moves away when the toolkit is opened; None where it stands still.
+    opens : unit vector along which it moves away when the toolkit is opened; None where it stands still.
     """
 
     name: str
     kind: BodyKind
     slabs: tuple[Slab, ...]
-    opening: Point | None = None
+    opens: Point | None = None
 
 
 @frozen
@@ -189,7 +189,7 @@ def fixture_bodies(
         ),
         *(
             FixtureBody(
-                each.carrier.title, BodyKind.PLATE, (drilled(each, sizes.plate_thickness),), opening(each)
+                each.carrier.title, BodyKind.PLATE, (drilled(each, sizes.plate_thickness),), way_open(each)
             )
             for each in seen.carriers
         ),
@@ -197,7 +197,7 @@ def fixture_bodies(
     )
 
 
-def opening(carrier: ShownCarrier) -> Point | None:
+def way_open(carrier: ShownCarrier) -> Point | None:
     """The direction in which a carrier moves when it is opened."""
     return None if carrier.clamping is None else reverse(carrier.clamping)
 
@@ -219,7 +219,7 @@ def pegs(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
             if len(outline) > 1 and low < 0.0:
                 foot = tuple(peg_outline(center, carrier.peg_radius))
                 slabs = [Slab(foot, (), low, 0.0), Slab(outline, (), 0.0, sizes.top)]
-            yield FixtureBody(f"{carrier.peg} {peg.hole}", BodyKind.PEG, tuple(slabs), opening(each))
+            yield FixtureBody(f"{carrier.peg} {peg.hole}", BodyKind.PEG, tuple(slabs), way_open(each))
 
 
 def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:

@@ -16,7 +16,15 @@ from workhold.model.seating import Seating
 from workhold.seating.clamping import ByHand
 from workhold.units import unit_named
 from workhold.web.answers import contact_answer, rows_answer
-from workhold.web.fixture_tasks import KINDS, ClosingForm, ClosingOrder, Held, PaperOrder, seating_answer
+from workhold.web.fixture_tasks import (
+    AT_ONCE,
+    KINDS,
+    ClosingForm,
+    ClosingOrder,
+    Held,
+    PaperOrder,
+    seating_answer,
+)
 from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
 from workhold.web.state import at_desk, at_desk_while_heard, state_of
@@ -152,7 +160,9 @@ async def paper(
     request: Request,
     name: str,
     rank: Rank,
-    kind: Literal["sheet.pdf", "sheet.svg", "setup.dxf", "setup.step", "picture.svg", "pins.csv"],
+    kind: Literal[
+        "sheet.pdf", "sheet.svg", "setup.dxf", "setup.step", "picture.svg", "pins.csv", "assembly.glb"
+    ],
     paper: Literal["a4", "letter"] = "a4",
     unit: UnitName = "mm",
     jaw_force: JawForce = None,
@@ -174,12 +184,12 @@ async def paper(
     day: Annotated[date | None, Query(alias="date")] = None,
     revision: Revision = None,
 ) -> Response:
-    """A paper of a fixture; all but the picture wait for the search to be over.
+    """A paper of a fixture; all but pictures and bodies wait for the search to be over.
 
     Lengths are in the unit asked for, loads JSON as in a search, and the date is today's if not given.
     """
     job = found_job(request, name)
-    result = result_of_job(job, revision, when_over=kind != "picture.svg")
+    result = result_of_job(job, revision, when_over=kind not in AT_ONCE)
     ranked(result, rank)
     given = unit_named(unit)
     sizes = {

@@ -33,6 +33,7 @@ from workhold.web.forms import LARGEST, Form, Number
 from workhold.web.worker import Order
 
 __all__ = [
+    "AT_ONCE",
     "KINDS",
     "ClosingForm",
     "ClosingOrder",
@@ -52,7 +53,10 @@ KINDS = {
     "setup.step": "model/step",
     "picture.svg": "image/svg+xml",
     "pins.csv": "text/csv; charset=utf-8",
+    "assembly.glb": "model/gltf-binary",
 }
+# What is made while a search goes on, too.
+AT_ONCE = ("picture.svg", "assembly.glb")
 
 
 @frozen(eq=False)
@@ -161,6 +165,17 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     return draw_fixture(order.fixture, result.workpiece, result.toolkit, title=title).encode("utf-8"), None
 
 
+def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
+    """Writes the fixture in three dimensions."""
+    from workhold.files.glb.writer import fixture_glb
+    from workhold.model.bodies import BodySizes
+
+    result, wishes = order.result, order.wishes
+    heights = {name: wishes[name] for name in ("thickness", "peg_length", "peg_height")}
+    sizes = BodySizes.of(result.workpiece, **heights)
+    return fixture_glb(order.fixture, result.workpiece, result.toolkit, sizes), None
+
+
 MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {
     "sheet.pdf": sheet,
     "sheet.svg": sheet,
@@ -168,6 +183,7 @@ MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {
     "setup.step": set_up,
     "picture.svg": picture,
     "pins.csv": set_up,
+    "assembly.glb": bodies,
 }
 
 

@@ -102,11 +102,11 @@ def test_what_moves_says_where_to_when_opened(name: str) -> None:
     """Moved that way pegs and clamps enter nothing, and leave the part; moved the other way they enter it."""
     read = bodies_of(name)
     (part,) = [shadow(body) for body in read if body.kind == "part"]
-    moving = [body for body in read if body.opening is not None]
+    moving = [body for body in read if body.opens is not None]
     freed = entered = 0
     for body in moving:
-        assert body.opening is not None and np.linalg.norm(body.opening) == pytest.approx(1)
-        dx, dy, dz = 2 * np.array(body.opening)
+        assert body.opens is not None and np.linalg.norm(body.opens) == pytest.approx(1)
+        dx, dy, dz = 2 * np.array(body.opens)
         assert dz == 0
         if body.kind in {"peg", "clamp"}:
             opened, closed = (shapely.affinity.translate(shadow(body), k * dx, k * dy) for k in (1, -1))

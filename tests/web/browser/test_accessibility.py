@@ -13,6 +13,9 @@ from walking import Walk
 
 AXE = Path(__file__).parent / "data" / "axe.min.js"
 STATIC = files("workhold.web") / "static"
+# What shows bodies in three dimensions, and the library that draws them, as it came.
+OWN = ("glb-reading.js", "space-view.js")
+LIBRARY = ("README.txt", "three-LICENSE.txt", "three.module.min.js")
 # Its unit, and which of its parts, are open.
 ASKING = {
     "name": "two.svg",
@@ -63,6 +66,9 @@ def test_nothing_serious_is_found(browser: Any, server: RunningServer, look: str
         walk.page.click(button)
     walk.seen("#board-title:has-text('Shown: 2')")
     check()
+    walk.page.click("#in-space")
+    walk.seen("#space-kinds li")
+    check()
     context.close()
 
 
@@ -98,7 +104,11 @@ def test_the_page_asks_for_all_its_modules_at_once() -> None:
 
 def test_modules_are_short_and_ask_nobody_else() -> None:
     """A module is one idea, under 400 lines, names no other server and makes no markup from text."""
-    for entry in STATIC.iterdir():
+    space = STATIC / "space"
+    assert {entry.name for entry in space.iterdir()} == {*OWN, *LIBRARY}
+    for entry in (*STATIC.iterdir(), *(space / name for name in OWN)):
+        if entry.name == "space":
+            continue
         text = entry.read_text(encoding="utf-8")
         assert text.count("\n") < 400, entry.name
         if entry.name.endswith(".js"):

@@ -2,7 +2,7 @@
 
 Each body is a node with its own mesh, named as the body is, below one node for the whole fixture. Bodies of
 one kind share a material. Lengths are metres, and y is up. What a viewer may do with a body stands in the
-node's ``extras``: its ``kind``, and where it slides ``opening``, the direction in which it opens.
+node's ``extras``: its ``kind``, and where it slides ``opens``, the direction in which it opens.
 """
 
 from __future__ import annotations
@@ -75,8 +75,8 @@ def bodies_glb(bodies: Sequence[FixtureBody], name: str) -> bytes:
     for number, body in enumerate(bodies):
         meshes.append({"name": body.name, "primitives": [scene.add(body_mesh(body), kinds.index(body.kind))]})
         extras: dict[str, Any] = {"kind": str(body.kind)}
-        if body.opening is not None:
-            extras["opening"] = [body.opening[0], 0.0, 0.0 - body.opening[1]]
+        if body.opens is not None:
+            extras["opens"] = [body.opens[0], 0.0, 0.0 - body.opens[1]]
         nodes.append({"name": body.name, "mesh": number, "extras": extras})
     document = {
         "asset": {"version": "2.0", "generator": "workhold"},

@@ -13,6 +13,7 @@ import { resultsPanel, want, writeFilters } from "./results-panel.js";
 import { rulesPanel, writeRules } from "./rules-panel.js";
 import { takeUp } from "./search.js";
 import { listenToSections } from "./sections.js";
+import { spaceDialog } from "./space-dialog.js";
 import { partDrawing, showView, stagePanel } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { takePanel } from "./take-panel.js";
@@ -84,6 +85,7 @@ async function begin() {
   comparisonDialog(figures);
   familiesDialog();
   takePanel(about);
+  spaceDialog();
   warningsPanel();
   await takeUpState().catch(() => {});
   const keepSoon = quiet(keep, 150);

@@ -1,0 +1,154 @@
+"""The fixture in three dimensions: drawn, turned by mouse and keys, opened by the slider, and told without WebGL."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from running_server import RunningServer
+from walking import Walk
+
+from glb_reading import read_glb
+
+# How many pixels are covered by bodies, and a sum that tells pictures apart.
+PICTURE = """async () => {
+  const { view } = await import("/static/space-dialog.js");
+  view.render();
+  const copy = document.createElement("canvas");
+  [copy.width, copy.height] = [view.canvas.width, view.canvas.height];
+  const context = copy.getContext("2d");
+  context.drawImage(view.canvas, 0, 0);
+  const { data } = context.getImageData(0, 0, copy.width, copy.height);
+  let covered = 0;
+  let sum = 0;
+  const colours = new Set();
+  for (let k = 0; k < data.length; k += 4) {
+    if (data[k + 3] < 128) continue;
+    covered += 1;
+    sum = (sum * 31 + data[k] + 7 * data[k + 1] + 13 * data[k + 2] + k) % 1000000007;
+    colours.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
+  }
+  return { share: covered / (data.length / 4), sum, colours: colours.size };
+}"""
+BODIES = """async () => {
+  const { view } = await import("/static/space-dialog.js");
+  return view.shown.map(({ mesh }) => [mesh.name, mesh.position.toArray()]);
+}"""
+
+
+@pytest.fixture
+def opened(walk: Walk) -> Walk:
+    """The best fixture of the widget in three dimensions."""
+    if not walk.page.evaluate("() => Boolean(document.createElement('canvas').getContext('webgl2'))"):
+        pytest.skip("this chromium draws no WebGL")
+    walk.take()
+    walk.search()
+    walk.page.click("#in-space")
+    walk.seen("#space-kinds li")
+    return walk
+
+
+def told(walk: Walk) -> list[Any]:
+    """The bodies of the fixture shown, as the server's file has them."""
+    answer = walk.server.client.get(f"/api/jobs/{walk.job()}/fixtures/{walk.shown()['rank']}/assembly.glb")
+    assert answer.headers["content-type"] == "model/gltf-binary"
+    return read_glb(answer.content)[1]
+
+
+def test_every_body_is_drawn(opened: Walk) -> None:
+    """As many as the file has, by the same names; the picture is not empty, and the legend counts them by kind."""
+    bodies = told(opened)
+    assert [name for name, _ in opened.page.evaluate(BODIES)] == [body.name for body in bodies]
+    picture = opened.page.evaluate(PICTURE)
+    assert picture["share"] > 0.1 and picture["colours"] > 20
+    assert opened.page.locator("#space-kinds li").all_inner_texts() == ["part: widget", "peg: 4", "plate: 2"]
+
+
+def test_it_is_turned_by_mouse_and_keys(opened: Walk) -> None:
+    """Dragging, arrows, the wheel and plus change the picture; 0 brings the first one back."""
+    page = opened.page
+    first = page.evaluate(PICTURE)
+    box = page.locator("#space-canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    pictures = [first["sum"]]
+
+    def changed() -> None:
+        pictures.append(page.evaluate(PICTURE)["sum"])
+
+    opened.drag((x, y), (x + 90, y + 30))
+    changed()
+    page.mouse.wheel(0, -200)
+    changed()
+    for key in ("ArrowLeft", "ArrowUp", "+", "Shift+ArrowRight"):
+        page.press("#space-canvas", key)
+        changed()
+    assert len(set(pictures)) == len(pictures)
+    rank = opened.shown()["rank"]
+    page.press("#space-canvas", "0")
+    assert page.evaluate(PICTURE)["sum"] == first["sum"]
+    assert opened.shown()["rank"] == rank
+
+
+def test_the_slider_opens_what_moves(opened: Walk) -> None:
+    """The right jaw and its pegs move along its opening by what is said, all else stays; closed again all is as before."""
+    page = opened.page
+    page.evaluate(
+        """() => {
+          const slider = document.querySelector("#space-opening");
+          slider.value = slider.max;
+          slider.dispatchEvent(new Event("input"));
+        }"""
+    )
+    by = float(page.inner_text("#space-opened").split()[0])
+    assert by > 5
+    moved = dict(page.evaluate(BODIES))
+    for body in told(opened):
+        x, y, z = moved[body.name]
+        wanted = (0, 0, 0) if body.opens is None else [1e-3 * by * part for part in body.opens]
+        assert (x, -z, y) == pytest.approx(tuple(wanted), abs=1e-4)
+    assert any(any(place) for place in moved.values())
+
+
+def test_the_view_fits_the_next_fixture_too(opened: Walk) -> None:
+    """Closed and opened again for another fixture: its bodies, and none of those before."""
+    page = opened.page
+    page.click("#space .primary")
+    page.click("#next")
+    opened.until("state.selected.rank === 2")
+    page.click("#in-space")
+    opened.seen("#space-title:has-text('Fixture 2')")
+    opened.seen("#space-kinds li")
+    assert [name for name, _ in page.evaluate(BODIES)] == [body.name for body in told(opened)]
+
+
+@pytest.fixture
+def without(browser: Any, server: RunningServer) -> Iterator[Walk]:
+    """The page in a browser that gives no WebGL."""
+    context = browser.new_context(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
+    context.add_init_script(
+        """const given = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+          return kind.startsWith("webgl") ? null : given.call(this, kind, ...more);
+        };"""
+    )
+    walk = Walk(context.new_page(), server)
+    walk.open()
+    yield walk
+    context.close()
+    assert walk.troubles == []
+
+
+def test_without_webgl_one_sentence_says_so(without: Walk) -> None:
+    """Nothing to turn, but the bodies by kind and the file; and the page goes on."""
+    page = without.page
+    without.take()
+    without.search()
+    page.click("#in-space")
+    without.seen("#space-kinds li")
+    assert page.inner_text("#space-words").count(".") == 1 and "no WebGL" in page.inner_text("#space-words")
+    assert not page.is_visible("#space-canvas")
+    assert read_glb(without.saved("#space-save"))[1]
+    page.click("#space .primary")
+    page.click("#next")
+    without.until("state.selected.rank === 2")
