@@ -166,6 +166,26 @@ def test_plates_that_nearly_meet_have_notches() -> None:
         body.assert_closed()
 
 
+@pytest.mark.parametrize("separation", [None, 2.5 / 0.48], ids=["each other", "a side"])
+def test_holes_that_would_touch_are_a_little_smaller(separation: float | None) -> None:
+    """Holes half a pitch in radius, and holes that reach just to the side of their plate, leave a film all around."""
+    fixture, part, toolkit = held("touching holes" if separation is None else "vise")
+    fixture = fixture if separation is None else evolve(fixture, jaw_separation=separation)
+    for body in fixture_bodies(fixture, part, toolkit, SIZES):
+        if body.kind != "plate":
+            continue
+        (slab,) = body.slabs
+        assert not any(isinstance(one, Arc) for one in slab.outer)
+        corners = np.array([one.start for one in slab.outer])
+        circles = [one for loop in slab.holes for one in loop]
+        places = np.array([circle.center for circle in circles])
+        radii = np.array([circle.radius for circle in circles])
+        room = np.minimum(places - corners.min(axis=0), corners.max(axis=0) - places).min(axis=1)
+        assert (room > radii + 1e-4).all()
+        apart = np.linalg.norm(places[:, None] - places, axis=2) + 1e3 * np.eye(len(places))
+        assert (apart > radii[:, None] + radii + 1e-4).all()
+
+
 def test_pegs_without_a_radius_are_refused() -> None:
     """They have no body."""
     fixture, part, toolkit = held("vise")
