@@ -14,10 +14,10 @@ from body_examples import BLOCK, TOOLKITS, held
 from glb_reading import ReadBody, read_glb
 from workhold.errors import InputError
 from workhold.files.glb.meshes import SAGITTA
-from workhold.files.glb.writer import fixture_glb
+from workhold.files.glb.writer import bodies_glb, fixture_glb
 from workhold.fixels.vise import Vise
-from workhold.geometry.segment import Arc
-from workhold.model.bodies import COLOURS, BodySizes, fixture_bodies
+from workhold.geometry.segment import Arc, Line
+from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, fixture_bodies
 from workhold.model.solid import SolidOutline
 
 SIZES = BodySizes.of(BLOCK, thickness=12, plate_thickness=8)
@@ -184,6 +184,16 @@ def test_holes_that_would_touch_are_a_little_smaller(separation: float | None) -
         assert (room > radii + 1e-4).all()
         apart = np.linalg.norm(places[:, None] - places, axis=2) + 1e3 * np.eye(len(places))
         assert (apart > radii[:, None] + radii + 1e-4).all()
+
+
+def test_sides_that_vanish_in_single_precision_are_left_out() -> None:
+    """A side of a hundredth of a micrometre, in the middle of a loop and at its end, leaves no edge of no length."""
+    corners = [(0.0, 0.0), (9.0, 0.0), (9.0, 1e-5), (9.0, 7.0), (1e-5, 1e-5)]
+    loop = tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))
+    body = FixtureBody("wedge", BodyKind.WALL, (Slab(loop, (), 0.0, 2.0),))
+    (read,) = read_glb(bodies_glb([body], "wedge"))[1]
+    read.assert_closed()
+    assert read.volume == pytest.approx(63.0, rel=1e-4) and len(read.triangles) == 2 + 6
 
 
 def test_pegs_without_a_radius_are_refused() -> None:

@@ -111,7 +111,7 @@ def pieces_of(loop: Sequence[Segment], sagitta: float) -> list[WallPiece]:
     for k, (start, number, first) in enumerate(places):
         end, following, last = places[(k + 1) % len(places)]
         segment = loop[number]
-        if following != number or k + 1 == len(places):
+        if following != number:
             last = chord_ends(segment, sagitta)[-1]
         out.append(WallPiece(start, end, (segment.normal(first), segment.normal(last))))
     return out
