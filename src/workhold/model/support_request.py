@@ -10,11 +10,12 @@ reach : rings about holes of a clamp in which its tip can stand, in the toolkit'
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 from math import hypot, isfinite
 from typing import Any
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import Factory, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -27,6 +28,22 @@ __all__ = ["Loops", "SpatialLoad", "SupportRequest", "loops_of"]
 
 Loops = tuple[NDArray[np.float64], ...]
 Span = tuple[float, float]
+
+
+def optional_real(value: Any) -> float | None:
+    """A number, or None."""
+    return None if value is None else real(value)
+
+
+def pair_of(values: Any) -> Span:
+    """Two numbers in their order."""
+    one, other = values
+    return real(one), real(other)
+
+
+def optional_pair(values: Any) -> Span | None:
+    """Two numbers in their order, or None."""
+    return None if values is None else pair_of(values)
 
 
 def span_of(value: Any) -> Span:
@@ -55,14 +72,17 @@ def loops_of(loops: Iterable[Any] | None) -> Loops | None:
         return None
     out = []
     for number, loop in enumerate(loops, 1):
-        checked = checked_vertices(
-            loop, f"face: loop {number}", lambda k, n=number: f"face: loop {n}, side {k}"
-        )
+        checked = checked_vertices(loop, f"face: loop {number}", partial(side_of, number))
         checked.setflags(write=False)
         out.append(checked)
     if not out:
         raise InputError("a face without loops is nowhere: give its outer loop first.")
     return tuple(out)
+
+
+def side_of(loop: int, side: int) -> str:
+    """What a side of a loop of a face is called in messages."""
+    return f"face: loop {loop}, side {side}"
 
 
 def rings_of(reach: Iterable[Iterable[float]] | None) -> tuple[tuple[float, float, float, float], ...] | None:
@@ -114,7 +134,7 @@ class SpatialLoad:
     heights: Span | None = field(default=None, converter=optional_span)
     axial: Span = field(default=(0.0, 0.0), converter=span_of)
     moment: float = field(default=0.0, converter=real)
-    tilt: Span = field(default=(0.0, 0.0), converter=lambda pair: tuple(real(one) for one in pair))
+    tilt: Span = field(default=(0.0, 0.0), converter=pair_of)
     name: str = ""
 
     def __attrs_post_init__(self) -> None:
@@ -164,13 +184,13 @@ class SupportRequest:
     thickness : of the part, T.
     pad_radius : of the supports' round pads.
     tip_radius : of the clamp's round tip.
-    band : heights at which pegs may press; None is from 0 to T.
+    band : heights at which pegs may press; by default from 0 to T.
     bands : the same for each peg of the fixture, in its order, None for those that have no band of their own.
     pad_margin : smallest distance from a pad to the border of the face it supports.
     bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first;
         None is the outline with its holes.
     bottom_zones, top_zones : keep-outs from below and from above.
-    inside : smallest distance from the clamp to each side of the supports' triangle; None is the tip's radius.
+    inside : smallest distance from the clamp to each side of the supports' triangle; by default the tip's radius.
     reach : rings in which the clamp can stand, None for anywhere.
     point : where the clamp stands; None where it is free.
 
@@ -188,24 +208,20 @@ class SupportRequest:
     thickness: float = field(converter=real)
     pad_radius: float = field(converter=real)
     tip_radius: float = field(converter=real)
-    band: Span | None = field(default=None, converter=optional_span)
+    band: Span = field(
+        default=Factory(lambda self: (0.0, self.thickness), takes_self=True), converter=pair_of
+    )
     bands: tuple[Span | None, ...] | None = None
     pad_margin: float = field(default=0.0, converter=real)
     bottom: Loops | None = field(default=None, converter=loops_of, eq=False)
     top: Loops | None = field(default=None, converter=loops_of, eq=False)
     bottom_zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
     top_zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
-    inside: float = field(default=None, converter=lambda value: None if value is None else real(value))
+    inside: float = field(default=Factory(lambda self: self.tip_radius, takes_self=True), converter=real)
     reach: tuple[tuple[float, float, float, float], ...] | None = field(default=None, converter=rings_of)
-    point: Span | None = field(
-        default=None, converter=lambda p: None if p is None else (real(p[0]), real(p[1]))
-    )
+    point: Span | None = field(default=None, converter=optional_pair)
 
     def __attrs_post_init__(self) -> None:
-        if self.inside is None:
-            object.__setattr__(self, "inside", self.tip_radius)
-        if self.band is None:
-            object.__setattr__(self, "band", (0.0, self.thickness))
         for name, value in (
             ("thickness", self.thickness),
             ("tip radius", self.tip_radius),

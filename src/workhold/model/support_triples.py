@@ -1,4 +1,4 @@
-"""What is told of the supports of a planar fixture: triples with their figures, and how many there are."""
+"""What is known of the supports of a planar fixture: triples with their figures, and how many there are."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
-__all__ = ["ClampFigures", "Support", "Supports", "Triple"]
+__all__ = ["ClampFigures", "SupportPad", "Supports", "Triple"]
 
 Point = tuple[float, float]
 
@@ -36,7 +36,7 @@ class ClampFigures:
 
 
 @frozen
-class Support:
+class SupportPad:
     """A support in a hole.
 
     Parameters
@@ -69,7 +69,7 @@ class Triple:
     given : the clamp at the point asked for; None where none was asked for or it may not stand there.
     """
 
-    supports: tuple[Support, ...]
+    supports: tuple[SupportPad, ...]
     travel: float | None
     marginal: bool
     standing: float

@@ -2,7 +2,7 @@
 
 A face is an outer loop less its openings; keep-out zones are taken off. The room at a point is the distance to
 the nearest border, negative off the face. Parity of crossings with the chords, changed once between each arc
-and its chord, tells which side a point is on.
+and its chord, says which side a point is on.
 """
 
 from __future__ import annotations

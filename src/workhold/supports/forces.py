@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
+from workhold.model.support_request import SpatialLoad
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
-from workhold.model.support_request import SpatialLoad
 
 __all__ = ["PegForces", "Triangles", "lifted_by_jaws", "support_forces"]
 

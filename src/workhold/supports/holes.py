@@ -1,6 +1,6 @@
 """Which holes of a fixture's lattices may hold a support, and which triples of them its carriers have room for.
 
-Columns and rows count as the planar fixture counts them, also beyond its plates. Two jaws may stand nearer
+Columns and rows count as the planar fixture counts them, also outside its plates. Two jaws may stand nearer
 together for supports between the pegs, so the travel of a triple may differ from the planar fixture's; where
 pegs and supports stand relative to the part does not.
 """
@@ -17,8 +17,8 @@ from workhold.conventions import GAP_SLACK
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.supports.faces import TouchableFace
 from workhold.model.support_request import SupportRequest
+from workhold.supports.faces import TouchableFace
 
 __all__ = ["HolesUnderPart", "Standing", "holes_under", "pegs_in_part", "standing_of"]
 
@@ -178,7 +178,7 @@ def standing_of(fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart, tripl
     spare = opened - travel.least
     fits &= (outward <= room) & (spare >= -GAP_SLACK)
     standing_now = Standing(fits, opened, spare)
-    return clear_of_blocked(standing_now, fixture, toolkit, holes, triples, (at_rest, room))
+    return clear_of_blocked(standing_now, fixture, toolkit, holes, triples, np.asarray(at_rest, np.float64))
 
 
 def clear_of_blocked(
@@ -187,19 +187,20 @@ def clear_of_blocked(
     toolkit: Toolkit,
     holes: HolesUnderPart,
     triples: IntArray,
-    rest: tuple[Array, Array],
+    at_rest: Array,
 ) -> Standing:
     """Moves pegs and supports on until none of them stands in a blocked hole.
 
     Parameters
     ----------
-    rest : the travel (N,) nearest the opening, and the columns (N,) that there is room for outward.
+    at_rest : the travel (N,) nearest the opening.
     """
     plates = [(k, one) for k, one in enumerate(toolkit.carriers) if one.has_lattice]
     if len(plates) < 2 or not any(one.blocked for _, one in plates):
         return found
     travel = next(one.travel for _, one in plates if one.travel is not None)
     pitch, names = plates[0][1].pitch[0], [one.name for _, one in plates]
+    assert travel is not None
     fits, opened = found.fits.copy(), found.travel.copy()
     pegs = [(names.index(p.carrier), p.column, p.row) for p in fixture.pegs if p.carrier in names]
     numbers = [k for k, _ in plates]
@@ -209,13 +210,12 @@ def clear_of_blocked(
             (numbers.index(int(holes.carrier[h])), int(holes.column[h]), int(holes.row[h])) for h in own
         ]
         place = first_free(standing, [one for _, one in plates])
-        at_rest = rest[0][index]
         for moved in place:
-            width = at_rest - moved * pitch
-            if width < travel.least - GAP_SLACK:  # type: ignore[union-attr]
+            width = at_rest[index] - moved * pitch
+            if width < travel.least - GAP_SLACK:
                 fits[index] = False
                 break
-            if travel.most is None or width <= travel.most + GAP_SLACK:  # type: ignore[union-attr]
+            if travel.most is None or width <= travel.most + GAP_SLACK:
                 opened[index] = width
                 break
         else:

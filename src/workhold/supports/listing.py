@@ -17,18 +17,17 @@ from numpy.typing import NDArray
 
 from workhold.conventions import AGREEMENT, FIGURE_DECIMALS, GAP_SLACK
 from workhold.errors import InputError
-from workhold.limits import real, refuse_strong
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.requirements import Load
+from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
+from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 from workhold.statics.contact_matrix import Touched
-from workhold.statics.loads import load_cases
-from workhold.model.support_triples import ClampFigures, Support, Supports, Triple
+from workhold.supports.acting import checked_force, needed_jaw_force, spatial
 from workhold.supports.clamp_point import ClampPlaces
 from workhold.supports.faces import TouchableFace, area_center
 from workhold.supports.forces import PegForces, Triangles, lifted_by_jaws, support_forces
 from workhold.supports.holes import HolesUnderPart, Standing, holes_under, standing_of
-from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
 
 __all__ = ["SupportSearch", "supports_of", "supports_of_best"]
 
@@ -43,40 +42,6 @@ COARSE = 2
 def coarse(value: float) -> float:
     """A figure to two significant digits, as the ranking counts it; a force below 1e-9 is none."""
     return float(f"{value:.{COARSE - 1}e}") if abs(value) > 10.0**-FIGURE_DECIMALS else 0.0
-
-
-def spatial(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[SpatialLoad, ...]:
-    """Loads as they act in space, with their heights written out."""
-    every = (load if isinstance(load, SpatialLoad) else SpatialLoad.of(load) for load in loads)
-    return tuple(load.at_height(thickness) for load in every)
-
-
-def needed_jaw_force(
-    fixture: Fixture, query: Query, loads: Sequence[SpatialLoad], jaw_force: float | None
-) -> float:
-    """The jaw force asked for, or the one that keeps all pegs in contact under every load.
-
-    Raises
-    ------
-    InputError
-        When the one asked for is too small, naming the load.
-    """
-    planar = [(load, load.planar) for load in loads]
-    acting = [(load, flat) for load, flat in planar if flat is not None]
-    cases = load_cases(
-        fixture, query.workpiece, query.toolkit, [flat for _, flat in acting], jaw_force, jaw="constant"
-    )
-    needs = [case.needed.value for case in cases]
-    if jaw_force is None:
-        return max(needs, default=0.0)
-    for (load, _), need in zip(acting, needs, strict=True):
-        if need > jaw_force * (1 + AGREEMENT):
-            name = f"the load '{load.name}'" if load.name else "a load"
-            raise InputError(
-                f"a jaw force of {jaw_force:g} N lets a peg lose contact under {name}, which takes {need:.6g} N: "
-                "give more, or leave it out."
-            )
-    return float(jaw_force)
 
 
 @define(frozen=True, eq=False)
@@ -219,7 +184,7 @@ class FixtureTriples:
         best_at, need = self.least_forces(rows, arm_at)
         standing = self.triangles.take(rows).sides(self.search.center).min(axis=1)
         given = self.given_at(rows)
-        keys = []
+        keys: list[tuple[float, ...]] = []
         point = self.search.request.point
         forces = self.largest_forces(rows, best_at, need)
         if point is not None and given.any():
@@ -249,12 +214,12 @@ class FixtureTriples:
         """The clamp force needed at points (N, 2), one of each triple."""
         shares = self.triangles.take(rows).shares(points[:, None])[:, 0]
         with np.errstate(divide="ignore"):
-            return np.maximum((self.reach[rows] / shares).max(axis=1), 0.0)
+            return np.asarray(np.maximum((self.reach[rows] / shares).max(axis=1), 0.0))
 
     def largest_forces(self, rows: IntArray, points: Array, need: Array) -> Array:
         """The largest force on a support at the clamp force needed."""
         shares = self.triangles.take(rows).shares(points[:, None])[:, 0]
-        return np.maximum((need[:, None] * shares + self.most[rows]).max(axis=1), 0.0)
+        return np.asarray(np.maximum((need[:, None] * shares + self.most[rows]).max(axis=1), 0.0))
 
     def all_ranked(self) -> tuple[int, IntArray]:
         """How many triples are valid, and all of them, the best first."""
@@ -311,7 +276,7 @@ class FixtureTriples:
         )
 
     def described(self, rows: IntArray) -> tuple[Triple, ...]:
-        """Triples with all that is told of them."""
+        """Triples with their figures."""
         if not len(rows):
             return ()
         search, request = self.search, self.search.request
@@ -321,9 +286,9 @@ class FixtureTriples:
         some = self.triangles.take(rows)
         standing = some.sides(search.center).min(axis=1)
         points = [point for load in search.loads for point in load.points]
-        beyond = np.full(len(rows), -inf)
+        outside = np.full(len(rows), -inf)
         for point in points:
-            beyond = np.maximum(beyond, -some.sides(np.array(point)).min(axis=1))
+            outside = np.maximum(outside, -some.sides(np.array(point)).min(axis=1))
         out = []
         for k, row in enumerate(rows.tolist()):
             place, travel = self.rows[row], float(self.standing.travel[self.rows[row]])
@@ -338,7 +303,7 @@ class FixtureTriples:
                     travel=travel if isfinite(travel) else None,
                     marginal=spare < AGREEMENT,
                     standing=float(standing[k]),
-                    overhang=float(beyond[k]) if points else None,
+                    overhang=float(outside[k]) if points else None,
                     arm=float(arm[k]),
                     arm_at=(float(arm_at[k, 0]), float(arm_at[k, 1])),
                     best=self.figures_at(row, best_at[k]),
@@ -347,28 +312,12 @@ class FixtureTriples:
             )
         return tuple(out)
 
-    def support(self, hole: int) -> Support:
+    def support(self, hole: int) -> SupportPad:
         """One support."""
         holes = self.holes
         x, y = holes.points[hole]
         name = self.search.query.toolkit.carriers[holes.carrier[hole]].name
-        return Support(name, int(holes.column[hole]), int(holes.row[hole]), float(x), float(y))
-
-
-def checked_force(jaw_force: float | None) -> float | None:
-    """A jaw force in N, or None.
-
-    Raises
-    ------
-    InputError
-        For one that is negative or no number.
-    """
-    if jaw_force is None:
-        return None
-    if not (isfinite(real(jaw_force)) and real(jaw_force) >= 0):
-        raise InputError(f"jaw force {real(jaw_force):g} cannot be used: give 0 or more.")
-    refuse_strong("jaw force", real(jaw_force))
-    return real(jaw_force)
+        return SupportPad(name, int(holes.column[hole]), int(holes.row[hole]), float(x), float(y))
 
 
 def supports_of(

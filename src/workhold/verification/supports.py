@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import product
-from math import atan2, ceil, cos, hypot, inf, pi, radians, sin
+from math import ceil, hypot, inf, pi, radians
 from pathlib import Path
 
 import numpy as np
@@ -20,16 +20,20 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.files.result.parts import checked_head
-from workhold.files.supports.forms import FORMAT, ClampPart, SupportsPart, TriplePart, read_supports_part
+from workhold.files.supports.forms import (
+    FORMAT,
+    ClampFiguresPart,
+    TriplePart,
+    read_supports_part,
+)
 from workhold.fixels.contacts import CLAMP_TIP
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.loop import loop_segments
-from workhold.geometry.segment import Segment, distance_to_segment
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.verification.reading import fixtures_of
 from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.support_faces import area_center, room_on
 from workhold.verification.verify import Judge, Unproven, Verification
 
 __all__ = ["SupportsJudge", "is_supports_file", "verify_supports_file"]
@@ -48,36 +52,6 @@ def is_supports_file(path: str | Path) -> bool:
             return FORMAT.encode() in stream.read(200)
     except OSError:
         return False
-
-
-def turns_about(segments: Sequence[Segment], point: tuple[float, float]) -> int:
-    """How often a loop runs around a point off it."""
-    turned = 0.0
-    for one in segments:
-        steps = max(1, ceil(one.half_extent * 8)) if hasattr(one, "radius") else 1
-        low, high = one.parameter(one.start), one.parameter(one.end)
-        if hasattr(one, "radius"):
-            low, high = -one.sign * one.half_extent, one.sign * one.half_extent
-        if (
-            hasattr(one, "radius")
-            and abs(hypot(point[0] - one.center[0], point[1] - one.center[1]) - one.radius) < 1
-        ):
-            steps = 4096
-        places = [one.at(low + (high - low) * k / steps) for k in range(steps + 1)]
-        angles = [atan2(y - point[1], x - point[0]) for x, y in places]
-        turned += sum((b - a + pi) % (2 * pi) - pi for a, b in zip(angles, angles[1:], strict=False))
-    return round(turned / (2 * pi))
-
-
-def room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
-    """How large a disc about a point lies on a face and over no zone, in mm; negative off it."""
-    room = inf
-    for number, loop in enumerate([*loops, *zones]):
-        segments = loop_segments(np.asarray(loop))
-        near = min(distance_to_segment(point, one) for one in segments)
-        is_in = turns_about(segments, point) != 0
-        room = min(room, near if is_in == (number == 0) else -near)
-    return room
 
 
 @frozen(eq=False)
@@ -157,10 +131,10 @@ class SupportsJudge:
         taken: dict[str, list[tuple[int, int]]] = {plate.name: [] for plate in plates}
         for name, column, row in holes:
             taken[name].append((column, row))
-        counted = {
-            name: [list(zip(*places, strict=True)) or [(), ()], [[], []]] for name, places in taken.items()
+        lines = {
+            name: ([column for column, _ in places], [row for _, row in places])
+            for name, places in taken.items()
         }
-        lines = {name: [list(one[0][0]), list(one[0][1])] for name, one in counted.items()}
         for peg in self.fixture.pegs:
             carrier = toolkit.carrier(peg.carrier)
             for axis, number in enumerate((peg.column, peg.row)):
@@ -295,10 +269,10 @@ class SupportsJudge:
         solved = self.balances(supports)
         least, most = self.extremes(solved) if self.loads else (np.zeros(3), np.zeros(3))
         jaw = solved @ self.right_side([0, 0, 0], [0, 0, 0], [0, 0, 0], 1.0)
-        told = [("best", part.best, part.best.at)]
+        places = [("best", part.best, part.best.at)]
         if part.given is not None:
-            told.append(("given", part.given, list(self.request.point or ())))
-        for name, figures, at in told:
+            places.append(("given", part.given, list(self.request.point or ())))
+        for name, figures, at in places:
             if at is None or len(at) != 2:
                 yield f"the {name} clamp point is missing"
                 continue
@@ -331,7 +305,7 @@ class SupportsJudge:
         yield from self.better_places(part, supports, solved, least)
 
     def better_places(self, part: TriplePart, supports: Array, solved: Array, least: Array) -> Iterator[str]:
-        """A fault where a place of a grid over the triangle is better than the one told."""
+        """A fault where a place of a grid over the triangle is better than the one written."""
         for i, j in product(range(1, GRID), repeat=2):
             if i + j >= GRID:
                 continue
@@ -355,37 +329,16 @@ class SupportsJudge:
         )
 
 
-def differs(told: float | None, own: float) -> bool:
+def differs(written: float | None, own: float) -> bool:
     """Whether a number is missing or another one."""
-    return told is None or abs(told - own) > AGREEMENT * max(1.0, abs(own))
+    return written is None or abs(written - own) > AGREEMENT * max(1.0, abs(own))
 
 
-def other_figures(name: str, figures: ClampPart, known: dict[str, float]) -> Iterator[str]:
+def other_figures(name: str, figures: ClampFiguresPart, known: dict[str, float]) -> Iterator[str]:
     """A fault for each figure that is another one."""
     for key, value in known.items():
         if differs(getattr(figures, key), value):
             yield f"{key} at the {name} point is {value:.9g}, and is written as {getattr(figures, key)}"
-
-
-def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
-    """The centre of area of the part, from integrals along its border (Gauss-Legendre along each segment)."""
-    nodes, weights = np.polynomial.legendre.leggauss(24)
-    area = first = second = 0.0
-    for one in (segment for loop in loops for segment in loop):
-        if hasattr(one, "radius"):
-            low = one.mid_angle - one.sign * one.half_sweep
-            sweep = 2 * one.sign * one.half_sweep
-            angle = low + sweep * (nodes + 1) / 2
-            x, y = one.center[0] + one.radius * np.cos(angle), one.center[1] + one.radius * np.sin(angle)
-            dx, dy = -one.radius * np.sin(angle) * sweep / 2, one.radius * np.cos(angle) * sweep / 2
-        else:
-            (x0, y0), (x1, y1) = one.start, one.end
-            x, y = x0 + (x1 - x0) * (nodes + 1) / 2, y0 + (y1 - y0) * (nodes + 1) / 2
-            dx, dy = np.full(len(nodes), (x1 - x0) / 2), np.full(len(nodes), (y1 - y0) / 2)
-        area += float(weights @ (x * dy))
-        first += float(weights @ (x * x * dy)) / 2
-        second -= float(weights @ (y * y * dx)) / 2
-    return first / area, second / area
 
 
 def verify_supports_file(path: str | Path) -> Verification:

@@ -59,7 +59,7 @@ class PadsPart(FormPart):
     pad_radius: float
     pad_margin: float = 0.0
     bottom: list[Loop] | None = None
-    zones: list[ZonePart] = []
+    zones: list[ZonePart] = Field(default_factory=list)
 
 
 class TipPart(FormPart):
@@ -68,7 +68,7 @@ class TipPart(FormPart):
     tip_radius: float
     inside: float | None = None
     top: list[Loop] | None = None
-    zones: list[ZonePart] = []
+    zones: list[ZonePart] = Field(default_factory=list)
     reach: list[Ring] | None = None
     point: Two | None = None
 
@@ -77,13 +77,13 @@ class SpatialLoadPart(FormPart):
     """A load in space."""
 
     name: str = ""
-    points: list[Two] = []
+    points: list[Two] = Field(default_factory=list)
     force: float = 0.0
-    directions: Two = list(ANY_DIRECTION)
+    directions: Two = Field(default_factory=lambda: list(ANY_DIRECTION))
     heights: Two | None = None
-    axial: Two = [0.0, 0.0]
+    axial: Two = Field(default_factory=lambda: [0.0, 0.0])
     moment: float = 0.0
-    tilt: Two = [0.0, 0.0]
+    tilt: Two = Field(default_factory=lambda: [0.0, 0.0])
 
     def load(self, thickness: float) -> SpatialLoad:
         """The load with its heights written out.
@@ -96,7 +96,7 @@ class SpatialLoadPart(FormPart):
         return SpatialLoad(**dict(self)).at_height(thickness)
 
 
-class ClampPart(FormPart):
+class ClampFiguresPart(FormPart):
     """The figures at one point of the clamp."""
 
     at: Two | None = None
@@ -117,8 +117,8 @@ class TriplePart(FormPart):
     overhang: float | None = None
     arm: float
     arm_at: Two
-    best: ClampPart
-    given: ClampPart | None = None
+    best: ClampFiguresPart
+    given: ClampFiguresPart | None = None
 
 
 class CountsPart(FormPart):
@@ -139,7 +139,7 @@ class SupportsPart(FormPart):
     heights: HeightsPart
     supports: PadsPart
     clamp: TipPart
-    loads: list[SpatialLoadPart] = []
+    loads: list[SpatialLoadPart] = Field(default_factory=list)
     jaw_force: Annotated[float, Field(ge=0)]
     complete: bool = True
     counts: CountsPart
@@ -177,7 +177,7 @@ class SupportsPart(FormPart):
             top=tip.top,
             bottom_zones=tuple(one.zone() for one in pads.zones),
             top_zones=tuple(one.zone() for one in tip.zones),
-            inside=tip.inside,
+            inside=tip.tip_radius if tip.inside is None else tip.inside,
             reach=tip.reach,
             point=tip.point,
         )

@@ -7,11 +7,11 @@ from pathlib import Path
 from workhold.errors import InputError
 from workhold.files.result.parts import checked_head
 from workhold.files.result.reader import checked_table, collected, measured
-from workhold.files.supports.forms import ClampPart, SupportsPart, TriplePart, read_supports_part
+from workhold.files.supports.forms import ClampFiguresPart, SupportsPart, TriplePart, read_supports_part
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.support_triples import ClampFigures, Support, Supports, Triple
+from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 
 __all__ = ["query_of", "read_supports"]
 
@@ -84,7 +84,7 @@ def triple_of(
             raise InputError(f"{path}: a support stands on {name!r}: give {' or '.join(plates)}.")
         place = plates[name].place(column, row, fixture.jaw_separation)
         x, y = fixture.pose.inverse.apply(*place)
-        supports.append(Support(name, column, row, float(x), float(y)))
+        supports.append(SupportPad(name, column, row, float(x), float(y)))
     return Triple(
         supports=tuple(supports),
         travel=part.jaw_separation,
@@ -98,7 +98,7 @@ def triple_of(
     )
 
 
-def clamp_of(part: ClampPart, point: tuple[float, float] | None) -> ClampFigures:
+def clamp_of(part: ClampFiguresPart, point: tuple[float, float] | None) -> ClampFigures:
     """The figures at one point of the clamp."""
     x, y = part.at if part.at is not None else point or (0.0, 0.0)
     return ClampFigures((x, y), part.clamp_needed, part.support_force, part.arm, part.share, part.lift)

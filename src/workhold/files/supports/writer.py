@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from attrs import asdict
 
-from workhold.errors import InputError
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import fixture_lines
 from workhold.files.result.writer import toolkit_entry, workpiece_entry
@@ -52,7 +51,7 @@ def supports_entry(supports: Supports) -> dict[str, Any]:
         "workpiece": workpiece_entry(query.workpiece),
         **toolkit_entry(query.toolkit),
         "fixture": fixture_entry(supports),
-        "heights": {"thickness": request.thickness, "band": list(request.band or ())},
+        "heights": {"thickness": request.thickness, "band": list(request.band)},
         "supports": {
             "pad_radius": request.pad_radius,
             "pad_margin": request.pad_margin,
@@ -131,11 +130,11 @@ def triple_entry(triple: Triple) -> dict[str, Any]:
         "overhang": triple.overhang,
         "arm": triple.arm,
         "arm_at": list(triple.arm_at),
-        "best": {**told(asdict(best)), "at": list(best.at)},
-        "given": None if figures is None else told(figures),
+        "best": {**known(asdict(best)), "at": list(best.at)},
+        "given": None if figures is None else known(figures),
     }
 
 
-def told(figures: dict[str, Any]) -> dict[str, Any]:
+def known(figures: dict[str, Any]) -> dict[str, Any]:
     """Figures that are known."""
     return {name: value for name, value in figures.items() if value is not None}
