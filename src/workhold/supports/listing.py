@@ -213,7 +213,7 @@ class FixtureTriples:
     def needed_at(self, rows: IntArray, points: Array) -> Array:
         """The clamp force needed at points (N, 2), one of each triple."""
         shares = self.triangles.take(rows).shares(points[:, None])[:, 0]
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.maximum((self.reach[rows] / shares).max(axis=1), 0.0))
 
     def largest_forces(self, rows: IntArray, points: Array, need: Array) -> Array:
