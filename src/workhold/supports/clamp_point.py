@@ -1,9 +1,9 @@
 """Where the clamp stands best: the point t that makes the largest r_j / beta_j(t) least.
 
-The points with C beta_j(t) >= r_j are a triangle like that of the supports, which shrinks to
-t* = sum r_j s_j / sum r_j as C falls to C* = sum r_j (over r_j > 0). So t* is best where the clamp may stand
-there. Else the best point lies on the border of where it may: where two of r_j / beta_j are equal, at a corner
-of the border, or where b_j is normal to an arc of it. With r_j = |b_j| the value is one over the distance to
+The points with C beta_j(t) >= r_j are a triangle like that of the supports. It shrinks to t* = sum r_j s_j /
+sum r_j as C falls to C* = sum r_j (over r_j > 0). So t* is best where the clamp may stand
+there. Else the best point lies on the border of where it may: where two of r_j / beta_j are equal, or at a
+corner. Or b_j is normal to an arc of the border there. With r_j = |b_j| the value is one over the distance to
 the nearest side: the same search then finds the best tipping arm, and t* is the incentre.
 """
 

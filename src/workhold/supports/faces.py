@@ -1,7 +1,7 @@
 """Faces that pads and a tip may touch, and how large a disc about a point lies wholly on them.
 
-A face is an outer loop less its openings; keep-out zones are taken off. The room at a point is the distance to
-the nearest border, negative off the face. Parity of crossings with the chords, changed once between each arc
+A face is an outer loop less its openings; keep-out zones are taken off. The room at a point is the distance
+to the nearest border, negative off the face. Parity of crossings with the chords, changed once between each arc
 and its chord, says which side a point is on.
 """
 

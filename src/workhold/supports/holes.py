@@ -1,4 +1,4 @@
-"""Which holes of a fixture's lattices may hold a support, and which triples of them its carriers have room for.
+"""Which holes may hold a support, and which triples of them the carriers have room for.
 
 Columns and rows count as the planar fixture counts them, also outside its plates. Two jaws may stand nearer
 together for supports between the pegs, so the travel of a triple may differ from the planar fixture's; where

@@ -1,7 +1,7 @@
 """The triples of supports of a planar fixture: all of them, or exactly the best few.
 
-Sum max(r_j, 0) bounds the clamp force that a triple needs from below, wherever the clamp stands. So the triples
-are taken in order of that bound, the best point of the clamp is sought for a block of them at a time, and the
+Sum max(r_j, 0) bounds the clamp force that a triple needs from below, wherever the clamp stands. So triples
+are taken in order of that bound, and the clamp's best point is sought for a block of them at a time. The
 search ends where the bound is above the last of the best so far. Without loads the incircle bounds the arm.
 """
 

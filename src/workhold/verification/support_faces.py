@@ -1,4 +1,4 @@
-"""Faces that supports and a clamp touch, derived by segments: how large a disc lies on them, and their centre."""
+"""Faces that supports and a clamp touch, by their segments: how large a disc lies on them; their centre."""
 
 from __future__ import annotations
 

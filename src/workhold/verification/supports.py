@@ -1,9 +1,9 @@
 """Proof of supports after the fact: every triple of a file derived again from the six equations of balance.
 
-Nothing of ``workhold.supports`` is used. Pads and tip are held against the faces segment by segment. Support
-and peg forces are solved from the balance of forces and moments in space together with the push on what moves,
-at both ends of every peg's band and at the stationary directions of every load. No barycentric coordinate, no
-worst height and no place of a clamp is taken from what is judged. That there is no better place of the clamp is
+Nothing of ``workhold.supports`` is used. Pads and tip are held against the faces segment by segment. Forces
+are solved from the balance in space together with the push on what moves. That is done at both ends of every
+band and at the stationary directions of every load. No barycentric coordinate, no worst height and no place
+of a clamp is taken from what is judged. That there is no better place of the clamp is
 tried at points of a grid. Numbers are doubles, and have to agree to 1e-6 of themselves.
 """
 
