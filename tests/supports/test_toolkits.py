@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import workhold
@@ -9,6 +10,7 @@ from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise, Workpiece
 from workhold.files.supports.reader import read_supports
 from workhold.files.supports.writer import write_supports
 from workhold.model.support_request import SpatialLoad, SupportRequest
+from workhold.supports.faces import TouchableFace
 from workhold.supports.listing import supports_of
 from workhold.verification.supports import verify_supports_file
 
@@ -55,3 +57,12 @@ def test_what_is_listed_is_derived_again(part, toolkit, tmp_path):
         assert read_supports(path).triples[:1] == found.triples[:1] or found.triples
         listed += len(found.triples)
     assert listed
+
+
+def test_points_on_the_diameter_of_a_hole_lie_in_it() -> None:
+    """A hole of two half circles holds the points between its ends, on which chords and arcs say nothing."""
+    square = np.array([[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0]], dtype=float)
+    hole = np.array([[6, 10, -1], [14, 10, -1]], dtype=float)
+    face = TouchableFace.of([square, hole])
+    points = np.array([[9.0, 10.0], [10.0, 10.0], [3.0, 10.0]])
+    assert face.room(points).tolist() == [-3.0, -4.0, 3.0]

@@ -19,6 +19,8 @@ from workhold.geometry.segment import Arc, Segment
 __all__ = ["Border", "TouchableFace", "area_center"]
 
 Array = NDArray[np.float64]
+# In mm: less than what decides, and more than rounding.
+HAIR = 1.3e-10
 
 
 @define(frozen=True, eq=False)
@@ -47,8 +49,8 @@ class Border:
         object.__setattr__(self, "arc_numbers", np.array([k for k, _ in arcs], np.int64))
 
     def contains(self, points: Array) -> NDArray[np.bool_]:
-        """Whether points (N, 2) lie within the loop."""
-        x, y = points[:, :1], points[:, 1:]
+        """Whether points (N, 2) lie within the loop; moved a hair, because on a chord parity says nothing."""
+        x, y = points[:, :1] + HAIR, points[:, 1:] + 0.6 * HAIR
         (x0, y0), (x1, y1) = self.starts.T, self.ends.T
         crosses = (y0 > y) != (y1 > y)
         rise = np.where(y1 == y0, 1.0, y1 - y0)
