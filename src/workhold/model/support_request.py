@@ -141,7 +141,8 @@ class SpatialLoad:
         numbers = (self.force, *self.axial, self.moment, *self.tilt, *(self.heights or ()))
         if not all(map(isfinite, numbers)) or self.force < 0 or len(self.tilt) != 2:
             raise InputError(
-                "a load has a number that is not finite, or a negative force: give 0 or more, and its direction."
+                "a load has a number that is not finite, or a negative force: give 0 or more, and its "
+                "direction."
             )
         for value in numbers:
             refuse_strong("a load", value)
@@ -190,7 +191,8 @@ class SupportRequest:
     bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first;
         None is the outline with its holes.
     bottom_zones, top_zones : keep-outs from below and from above.
-    inside : smallest distance from the clamp to each side of the supports' triangle; by default the tip's radius.
+    inside : smallest distance from the clamp to each side of the supports' triangle; the tip's radius if not
+        given.
     reach : rings in which the clamp can stand, None for anywhere.
     point : where the clamp stands; None where it is free.
 
@@ -237,7 +239,8 @@ class SupportRequest:
         for low, high in (self.band, *(band for band in self.bands or () if band is not None)):
             if not 0 <= low <= high <= self.thickness:
                 raise InputError(
-                    f"a peg cannot press at heights {low:g} to {high:g} of a part {self.thickness:g} thick: give "
+                    f"a peg cannot press at heights {low:g} to {high:g} of a part {self.thickness:g} thick: "
+                    "give "
                     "a band between 0 and the thickness, the smaller height first."
                 )
         if self.point is not None and not all(map(isfinite, self.point)):
@@ -271,5 +274,6 @@ class SupportRequest:
             apart.append(toolkit.gap)
         if 2 * self.pad_radius > min(apart):
             raise InputError(
-                f"pads of radius {self.pad_radius:g} would overlap {min(apart):g} mm apart: give a smaller pad radius."
+                f"pads of radius {self.pad_radius:g} would overlap {min(apart):g} mm apart: give a smaller "
+                "pad radius."
             )

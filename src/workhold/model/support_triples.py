@@ -116,5 +116,5 @@ class Supports:
         return self.count == len(self.triples)
 
     def best(self, count: int) -> Supports:
-        """The same with the first triples only."""
+        """A copy with the first triples only."""
         return evolve(self, triples=self.triples[:count])

@@ -45,7 +45,8 @@ def needed_jaw_force(
         if need > jaw_force * (1 + AGREEMENT):
             name = f"the load '{load.name}'" if load.name else "a load"
             raise InputError(
-                f"a jaw force of {jaw_force:g} N lets a peg lose contact under {name}, which takes {need:.6g} N: "
+                f"a jaw force of {jaw_force:g} N lets a peg lose contact under {name}, which takes "
+                f"{need:.6g} N: "
                 "give more, or leave it out."
             )
     return float(jaw_force)

@@ -54,7 +54,7 @@ class ClampPlaces:
         object.__setattr__(self, "corners", self.border_corners())
 
     def room(self, points: Array) -> Array:
-        """By how much (N,) a tip at points (N, 2) keeps the rules of the top, in mm; below 0 it does not."""
+        """The slack (N,) in mm by which a tip at points (N, 2) keeps the rules of the top."""
         room = self.face.room(points) - self.tip_radius
         if self.rings is not None:
             apart = np.hypot(*np.moveaxis(points[:, None] - self.rings[None, :, :2], -1, 0))

@@ -1,8 +1,8 @@
 """Faces that pads and a tip may touch, and how large a disc about a point lies wholly on them.
 
 A face is an outer loop less its openings; keep-out zones are taken off. The room at a point is the distance
-to the nearest border, negative off the face. Parity of crossings with the chords, changed once between each arc
-and its chord, says which side a point is on.
+to the nearest border, negative off the face. Parity of crossings with the chords, changed once between each
+arc and its chord, says which side a point is on.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ class TouchableFace:
         return cls(tuple(Border(loop_segments(np.asarray(loop)), k > 0) for k, loop in enumerate(rings)))
 
     def room(self, points: Array) -> Array:
-        """Radii (N,) of the largest discs about points (N, 2) that lie wholly on the face, negative off it."""
+        """Radii (N,) of the largest discs about points (N, 2) that lie on the face, negative off it."""
         out: Array = np.min([border.room(points) for border in self.borders], axis=0)
         return out
 
@@ -122,7 +122,7 @@ class TouchableFace:
         return every.min(axis=0), every.max(axis=0)
 
     def offset_curves(self, radius: float) -> tuple[Array, Array]:
-        """Lines (L, 3) as unit normal and distance, and circles (M, 3), on which a disc touches the border."""
+        """Lines (L, 3), unit normal and distance, and circles (M, 3) on which a disc touches the border."""
         lines, circles = [], []
         for border in self.borders:
             left = (signed_area(border.segments) > 0) != border.is_hole

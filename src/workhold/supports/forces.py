@@ -47,13 +47,13 @@ class PegForces:
 
     @classmethod
     def of(cls, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> PegForces:
-        """Those of a fixture whose jaw keeps its force."""
+        """The responses of a fixture whose jaw keeps its force."""
         touched = Touched.of(workpiece, toolkit)
         return cls.within(fixture, toolkit, touched)
 
     @classmethod
     def within(cls, fixture: Fixture, toolkit: Toolkit, touched: Touched) -> PegForces:
-        """The same, where what the pegs touch is known."""
+        """The responses where what the pegs touch is known already."""
         matrices = touched.of_fixture(fixture, toolkit)
         scale = np.array([1.0, 1.0, touched.length, 1.0])
         return cls(touched.center, -matrices.normals[0], matrices.inverses[0].T / scale)

@@ -1,8 +1,8 @@
 """Which holes may hold a support, and which triples of them the carriers have room for.
 
 Columns and rows count as the planar fixture counts them, also outside its plates. Two jaws may stand nearer
-together for supports between the pegs, so the travel of a triple may differ from the planar fixture's; where
-pegs and supports stand relative to the part does not.
+together for supports between the pegs, so the travel of a triple may differ from the planar fixture's. Where
+pegs and supports stand relative to the part stays.
 """
 
 from __future__ import annotations
@@ -126,8 +126,8 @@ def ends_of(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[
 def standing_of(fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart, triples: IntArray) -> Standing:
     """How triples (N, 3) of holes stand in the carriers of a toolkit.
 
-    Pegs and supports of a carrier span its columns, all rows fit, and the gap is kept; written out, they stand
-    nearest the opening and move outward only as far as the largest travel demands.
+    Pegs and supports of a carrier span its columns, all rows fit, and the gap is kept. Written out, they
+    stand nearest the opening, and move outward only as far as the largest travel demands.
     """
     carrier, column, row = holes.carrier[triples], holes.column[triples], holes.row[triples]
     count = len(triples)

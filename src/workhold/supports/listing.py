@@ -177,7 +177,7 @@ class FixtureTriples:
         return points, value
 
     def judged(self, rows: IntArray) -> tuple[IntArray, list[tuple[float, ...]]]:
-        """Those of some triples over which the clamp may stand, and the keys they are ranked by."""
+        """The rows of triples over which the clamp may stand, and the keys that these are ranked by."""
         arm_at, arm = self.arms(rows)
         open_ = arm > 0
         rows, arm_at, arm = rows[open_], arm_at[open_], arm[open_]

@@ -101,7 +101,7 @@ class SupportsJudge:
         return float(x), float(y)
 
     def pad_room(self, hole: tuple[str, int, int]) -> float:
-        """By how much a pad keeps its rules."""
+        """The slack in mm by which a pad keeps its rules."""
         asked, point = self.request, self.point_of(hole)
         loops = self.query.workpiece.loops if asked.bottom is None else asked.bottom
         room = room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
@@ -113,7 +113,7 @@ class SupportsJudge:
         return room
 
     def tip_room(self, point: tuple[float, float]) -> float:
-        """By how much the tip keeps the rules of the top."""
+        """The slack in mm by which the tip keeps the rules of the top."""
         asked = self.request
         loops = self.query.workpiece.loops if asked.top is None else asked.top
         room = room_on(loops, [zone.loop for zone in asked.top_zones], point) - asked.tip_radius
@@ -126,7 +126,7 @@ class SupportsJudge:
         return room
 
     def travel(self, holes: Sequence[tuple[str, int, int]]) -> tuple[bool, float | None]:
-        """Whether pegs and supports fit their plates, and the opening of what moves; see SUPPORTS, "Columns"."""
+        """Whether pegs and supports fit their plates, and the opening of what moves."""
         toolkit, plates = self.toolkit, self.toolkit.plates
         taken: dict[str, list[tuple[int, int]]] = {plate.name: [] for plate in plates}
         for name, column, row in holes:
