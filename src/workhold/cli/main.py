@@ -57,6 +57,9 @@ COMMANDS = {
     "seat": (
         "Report whether the part ends up in the pose of fixture N when the vise or the clamp is tightened."
     ),
+    "supports": (
+        "Report where three supports hold the part up under fixture N, and where a clamp presses it down."
+    ),
     "sheet": (
         "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "
         "loads, cautions."

@@ -26,6 +26,7 @@ from workhold.cli.outputs import (
 )
 from workhold.cli.progress import progress_bar, search_progress
 from workhold.cli.values import optional_count, whole_number
+from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.verification import Verification
@@ -103,6 +104,15 @@ def verify(
     from workhold.verification.verify import verify_listing
 
     start = perf_counter()
+    from workhold.verification.supports import is_supports_file, verify_supports_file
+
+    if is_supports_file(result_file):
+        refuse_complete(complete)
+        found = verify_supports_file(result_file)
+        print_supports(found, listed, perf_counter() - start, json_)
+        if not found.holds:
+            raise typer.Exit(REFUTED)
+        return
     listing = read_listing(result_file)
     with progress_bar("Verifying", "not proven") as progress:
         outcome = verify_listing(listing, progress)
@@ -120,6 +130,35 @@ def verify(
         raise typer.Exit(INTERRUPTED)
     if not outcome.holds:
         raise typer.Exit(REFUTED)
+
+
+def refuse_complete(complete: bool) -> None:
+    """Refuses to search again for a file of supports.
+
+    Raises
+    ------
+    InputError
+        When that is asked.
+    """
+    if complete:
+        raise InputError(
+            "--complete searches for fixtures again, and this file lists supports: leave it out."
+        )
+
+
+def print_supports(outcome: Verification, count: int, seconds: float, as_json: bool) -> None:
+    """Prints what is shown of a file of supports."""
+    if as_json:
+        from workhold.presenting.data import verification_data
+
+        print_json(**verification_data(outcome))
+        return
+    from workhold.cli.table import print_tables
+    from workhold.cli.tables import plural
+
+    words = [sentence.replace("Fixture", "Triple", 1) for sentence in unproven_sentences(outcome, count)]
+    tally = f"{outcome.proven} proven, {outcome.refuted} refuted"
+    print_tables(*words, f"{plural(outcome.fixtures, 'triple')} of supports: {tally}; {seconds:.1f} s")
 
 
 def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:

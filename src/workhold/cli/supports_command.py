@@ -1,0 +1,280 @@
+"""The command ``supports``: three supports under a fixture, and where a clamp on top presses down."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from attrs import asdict
+
+from workhold.cli.commands import option, print_remark
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.search_options import JAW_FORCE, parse_load, zone
+from workhold.cli.table import Table, print_tables
+from workhold.cli.values import length, length_unit, number, optional_count, optional_force, optional_length
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.model.result import Result
+    from workhold.model.support_request import SpatialLoad
+    from workhold.model.support_triples import SupportPad, Supports, Triple
+    from workhold.units import Unit
+
+__all__ = ["supports"]
+
+PART, SUPPORTS, CLAMP = "Heights of the part", "Supports", "The clamp on top"
+
+
+def supports(
+    result_file: ResultArgument,
+    number_: RankArgument,
+    thickness: str | None = option(PART, "LENGTH", "How thick the part is; that of its solid if not given."),
+    band: str | None = option(
+        PART,
+        "LOW:HIGH",
+        "Heights at which pegs may press on its faces; those of its solid, or all, if not given.",
+    ),
+    pad_radius: str = option(SUPPORTS, "LENGTH", "Radius of the supports' round pads.", default="4mm"),
+    pad_margin: str = option(
+        SUPPORTS, "LENGTH", "Least distance of a pad from the border of the face below.", default="0mm"
+    ),
+    keep_out_below: list[str] | None = option(
+        SUPPORTS, "ZONE", "A place that no pad may stand under, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
+    ),
+    tip_radius: str = option(CLAMP, "LENGTH", "Radius of the clamp's round tip.", default="5mm"),
+    inside: str | None = option(
+        CLAMP,
+        "LENGTH",
+        "Least distance of the clamp from the triangle's sides; the tip's radius if not given.",
+    ),
+    keep_out_above: list[str] | None = option(
+        CLAMP, "ZONE", "A place that the tip may not stand on, such as where the cutter goes."
+    ),
+    reach: list[str] | None = option(
+        CLAMP,
+        "X,Y,LEAST,MOST",
+        "A ring about a point of the toolkit in which the tip can stand; everywhere if not given.",
+    ),
+    clamp_at: str | None = option(CLAMP, "X,Y", "Where the clamp presses; its best place if not given."),
+    load: list[str] | None = option(
+        "Loads",
+        "LOAD",
+        "A load as in show, and with it z=HEIGHT or z=LOW..HIGH, axial=FORCE or axial=LOW..HIGH downward, "
+        "and tilt=ABOUTX,ABOUTY; those of the result, at the part's upper side, if not given.",
+    ),
+    jaw_force: str | None = JAW_FORCE,
+    triples: str = option(None, "K", "How many sets of three to list.", default="3"),
+    out: str | None = option(None, "FILE", "Write all sets of three, with every figure, into this file."),
+    force: ForceOption = False,
+    unit: str | None = SHOWN_UNIT,
+    json_: JsonOption = False,
+) -> None:
+    """Report where three supports hold the part up under fixture N, and where a clamp presses it down.
+
+    Pegs hold a part in the plane and resist no tipping. Three supports and a clamp inside their triangle do,
+    at whatever heights the pegs press. The sets are in order of the clamp force that the loads ask for.
+
+    Example: workhold supports part.json 1 --thickness 12 --load "force=150 at=20,15 z=8..12 axial=-20..60"
+    """
+    rank = asked_rank(number_)
+    shown = length_unit(unit)
+    count = optional_count("--triples", triples)
+    closing = optional_force("--jaw-force", jaw_force)
+    if out is not None:
+        refuse_output(out, (result_file,), force)
+    result = result_with(result_file, rank)
+    from workhold.model.support_request import SupportRequest
+    from workhold.supports.listing import supports_of
+
+    solid = result.workpiece.solid
+    high = optional_length("--thickness", thickness, shown) or (None if solid is None else solid.height)
+    if high is None:
+        raise InputError("how thick the part is, is not known: give --thickness.")
+    request = SupportRequest(
+        high,
+        length("--pad-radius", pad_radius, shown),
+        length("--tip-radius", tip_radius, shown),
+        band=(0.0, high) if band is None else lengths("--band", band, ":", 2, shown),
+        bands=None if band is not None else bands_of(result, rank, high),
+        pad_margin=length("--pad-margin", pad_margin, shown),
+        bottom_zones=[zone(text, shown) for text in keep_out_below or ()],
+        top_zones=[zone(text, shown) for text in keep_out_above or ()],
+        reach=[lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
+        point=None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
+        inside=length("--tip-radius" if inside is None else "--inside", inside or tip_radius, shown),
+    )
+    request.refuse_fat_pads(result.toolkit)
+    loads = [spatial_load(text, high, shown) for text in load] if load else None
+    every = out is not None
+    found = supports_of(result[rank - 1], result.query, request, loads, closing, None if every else count)
+    if out is not None:
+        from workhold.files.supports.writer import write_supports
+
+        write_supports(found, out)
+    report(found, count, result, rank, out, shown, json_)
+
+
+def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[float, ...]:
+    """Some lengths in mm with a mark between them.
+
+    Raises
+    ------
+    InputError
+        When there are more or fewer.
+    """
+    words = text.split(mark)
+    if len(words) != count:
+        raise InputError(f"{name} {text!r} cannot be used: give {count} lengths with {mark!r} between them.")
+    return tuple(length(name, word, unit) for word in words)
+
+
+def bands_of(result: Result, rank: int, thickness: float) -> tuple[tuple[float, float] | None, ...] | None:
+    """The band of each peg's face on a solid, as far as the part is thick; None for a part without bands."""
+    solid = result.workpiece.solid
+    if solid is None:
+        return None
+    bands = (solid.bands[peg.face] for peg in result[rank - 1].pegs)
+    return tuple(band and (min(band[0], thickness), min(band[1], thickness)) for band in bands)
+
+
+def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
+    """A load with its heights, its axial force and what tilts, from the text of ``--load``.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing.
+    """
+    from workhold.model.support_request import SpatialLoad
+
+    place = f'--load "{text}"'
+    own, rest = dict[str, str](), list[str]()
+    for word in text.split():
+        key, _, value = word.partition("=")
+        if key in ("z", "axial", "tilt"):
+            own[key] = value
+        else:
+            rest.append(word)
+    acts = any(word.startswith(("force=", "moment=")) for word in rest)
+    try:
+        planar = parse_load(" ".join(rest if acts else [*rest, "force=1"]), unit.millimetres)
+    except InputError as error:
+        raise InputError(str(error).replace(" force=1", "")) from error
+    heights = ranged(place, own.get("z"), (thickness, thickness))
+    scale = unit.millimetres
+    tilt = own.get("tilt", "0,0").split(",")
+    if len(tilt) != 2:
+        raise InputError(f"{place} cannot be used at 'tilt': give tilt=ABOUTX,ABOUTY in N mm.")
+    return SpatialLoad(
+        points=planar.points,
+        heights=(heights[0] * scale, heights[1] * scale) if "z" in own else heights,
+        force=planar.force if acts else 0.0,
+        directions=planar.directions,
+        axial=ranged(place, own.get("axial"), (0.0, 0.0)),
+        moment=planar.moment,
+        tilt=(number(tilt[0]), number(tilt[1])),
+        name=planar.name,
+    )
+
+
+def ranged(place: str, text: str | None, usual: tuple[float, float]) -> tuple[float, float]:
+    """One number or a range LOW..HIGH.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if text is None:
+        return usual
+    low, _, high = text.partition("..")
+    found = number(low), number(high or low)
+    if not all(map(isfinite, found)):
+        raise InputError(f"{place} cannot be used at '{text}': give a number, or a range LOW..HIGH.")
+    return found
+
+
+def support_name(pad: SupportPad, letter: str) -> str:
+    """The hole of a support as a machinist counts it; one before column A or row 1 by its numbers."""
+    from workhold.fixels.carrier import column_letters
+
+    if pad.column >= 0 and pad.row >= 0:
+        return f"{letter}{column_letters(pad.column)}{pad.row + 1}"
+    return f"{letter}({pad.column + 1},{pad.row + 1})"
+
+
+def report(
+    found: Supports, count: int | None, result: Result, rank: int, out: str | None, unit: Unit, as_json: bool
+) -> None:
+    """Prints the best sets, and what is not seen in the table."""
+    listed = found.triples[:count]
+    if as_json:
+        rows = [asdict(triple) for triple in listed]
+        counts = {"positions": found.positions, "sets": found.count}
+        print_json(
+            fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=[out] if out else []
+        )
+        return
+    if not found.triples:
+        print_tables(
+            f"Under fixture {rank} no three supports hold the part with the clamp between them: "
+            f"{found.positions} holes could hold a support. Try smaller pads, or a smaller tip."
+        )
+        return
+    with_loads = bool(found.loads)
+    table = Table(
+        (
+            ">set",
+            "supports",
+            f"clamp at {unit.abbreviation}",
+            *((">clamp force N", ">support force N") if with_loads else ()),
+            f">tipping arm {unit.abbreviation}",
+            f">stands by {unit.abbreviation}",
+        )
+    )
+    for place, triple in enumerate(listed, 1):
+        table.add_row(str(place), *row_of(triple, result, unit, with_loads))
+    number_of = "" if found.count is None else f" of {found.count}"
+    head = f"Fixture {rank}: the best {len(listed)}{number_of} sets of three supports and a clamp on top."
+    print_tables(head, table, *notes_of(found, listed, unit))
+    if found.count is not None and found.count > len(listed) and out is None:
+        print_remark("more sets can be listed with --triples, and written into a file with --out.")
+    if out is not None:
+        print_tables(f"Written to {out}.")
+
+
+def row_of(triple: Triple, result: Result, unit: Unit, with_loads: bool) -> list[str]:
+    """The words of a set of three."""
+    clamp = triple.clamp
+    letters = {one.name: f"{one.letter}-" if one.letter else "" for one in result.toolkit.plates}
+    forces = []
+    if with_loads:
+        forces = [f"{clamp.clamp_needed:.0f}", f"{clamp.support_force or 0.0:.0f}"]
+    at = clamp.at if with_loads or triple.given else triple.arm_at
+    arm = clamp.arm if with_loads or triple.given else triple.arm
+    return [
+        " ".join(support_name(pad, letters[pad.carrier]) for pad in triple.supports),
+        f"({unit.number(at[0])}, {unit.number(at[1])})",
+        *forces,
+        unit.number(arm),
+        unit.number(triple.standing),
+    ]
+
+
+def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
+    """Says what the figures mean, and what has to be set otherwise than for the fixture alone."""
+    notes = [
+        "The clamp presses at that point of the part's coordinates. Its force times the tipping arm is the "
+        "moment that tips the part; where the last figure is above 0, the part stands before it is clamped."
+    ]
+    if found.loads:
+        notes.append(f"All for a closing force of {found.jaw_force:.0f} N, without friction.")
+    moved = {one.travel for one in listed if one.travel is not None}
+    if any(abs(one - found.fixture.jaw_separation) > 1e-6 for one in moved):
+        notes.append(
+            "With these supports the jaws stand elsewhere in their holes, opened to "
+            f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
+        )
+    return notes

@@ -1,0 +1,203 @@
+"""The shape of a file of supports, checked by pydantic, and what its parts are in the model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, ValidationError
+
+from workhold.errors import InputError
+from workhold.files.result.forms import FormPart
+from workhold.files.text import json_value, read_text
+from workhold.model.requirements import ANY_DIRECTION, Zone, circle_zone, polygon_zone, zone_of
+from workhold.model.support_request import SpatialLoad, SupportRequest
+
+__all__ = ["FORMAT", "SupportsPart", "read_supports_part"]
+
+FORMAT = "workhold-supports/1"
+LARGEST_FILE = 1_000_000_000
+Two = Annotated[list[float], Field(min_length=2, max_length=2)]
+Ring = Annotated[list[float], Field(min_length=4, max_length=4)]
+Loop = list[Annotated[list[float], Field(min_length=3, max_length=3)]]
+# Written as a list, which a strict form does not take for a tuple.
+Hole = Annotated[tuple[str, int, int], Field(strict=False)]
+
+
+class ZonePart(FormPart):
+    """A keep-out zone: a circle, a polygon, or a loop with arcs."""
+
+    circle: Annotated[list[float], Field(min_length=3, max_length=3)] | None = None
+    polygon: list[Two] | None = None
+    loop: Loop | None = None
+
+    def zone(self) -> Zone:
+        """The zone.
+
+        Raises
+        ------
+        InputError
+            When it is none.
+        """
+        if self.circle is not None:
+            return circle_zone(*self.circle)
+        if self.polygon is not None:
+            return polygon_zone(self.polygon)
+        return zone_of(self.loop or [])
+
+
+class HeightsPart(FormPart):
+    """Thickness and band."""
+
+    thickness: float
+    band: Two
+
+
+class PadsPart(FormPart):
+    """The supports' pads."""
+
+    pad_radius: float
+    pad_margin: float = 0.0
+    bottom: list[Loop] | None = None
+    zones: list[ZonePart] = Field(default_factory=list)
+
+
+class TipPart(FormPart):
+    """The clamp from above."""
+
+    tip_radius: float
+    inside: float | None = None
+    top: list[Loop] | None = None
+    zones: list[ZonePart] = Field(default_factory=list)
+    reach: list[Ring] | None = None
+    point: Two | None = None
+
+
+class SpatialLoadPart(FormPart):
+    """A load in space."""
+
+    name: str = ""
+    points: list[Two] = Field(default_factory=list)
+    force: float = 0.0
+    directions: Two = Field(default_factory=lambda: list(ANY_DIRECTION))
+    heights: Two | None = None
+    axial: Two = Field(default_factory=lambda: [0.0, 0.0])
+    moment: float = 0.0
+    tilt: Two = Field(default_factory=lambda: [0.0, 0.0])
+
+    def load(self, thickness: float) -> SpatialLoad:
+        """The load with its heights written out.
+
+        Raises
+        ------
+        InputError
+            When it is none.
+        """
+        return SpatialLoad(**dict(self)).at_height(thickness)
+
+
+class ClampFiguresPart(FormPart):
+    """The figures at one point of the clamp."""
+
+    at: Two | None = None
+    clamp_needed: float
+    support_force: float | None = None
+    arm: float
+    share: float
+    lift: float
+
+
+class TriplePart(FormPart):
+    """Three supports."""
+
+    holes: Annotated[list[Hole], Field(min_length=3, max_length=3)]
+    jaw_separation: float | None = None
+    marginal: bool = False
+    standing: float
+    overhang: float | None = None
+    arm: float
+    arm_at: Two
+    best: ClampFiguresPart
+    given: ClampFiguresPart | None = None
+
+
+class CountsPart(FormPart):
+    """How many holes and triples there are."""
+
+    positions: Annotated[int, Field(ge=0)]
+    triples: Annotated[int, Field(ge=0)] | None = None
+
+
+class SupportsPart(FormPart):
+    """The whole file; workpiece, toolkit and fixture are read as those of a result."""
+
+    format: Literal["workhold-supports/1"]
+    workpiece: dict[str, Any]
+    vise: dict[str, Any] | None = None
+    toolkit: dict[str, Any] | None = None
+    fixture: dict[str, Any]
+    heights: HeightsPart
+    supports: PadsPart
+    clamp: TipPart
+    loads: list[SpatialLoadPart] = Field(default_factory=list)
+    jaw_force: Annotated[float, Field(ge=0)]
+    complete: bool = True
+    counts: CountsPart
+    triples: list[TriplePart]
+
+    def head(self) -> dict[str, Any]:
+        """The head of a result file about the same part and toolkit."""
+        toolkit = {"vise": self.vise} if self.vise is not None else {"toolkit": self.toolkit}
+        return {"format": "workhold-result/1", "workpiece": self.workpiece, **toolkit, "counts": {}}
+
+    def request(self) -> SupportRequest:
+        """What was asked.
+
+        Raises
+        ------
+        InputError
+            When a part of it cannot be.
+        """
+        pads, tip = self.supports, self.clamp
+        walls = self.fixture.get("wall", {}).get("bands", []) if "wall" in self.fixture else []
+        pegs = [peg.get("band") for peg in self.fixture.get("pegs", ()) if isinstance(peg, dict)]
+        # The ends of a wall stand behind what stands still in holes.
+        first = sum(peg.get("role") != "jaw" for peg in self.fixture.get("pegs", ())[:1])
+        ends = [*walls, None, None][:2] if "wall" in self.fixture else []
+        bands = [*pegs[:first], *ends, *pegs[first:]]
+        low, high = self.heights.band
+        return SupportRequest(
+            self.heights.thickness,
+            pads.pad_radius,
+            tip.tip_radius,
+            band=(low, high),
+            bands=tuple(None if one is None else (one[0], one[1]) for one in bands) if any(bands) else None,
+            pad_margin=pads.pad_margin,
+            bottom=pads.bottom,
+            top=tip.top,
+            bottom_zones=tuple(one.zone() for one in pads.zones),
+            top_zones=tuple(one.zone() for one in tip.zones),
+            inside=tip.tip_radius if tip.inside is None else tip.inside,
+            reach=tip.reach,
+            point=tip.point,
+        )
+
+
+def read_supports_part(path: Path) -> SupportsPart:
+    """The content of a file of supports, its form checked.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read, or is no such file.
+    """
+    try:
+        return SupportsPart.model_validate(json_value(read_text(path, LARGEST_FILE, "supports")))
+    except InputError as error:
+        raise InputError(f"{path} is not a file of supports: {error}") from error
+    except ValidationError as error:
+        fault = error.errors()[0]
+        key = ".".join(map(str, fault["loc"]))
+        raise InputError(
+            f"{path} is not a complete file of supports: {key} cannot be used: {fault['msg'].lower()}."
+        ) from error

@@ -1,0 +1,140 @@
+"""Writing supports: the form ``workhold-supports/1``, whole or not at all."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from attrs import asdict
+
+from workhold.files.atomic import text_file
+from workhold.files.result.fixture_text import fixture_lines
+from workhold.files.result.writer import toolkit_entry, workpiece_entry
+from workhold.files.supports.forms import FORMAT
+from workhold.model.requirements import Zone
+from workhold.model.support_request import Loops, SpatialLoad
+from workhold.model.support_triples import Supports, Triple
+
+__all__ = ["supports_entry", "write_supports"]
+
+
+def write_supports(supports: Supports, path: str | Path) -> None:
+    """Writes a file of supports, a line for each triple.
+
+    Raises
+    ------
+    InputError
+        When the fixture is not one of a result, or the file cannot be written.
+    """
+    entry = supports_entry(supports)
+    triples = entry.pop("triples")
+    lines = [f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in entry.items()]
+    with text_file(path) as stream:
+        stream.write("{" + "".join(lines) + '"triples": [')
+        stream.write(",".join(f"\n{json.dumps(triple)}" for triple in triples) + "\n]}\n")
+
+
+def supports_entry(supports: Supports) -> dict[str, Any]:
+    """Supports as they are written.
+
+    Raises
+    ------
+    InputError
+        When the fixture is not one of a result.
+    """
+    query, request = supports.query, supports.request
+    return {
+        "format": FORMAT,
+        "workpiece": workpiece_entry(query.workpiece),
+        **toolkit_entry(query.toolkit),
+        "fixture": fixture_entry(supports),
+        "heights": {"thickness": request.thickness, "band": list(request.band)},
+        "supports": {
+            "pad_radius": request.pad_radius,
+            "pad_margin": request.pad_margin,
+            "bottom": loops_entry(request.bottom),
+            "zones": [zone_entry(zone) for zone in request.bottom_zones],
+        },
+        "clamp": {
+            "tip_radius": request.tip_radius,
+            "inside": request.inside,
+            "top": loops_entry(request.top),
+            "zones": [zone_entry(zone) for zone in request.top_zones],
+            "reach": None if request.reach is None else [list(ring) for ring in request.reach],
+            "point": None if request.point is None else list(request.point),
+        },
+        "loads": loads_entry(supports.loads),
+        "jaw_force": supports.jaw_force,
+        "complete": supports.complete,
+        "counts": {"positions": supports.positions, "triples": supports.count},
+        "triples": [triple_entry(triple) for triple in supports.triples],
+    }
+
+
+def fixture_entry(supports: Supports) -> dict[str, Any]:
+    """The planar fixture as a result file has it, with the bands of its pegs."""
+    listing = supports.fixture.listing
+    table = listing.result.table.take(slice(listing.row, listing.row + 1))
+    ((line,),) = fixture_lines(table, supports.query.toolkit, supports.query.workpiece)
+    entry: dict[str, Any] = json.loads(line)
+    bands = supports.request.bands
+    if bands is not None:
+        placed = [band for peg, band in zip(supports.fixture.pegs, bands, strict=True) if not peg.is_on_wall]
+        walls = [band for peg, band in zip(supports.fixture.pegs, bands, strict=True) if peg.is_on_wall]
+        for peg, band in zip(entry["pegs"], placed, strict=True):
+            if band is not None:
+                peg["band"] = list(band)
+        if any(walls):
+            entry["wall"]["bands"] = [None if band is None else list(band) for band in walls]
+    return entry
+
+
+def loops_entry(loops: Loops | None) -> Any:
+    """Loops of a face, or None."""
+    return None if loops is None else [(loop + 0.0).tolist() for loop in loops]
+
+
+def zone_entry(zone: Zone) -> dict[str, Any]:
+    """A zone as a circle where it is one, as a polygon where its sides are straight, else as a loop."""
+    loop = np.asarray(zone.loop)
+    if len(loop) == 2 and (loop[:, 2] == 1.0).all():
+        (x0, y0), (x1, y1) = loop[:, :2].tolist()
+        return {"circle": [(x0 + x1) / 2, (y0 + y1) / 2, float(np.hypot(x1 - x0, y1 - y0)) / 2]}
+    if (loop[:, 2] == 0.0).all():
+        return {"polygon": loop[:, :2].tolist()}
+    return {"loop": loop.tolist()}
+
+
+def loads_entry(loads: Iterable[SpatialLoad]) -> list[dict[str, Any]]:
+    """Loads as they are written: N, N mm, mm and degrees."""
+    out = []
+    for load in loads:
+        entry = {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(load).items()}
+        entry["points"] = [list(point) for point in load.points]
+        out.append(entry)
+    return out
+
+
+def triple_entry(triple: Triple) -> dict[str, Any]:
+    """A triple as it is written."""
+    best, given = triple.best, triple.given
+    figures = None if given is None else {name: v for name, v in asdict(given).items() if name != "at"}
+    return {
+        "holes": [[one.carrier, one.column, one.row] for one in triple.supports],
+        "jaw_separation": triple.travel,
+        "marginal": triple.marginal,
+        "standing": triple.standing,
+        "overhang": triple.overhang,
+        "arm": triple.arm,
+        "arm_at": list(triple.arm_at),
+        "best": {**known(asdict(best)), "at": list(best.at)},
+        "given": None if figures is None else known(figures),
+    }
+
+
+def known(figures: dict[str, Any]) -> dict[str, Any]:
+    """Figures that are known."""
+    return {name: value for name, value in figures.items() if value is not None}

@@ -1,0 +1,279 @@
+"""What is asked of supports and a clamp from above, and the loads in space.
+
+Glossary
+--------
+band : the heights at which a peg may press on its face, from z0 to z1; z is up, 0 where the part lies.
+tip : the round end of the clamp that presses on the part from above.
+reach : rings about holes of a clamp in which its tip can stand, in the toolkit's frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import partial
+from math import hypot, isfinite
+from typing import Any
+
+import numpy as np
+from attrs import Factory, evolve, field, frozen
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.loop import checked_vertices
+from workhold.limits import real, refuse_long, refuse_strong
+from workhold.model.requirements import ANY_DIRECTION, Load, Zone, all_zones, direction_range, point_pairs
+
+__all__ = ["Loops", "SpatialLoad", "SupportRequest", "loops_of"]
+
+Loops = tuple[NDArray[np.float64], ...]
+Span = tuple[float, float]
+
+
+def optional_real(value: Any) -> float | None:
+    """A number, or None."""
+    return None if value is None else real(value)
+
+
+def pair_of(values: Any) -> Span:
+    """Two numbers in their order."""
+    one, other = values
+    return real(one), real(other)
+
+
+def optional_pair(values: Any) -> Span | None:
+    """Two numbers in their order, or None."""
+    return None if values is None else pair_of(values)
+
+
+def span_of(value: Any) -> Span:
+    """A range of numbers from one number or two, the smaller first."""
+    if isinstance(value, Sequence) and len(value) == 2:
+        low, high = (real(one) for one in value)
+        return (low, high) if low <= high else (high, low)
+    number = real(value)
+    return number, number
+
+
+def optional_span(value: Any) -> Span | None:
+    """A range of numbers, or None."""
+    return None if value is None else span_of(value)
+
+
+def loops_of(loops: Iterable[Any] | None) -> Loops | None:
+    """Loops of (x, y, bulge) vertices as read-only arrays, or None.
+
+    Raises
+    ------
+    InputError
+        For a loop that is none.
+    """
+    if loops is None:
+        return None
+    out = []
+    for number, loop in enumerate(loops, 1):
+        checked = checked_vertices(loop, f"face: loop {number}", partial(side_of, number))
+        checked.setflags(write=False)
+        out.append(checked)
+    if not out:
+        raise InputError("a face without loops is nowhere: give its outer loop first.")
+    return tuple(out)
+
+
+def side_of(loop: int, side: int) -> str:
+    """What a side of a loop of a face is called in messages."""
+    return f"face: loop {loop}, side {side}"
+
+
+def rings_of(reach: Iterable[Iterable[float]] | None) -> tuple[tuple[float, float, float, float], ...] | None:
+    """Rings as (x, y, least, most), or None.
+
+    Raises
+    ------
+    InputError
+        For a ring that is none.
+    """
+    if reach is None:
+        return None
+    rings = [tuple(real(value) for value in ring) for ring in reach]
+    for ring in rings:
+        if len(ring) != 4 or not all(map(isfinite, ring)) or not 0 <= ring[2] <= ring[3]:
+            raise InputError("a reach is not a ring: give x, y, the least and the most distance in mm.")
+    return tuple((x, y, least, most) for x, y, least, most in rings)
+
+
+@frozen
+class SpatialLoad:
+    """A load as it acts in space; force, axial force and moments act together, their ranges by themselves.
+
+    Parameters
+    ----------
+    points : where it acts, (x, y) in mm in the part's coordinates; empty for moments alone.
+    force : in the plane, in N, 0 or more.
+    directions : of that force, in degrees in the part's frame, as of a planar load.
+    heights : least and greatest height of the point in mm; None is the top of the part.
+    axial : least and greatest force along -z in N: a drill presses (positive), a helix may pull (negative).
+    moment : about z, in N mm.
+    tilt : the moments about x and y, in N mm.
+    name : what the user calls it.
+
+    Raises
+    ------
+    InputError
+        For numbers that are not finite or too large, a force without a point, and a load that does nothing.
+
+    Examples
+    --------
+    >>> SpatialLoad(points=[(10, 5)], axial=400).axial
+    (400.0, 400.0)
+    """
+
+    points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
+    force: float = field(default=0.0, converter=real)
+    directions: Span = field(default=ANY_DIRECTION, converter=direction_range)
+    heights: Span | None = field(default=None, converter=optional_span)
+    axial: Span = field(default=(0.0, 0.0), converter=span_of)
+    moment: float = field(default=0.0, converter=real)
+    tilt: Span = field(default=(0.0, 0.0), converter=pair_of)
+    name: str = ""
+
+    def __attrs_post_init__(self) -> None:
+        numbers = (self.force, *self.axial, self.moment, *self.tilt, *(self.heights or ()))
+        if not all(map(isfinite, numbers)) or self.force < 0 or len(self.tilt) != 2:
+            raise InputError(
+                "a load has a number that is not finite, or a negative force: give 0 or more, and its "
+                "direction."
+            )
+        for value in numbers:
+            refuse_strong("a load", value)
+        for x, y in self.points:
+            if not isfinite(hypot(x, y)):
+                raise InputError("the point of a load is not a place: give finite coordinates in mm.")
+            refuse_long("a load's point", max(x, y, key=abs))
+        if not self.points and (self.force or any(self.axial)):
+            raise InputError("a force needs the point it acts at: give at=X,Y or path=X,Y;X,Y.")
+        if not any((self.force, *self.axial, self.moment, *self.tilt)):
+            raise InputError(
+                "a load without force and moment does nothing: give force, axial, moment or tilt."
+            )
+
+    @classmethod
+    def of(cls, load: Load) -> SpatialLoad:
+        """A planar load, which acts at the top of the part."""
+        return cls(
+            load.points, load.force, load.directions, None, (0.0, 0.0), load.moment, (0.0, 0.0), load.name
+        )
+
+    @property
+    def planar(self) -> Load | None:
+        """What of it pegs have to resist; None where that is nothing."""
+        if self.force == 0 and self.moment == 0:
+            return None
+        return Load(self.points if self.force else (), self.force, self.directions, self.moment, self.name)
+
+    def at_height(self, thickness: float) -> SpatialLoad:
+        """The load with its heights written out, for a part of a thickness in mm."""
+        return self if self.heights is not None else evolve(self, heights=(thickness, thickness))
+
+
+@frozen
+class SupportRequest:
+    """What supports and the clamp are, and where they may touch; lengths in mm, the part's coordinates.
+
+    Parameters
+    ----------
+    thickness : of the part, T.
+    pad_radius : of the supports' round pads.
+    tip_radius : of the clamp's round tip.
+    band : heights at which pegs may press; by default from 0 to T.
+    bands : the same for each peg of the fixture, in its order, None for those that have no band of their own.
+    pad_margin : smallest distance from a pad to the border of the face it supports.
+    bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first;
+        None is the outline with its holes.
+    bottom_zones, top_zones : keep-outs from below and from above.
+    inside : smallest distance from the clamp to each side of the supports' triangle; the tip's radius if not
+        given.
+    reach : rings in which the clamp can stand, None for anywhere.
+    point : where the clamp stands; None where it is free.
+
+    Raises
+    ------
+    InputError
+        For lengths that cannot be.
+
+    Examples
+    --------
+    >>> SupportRequest(thickness=12, pad_radius=4, tip_radius=5).inside
+    5.0
+    """
+
+    thickness: float = field(converter=real)
+    pad_radius: float = field(converter=real)
+    tip_radius: float = field(converter=real)
+    band: Span = field(
+        default=Factory(lambda self: (0.0, self.thickness), takes_self=True), converter=pair_of
+    )
+    bands: tuple[Span | None, ...] | None = None
+    pad_margin: float = field(default=0.0, converter=real)
+    bottom: Loops | None = field(default=None, converter=loops_of, eq=False)
+    top: Loops | None = field(default=None, converter=loops_of, eq=False)
+    bottom_zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
+    top_zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
+    inside: float = field(default=Factory(lambda self: self.tip_radius, takes_self=True), converter=real)
+    reach: tuple[tuple[float, float, float, float], ...] | None = field(default=None, converter=rings_of)
+    point: Span | None = field(default=None, converter=optional_pair)
+
+    def __attrs_post_init__(self) -> None:
+        for name, value in (
+            ("thickness", self.thickness),
+            ("tip radius", self.tip_radius),
+            ("distance inside the triangle", self.inside),
+        ):
+            if not (isfinite(value) and value > 0):
+                raise InputError(f"{name} {value:g} cannot be used: give a length above 0.")
+            refuse_long(name, value)
+        for name, value in (("pad radius", self.pad_radius), ("pad margin", self.pad_margin)):
+            if not (isfinite(value) and value >= 0):
+                raise InputError(f"{name} {value:g} cannot be used: give 0 or more.")
+            refuse_long(name, value)
+        for low, high in (self.band, *(band for band in self.bands or () if band is not None)):
+            if not 0 <= low <= high <= self.thickness:
+                raise InputError(
+                    f"a peg cannot press at heights {low:g} to {high:g} of a part {self.thickness:g} thick: "
+                    "give "
+                    "a band between 0 and the thickness, the smaller height first."
+                )
+        if self.point is not None and not all(map(isfinite, self.point)):
+            raise InputError("the clamp's point is not a place: give finite coordinates in mm.")
+
+    def peg_bands(self, pegs: int) -> NDArray[np.float64]:
+        """The band (P, 2) of each of P pegs.
+
+        Raises
+        ------
+        InputError
+            When there is another number of bands than of pegs.
+        """
+        bands = self.bands or (None,) * pegs
+        if len(bands) != pegs:
+            raise InputError(
+                f"there are {len(bands)} bands for {pegs} pegs: give one for each, or one for all."
+            )
+        return np.array([self.band if band is None else band for band in bands], np.float64)
+
+    def refuse_fat_pads(self, toolkit: Toolkit) -> None:
+        """Refuses pads that could overlap in neighbouring holes of a toolkit.
+
+        Raises
+        ------
+        InputError
+            With the distance that there is.
+        """
+        apart = [*(pitch for plate in toolkit.plates for pitch in plate.pitch)]
+        if toolkit.gap is not None and len(toolkit.plates) > 1:
+            apart.append(toolkit.gap)
+        if 2 * self.pad_radius > min(apart):
+            raise InputError(
+                f"pads of radius {self.pad_radius:g} would overlap {min(apart):g} mm apart: give a smaller "
+                "pad radius."
+            )

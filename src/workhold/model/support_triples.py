@@ -1,0 +1,120 @@
+"""What is known of the supports of a planar fixture: triples with their figures, and how many there are."""
+
+from __future__ import annotations
+
+from attrs import evolve, frozen
+
+from workhold.model.fixture import Fixture
+from workhold.model.query import Query
+from workhold.model.support_request import SpatialLoad, SupportRequest
+
+__all__ = ["ClampFigures", "SupportPad", "Supports", "Triple"]
+
+Point = tuple[float, float]
+
+
+@frozen
+class ClampFigures:
+    """The clamp at one point, and how good it is there.
+
+    Parameters
+    ----------
+    at : where it presses, in mm in the part's coordinates.
+    clamp_needed : force in N above which no support loses contact under any load.
+    support_force : the largest force on a support at that force, in N; None without loads.
+    arm : distance in mm from the nearest side: tipping moment resisted per N.
+    share : the smallest share of the clamp force that a support takes.
+    lift : clamp force that each N of jaw force asks for when nothing else acts.
+    """
+
+    at: Point
+    clamp_needed: float
+    support_force: float | None
+    arm: float
+    share: float
+    lift: float
+
+
+@frozen
+class SupportPad:
+    """A support in a hole.
+
+    Parameters
+    ----------
+    carrier : name of what it stands on.
+    column, row : as the planar fixture counts them; its plates may end before.
+    x, y : in mm in the part's coordinates.
+    """
+
+    carrier: str
+    column: int
+    row: int
+    x: float
+    y: float
+
+
+@frozen
+class Triple:
+    """Three supports and the clamp over them.
+
+    Parameters
+    ----------
+    supports : in order of carrier, column and row.
+    travel : what the moving jaw is opened to with these supports, in mm; None where no lattice moves.
+    marginal : whether a rule is kept by so little that another list may leave it out.
+    standing : how far in mm the centre of area is inside the triangle; positive: it stands unclamped.
+    overhang : farthest in mm that a load's point lies beyond a side; None without such a point.
+    arm, arm_at : the largest tipping arm in mm, and the clamp's point for it.
+    best : the clamp where it needs the least force.
+    given : the clamp at the point asked for; None where none was asked for or it may not stand there.
+    """
+
+    supports: tuple[SupportPad, ...]
+    travel: float | None
+    marginal: bool
+    standing: float
+    overhang: float | None
+    arm: float
+    arm_at: Point
+    best: ClampFigures
+    given: ClampFigures | None
+
+    @property
+    def clamp(self) -> ClampFigures:
+        """The clamp at the point asked for, where it may stand there, else at its best."""
+        return self.given or self.best
+
+
+@frozen
+class Supports:
+    """The supports of one planar fixture.
+
+    Parameters
+    ----------
+    query : part and toolkit, with what else the planar fixture was asked for.
+    fixture : the planar fixture.
+    request : what was asked.
+    loads : with their heights written out.
+    jaw_force : on what moves, in N, that all figures hold for.
+    positions : how many holes may hold a support.
+    count : how many triples are valid; None where not all were looked at.
+    triples : those listed, the best first.
+    """
+
+    query: Query
+    fixture: Fixture
+    request: SupportRequest
+    loads: tuple[SpatialLoad, ...]
+    jaw_force: float
+    positions: int
+    count: int | None
+    triples: tuple[Triple, ...]
+
+    @property
+    def complete(self) -> bool:
+        """Whether every valid triple is listed."""
+        return self.count == len(self.triples)
+
+    def best(self, count: int) -> Supports:
+        """A copy with the first triples only."""
+        return evolve(self, triples=self.triples[:count])

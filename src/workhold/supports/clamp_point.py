@@ -1,0 +1,204 @@
+"""Where the clamp stands best: the point t that makes the largest r_j / beta_j(t) least.
+
+The points with C beta_j(t) >= r_j are a triangle like that of the supports. It shrinks to t* = sum r_j s_j /
+sum r_j as C falls to C* = sum r_j (over r_j > 0). So t* is best where the clamp may stand
+there. Else the best point lies on the border of where it may: where two of r_j / beta_j are equal, or at a
+corner. Or b_j is normal to an arc of the border there. With r_j = |b_j| the value is one over the distance to
+the nearest side: the same search then finds the best tipping arm, and t* is the incentre.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from workhold.conventions import GAP_SLACK
+from workhold.supports.faces import TouchableFace
+from workhold.supports.forces import Triangles
+
+__all__ = ["ClampPlaces"]
+
+Array = NDArray[np.float64]
+# How many of the best candidates are held against the face at a time.
+AT_ONCE = 6
+
+
+@define(frozen=True, eq=False)
+class ClampPlaces:
+    """Where a tip may stand on the top of one part.
+
+    Parameters
+    ----------
+    face : the top less its zones.
+    tip_radius : in mm.
+    rings : (R, 4) centres, least and greatest distances of the reach in the part's coordinates, or None.
+    """
+
+    face: TouchableFace
+    tip_radius: float
+    rings: Array | None
+    lines: Array = field(init=False)
+    circles: Array = field(init=False)
+    corners: Array = field(init=False)
+
+    def __attrs_post_init__(self) -> None:
+        lines, circles = self.face.offset_curves(self.tip_radius)
+        if self.rings is not None:
+            both = [np.column_stack([self.rings[:, :2], self.rings[:, k]]) for k in (2, 3)]
+            circles = np.concatenate([circles, *both])
+        object.__setattr__(self, "lines", np.unique(lines, axis=0))
+        object.__setattr__(self, "circles", np.unique(circles, axis=0))
+        object.__setattr__(self, "corners", self.border_corners())
+
+    def room(self, points: Array) -> Array:
+        """The slack (N,) in mm by which a tip at points (N, 2) keeps the rules of the top."""
+        room = self.face.room(points) - self.tip_radius
+        if self.rings is not None:
+            apart = np.hypot(*np.moveaxis(points[:, None] - self.rings[None, :, :2], -1, 0))
+            ring = np.minimum(apart - self.rings[:, 2], self.rings[:, 3] - apart).max(axis=1, initial=-np.inf)
+            room = np.minimum(room, ring)
+        return room
+
+    def allows(self, points: Array) -> NDArray[np.bool_]:
+        """Whether a tip may stand at points (N, 2)."""
+        return np.asarray(self.room(points) >= -GAP_SLACK)
+
+    def border_corners(self) -> Array:
+        """Points (K, 2) where two curves of the border cross and the tip may stand."""
+        points = [line_points(self.lines[None], self.lines, self.circles).reshape(-1, 2)]
+        a, b = (
+            (self.circles[list(k)] for k in zip(*combinations(range(len(self.circles)), 2), strict=True))
+            if (len(self.circles) > 1)
+            else (self.circles[:0], self.circles[:0])
+        )
+        points.append(circle_points(a, b))
+        every = np.concatenate(points)
+        every = every[np.isfinite(every).all(axis=1)]
+        every = every[self.allows(every)] if len(every) else every
+        return np.unique(np.round(every, 12), axis=0)
+
+    def best(self, triangles: Triangles, reach: Array, inside: float) -> tuple[Array, Array]:
+        """The best points (N, 2) of triangles, and the values there; NaN and infinite where none is allowed.
+
+        Parameters
+        ----------
+        reach : (N, 3) r_j, of which at least one of each triangle is positive.
+        inside : smallest distance from a side in mm.
+        """
+        asked = np.maximum(reach, 0.0)
+        total = asked.sum(axis=1)
+        points = (asked[..., None] * triangles.corners).sum(axis=1) / total[:, None]
+        good = triangles.sides(points).min(axis=1) >= inside - GAP_SLACK
+        good[good] = self.allows(points[good])
+        value = total.copy()
+        rest = np.flatnonzero(~good)
+        if len(rest):
+            points[rest], value[rest] = self.on_border(triangles.take(rest), asked[rest], inside)
+        return points, value
+
+    def on_border(self, triangles: Triangles, asked: Array, inside: float) -> tuple[Array, Array]:
+        """The best of the points that :meth:`candidates` gives."""
+        points = self.candidates(triangles, asked, inside)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            shares = triangles.shares(points)
+            value = (asked[:, None] / shares).max(axis=2)
+            sides = (shares / triangles.steepness[:, None]).min(axis=2)
+            value = np.where(sides >= inside - GAP_SLACK, value, np.inf)
+        value[np.isnan(value)] = np.inf
+        out, least = np.full((len(points), 2), np.nan), np.full(len(points), np.inf)
+        order = np.argsort(value, axis=1, kind="stable")
+        open_ = np.arange(len(points))
+        for first in range(0, order.shape[1], AT_ONCE):
+            tried = order[open_, first : first + AT_ONCE]
+            values = np.take_along_axis(value[open_], tried, axis=1)
+            where = np.take_along_axis(points[open_], tried[..., None], axis=1)
+            may = np.isfinite(values)
+            may[may] = self.allows(where[may])
+            hit = may.any(axis=1)
+            which = may.argmax(axis=1)[hit]
+            out[open_[hit]] = where[hit, which]
+            least[open_[hit]] = values[hit, which]
+            open_ = open_[~hit & np.isfinite(values[:, -1])]
+            if not len(open_):
+                break
+        return out, least
+
+    def candidates(self, triangles: Triangles, asked: Array, inside: float) -> Array:
+        """All points (N, K, 2) that can be best on the border; NaN where two curves do not meet."""
+        count = len(triangles.slopes)
+        lines = []
+        for j, k in combinations(range(3), 2):
+            # r_j beta_k = r_k beta_j
+            slope = asked[:, j, None] * triangles.slopes[:, k] - asked[:, k, None] * triangles.slopes[:, j]
+            constant = asked[:, j] * triangles.constants[:, k] - asked[:, k] * triangles.constants[:, j]
+            lines.append(normalised(slope, -constant))
+        for j in range(3):
+            steep = triangles.steepness[:, j]
+            lines.append(normalised(triangles.slopes[:, j], inside * steep - triangles.constants[:, j]))
+        every = np.stack(lines, axis=1)
+        normals = triangles.slopes / triangles.steepness[..., None]
+        centers, radii = self.circles[:, :2], self.circles[:, 2, None]
+        out = [
+            line_points(every, self.lines, self.circles).reshape(count, -1, 2),
+            own_crossings(every),
+            np.broadcast_to(self.corners, (count, len(self.corners), 2)),
+        ]
+        for sign in (1.0, -1.0):
+            out.append((centers + sign * radii * normals[:, :, None]).reshape(count, -1, 2))
+        return np.concatenate(out, axis=1)
+
+
+def normalised(slope: Array, distance: Array) -> Array:
+    """Lines (N, 3) as unit normals and distances; NaN where there is none."""
+    size = np.hypot(slope[:, 0], slope[:, 1])
+    size = np.where(size > 0.0, size, np.nan)
+    return np.column_stack([slope / size[:, None], distance / size])
+
+
+def cross_lines(a: Array, b: Array) -> Array:
+    """Crossings (..., 2) of lines (..., 3), NaN of parallel ones."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        det = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+        det = np.where(np.abs(det) > 1e-12, det, np.nan)
+        x = (a[..., 2] * b[..., 1] - b[..., 2] * a[..., 1]) / det
+        y = (a[..., 0] * b[..., 2] - b[..., 0] * a[..., 2]) / det
+    return np.stack([x, y], axis=-1)
+
+
+def own_crossings(lines: Array) -> Array:
+    """Crossings (N, K, 2) among the lines (N, L, 3) of each triangle."""
+    pairs = list(combinations(range(lines.shape[1]), 2))
+    first, second = (lines[:, list(k)] for k in zip(*pairs, strict=True))
+    return cross_lines(first, second)
+
+
+def line_points(lines: Array, others: Array, circles: Array) -> Array:
+    """Where lines (N, L, 3) cross other lines (M, 3) and circles (K, 3), as (N, L, M + 2 K, 2)."""
+    straight = cross_lines(lines[:, :, None], others[None, None])
+    normal, distance = lines[:, :, None, :2], lines[:, :, None, 2]
+    off = (normal * circles[:, :2]).sum(axis=-1) - distance
+    inner = circles[:, 2] ** 2 - off**2
+    with np.errstate(invalid="ignore"):
+        # A line that just touches, to within rounding, touches.
+        half = np.sqrt(np.where(inner > -1e-9, np.maximum(inner, 0.0), np.nan))
+    foot = circles[:, :2] - off[..., None] * normal
+    along = np.stack([-normal[..., 1], normal[..., 0]], axis=-1) * half[..., None]
+    return np.concatenate([straight, foot + along, foot - along], axis=2)
+
+
+def circle_points(a: Array, b: Array) -> Array:
+    """Where circles (N, 3) cross others, pair by pair, as (2 N, 2); NaN where they do not."""
+    apart = b[:, :2] - a[:, :2]
+    distance = np.hypot(apart[:, 0], apart[:, 1])
+    safe = np.where(distance > 1e-12, distance, np.nan)
+    along = (safe**2 + a[:, 2] ** 2 - b[:, 2] ** 2) / (2 * safe)
+    inner = a[:, 2] ** 2 - along**2
+    with np.errstate(invalid="ignore"):
+        half = np.sqrt(np.where(inner > -1e-9, np.maximum(inner, 0.0), np.nan))
+    unit = apart / safe[:, None]
+    across = np.stack([-unit[:, 1], unit[:, 0]], axis=1)
+    foot = a[:, :2] + along[:, None] * unit
+    return np.concatenate([foot + half[:, None] * across, foot - half[:, None] * across])

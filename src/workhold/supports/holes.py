@@ -1,0 +1,244 @@
+"""Which holes may hold a support, and which triples of them the carriers have room for.
+
+Columns and rows count as the planar fixture counts them, also outside its plates. Two jaws may stand nearer
+together for supports between the pegs, so the travel of a triple may differ from the planar fixture's. Where
+pegs and supports stand relative to the part stays.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.conventions import GAP_SLACK
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.fixture import Fixture
+from workhold.model.support_request import SupportRequest
+from workhold.supports.faces import TouchableFace
+
+__all__ = ["HolesUnderPart", "Standing", "holes_under", "pegs_in_part", "standing_of"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+# More columns or rows than any support can be away.
+UNBOUNDED = 1 << 40
+
+
+@define(frozen=True, eq=False)
+class HolesUnderPart:
+    """Holes that may hold a support, in order of carrier, column and row.
+
+    Parameters
+    ----------
+    carrier : (H,) numbers of their carriers.
+    column, row : (H,) as the planar fixture counts them.
+    points : (H, 2) in mm in the part's coordinates.
+    spare : (H,) by how much the rules of a pad are kept, in mm.
+    """
+
+    carrier: IntArray
+    column: IntArray
+    row: IntArray
+    points: Array
+    spare: Array
+
+
+def pegs_in_part(fixture: Fixture) -> Array:
+    """Centres (P, 2) of the pegs in the part's coordinates."""
+    x, y = fixture.pose.inverse.apply(*np.array([(peg.x, peg.y) for peg in fixture.pegs]).T)
+    return np.stack([x, y], axis=1)
+
+
+def holes_under(
+    fixture: Fixture, toolkit: Toolkit, face: TouchableFace, request: SupportRequest
+) -> HolesUnderPart:
+    """The holes under a face in which a pad keeps off its border, its zones and the pegs."""
+    low, high = face.box
+    corners = np.array(list(product((low[0], high[0]), (low[1], high[1]))))
+    x, y = fixture.pose.apply(corners[:, 0], corners[:, 1])
+    pegs = pegs_in_part(fixture)
+    placed = [k for k, peg in enumerate(fixture.pegs) if not peg.is_on_wall]
+    bodies = np.array([toolkit.carrier(fixture.pegs[k].carrier).body_radius for k in placed])
+    found: list[tuple[Array, ...]] = []
+    for number, carrier in enumerate(toolkit.carriers):
+        if not carrier.has_lattice:
+            continue
+        x0, y0 = carrier.place(0, 0, fixture.jaw_separation)
+        columns = np.arange(
+            np.floor((x.min() - x0) / carrier.pitch[0]), np.ceil((x.max() - x0) / carrier.pitch[0]) + 1
+        )
+        rows = np.arange(
+            np.floor((y.min() - y0) / carrier.pitch[1]), np.ceil((y.max() - y0) / carrier.pitch[1]) + 1
+        )
+        column, row = (grid.ravel() for grid in np.meshgrid(columns, rows, indexing="ij"))
+        hole = carrier.place(column, row, fixture.jaw_separation)
+        points = np.stack(fixture.pose.inverse.apply(*hole), axis=1)
+        spare = face.room(points) - request.pad_radius - request.pad_margin
+        apart = np.hypot(*np.moveaxis(points[:, None] - pegs[None, placed], -1, 0))
+        spare = np.minimum(spare, (apart - bodies).min(axis=1, initial=np.inf) - request.pad_radius)
+        kept = spare >= -GAP_SLACK
+        found.append((np.full(kept.sum(), number), column[kept], row[kept], points[kept], spare[kept]))
+    carrier_number, column, row, points, spare = map(np.concatenate, zip(*found, strict=True))
+    return HolesUnderPart(
+        carrier_number.astype(np.int64), column.astype(np.int64), row.astype(np.int64), points, spare
+    )
+
+
+@define(frozen=True, eq=False)
+class Standing:
+    """How N triples stand in their carriers together with the pegs.
+
+    Parameters
+    ----------
+    fits : (N,) whether they do.
+    travel : (N,) of the carrier with a lattice that moves, in mm; NaN where none does.
+    spare : (N,) by how much the smallest gap is kept, in mm.
+    """
+
+    fits: NDArray[np.bool_]
+    travel: Array
+    spare: Array
+
+
+def counted_pegs(fixture: Fixture, toolkit: Toolkit, plate: Carrier, axis: int) -> IntArray:
+    """Columns (axis 0) or rows (axis 1) that pegs and clamps take up on a plate."""
+    taken = []
+    for peg in fixture.pegs:
+        carrier = toolkit.carrier(peg.carrier)
+        if carrier.stands_on == plate.name and carrier.counted[axis]:
+            taken.append((peg.column, peg.row)[axis])
+    return np.array(taken, np.int64)
+
+
+def ends_of(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[IntArray, IntArray]:
+    """The first and last (N,) of columns or rows (N, 3) on a carrier, together with those taken by pegs."""
+    first = np.where(on, numbers, UNBOUNDED).min(axis=1)
+    last = np.where(on, numbers, -UNBOUNDED).max(axis=1)
+    if len(taken):
+        first, last = np.minimum(first, taken.min()), np.maximum(last, taken.max())
+    return first, last
+
+
+def standing_of(fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart, triples: IntArray) -> Standing:
+    """How triples (N, 3) of holes stand in the carriers of a toolkit.
+
+    Pegs and supports of a carrier span its columns, all rows fit, and the gap is kept. Written out, they
+    stand nearest the opening, and move outward only as far as the largest travel demands.
+    """
+    carrier, column, row = holes.carrier[triples], holes.column[triples], holes.row[triples]
+    count = len(triples)
+    fits = np.ones(count, np.bool_)
+    plates = [(k, one) for k, one in enumerate(toolkit.carriers) if one.has_lattice]
+    spans = {}
+    for number, plate in plates:
+        ends = []
+        for axis, holes_of, most in ((0, column, plate.columns), (1, row, plate.rows)):
+            # Rows of two jaws lie side by side and are shifted together.
+            together = axis == 1 and len(plates) > 1
+            on = np.ones(carrier.shape, np.bool_) if together else carrier == number
+            taken = [
+                counted_pegs(fixture, toolkit, one, axis) for k, one in plates if together or k == number
+            ]
+            first, last = ends_of(holes_of, on, np.concatenate(taken))
+            if most is not None:
+                fits &= last - first < most
+            if axis == 1 and toolkit.wall is not None and plate.travel is None:
+                # Rows are counted from the wall, and cannot be shifted.
+                fits &= (first >= 0) & (last < (UNBOUNDED if most is None else most))
+            ends.append((first, last))
+        spans[number] = ends
+    moving = [(k, one) for k, one in plates if one.travel is not None]
+    if not moving:
+        return Standing(fits, np.full(count, np.nan), np.full(count, np.inf))
+    number, plate = moving[0]
+    travel = plate.travel
+    assert travel is not None
+    axis = 0 if plate.is_along_x else 1
+    pitch = plate.pitch[axis]
+    first, last = spans[number][axis]
+    size = (plate.columns, plate.rows)[axis]
+    room = np.full(count, UNBOUNDED) if size is None else size - 1 - (last - first)
+    at_rest = fixture.jaw_separation + first * pitch
+    for other, standing in plates:
+        if other == number:
+            continue
+        low, high = spans[other][axis]
+        size = (standing.columns, standing.rows)[axis]
+        assert size is not None
+        room = room + size - 1 - (high - low)
+        at_rest = at_rest + (size - 1 - high) * pitch
+    outward = np.zeros(count)
+    if travel.most is not None:
+        outward = np.maximum(np.ceil((at_rest - travel.most - GAP_SLACK) / pitch), 0.0)
+    opened = at_rest - outward * pitch
+    spare = opened - travel.least
+    fits &= (outward <= room) & (spare >= -GAP_SLACK)
+    standing_now = Standing(fits, opened, spare)
+    return clear_of_blocked(standing_now, fixture, toolkit, holes, triples, np.asarray(at_rest, np.float64))
+
+
+def clear_of_blocked(
+    found: Standing,
+    fixture: Fixture,
+    toolkit: Toolkit,
+    holes: HolesUnderPart,
+    triples: IntArray,
+    at_rest: Array,
+) -> Standing:
+    """Moves pegs and supports on until none of them stands in a blocked hole.
+
+    Parameters
+    ----------
+    at_rest : the travel (N,) nearest the opening.
+    """
+    plates = [(k, one) for k, one in enumerate(toolkit.carriers) if one.has_lattice]
+    if len(plates) < 2 or not any(one.blocked for _, one in plates):
+        return found
+    travel = next(one.travel for _, one in plates if one.travel is not None)
+    pitch, names = plates[0][1].pitch[0], [one.name for _, one in plates]
+    assert travel is not None
+    fits, opened = found.fits.copy(), found.travel.copy()
+    pegs = [(names.index(p.carrier), p.column, p.row) for p in fixture.pegs if p.carrier in names]
+    numbers = [k for k, _ in plates]
+    for index in np.flatnonzero(found.fits):
+        own = triples[index]
+        standing = pegs + [
+            (numbers.index(int(holes.carrier[h])), int(holes.column[h]), int(holes.row[h])) for h in own
+        ]
+        place = first_free(standing, [one for _, one in plates])
+        for moved in place:
+            width = at_rest[index] - moved * pitch
+            if width < travel.least - GAP_SLACK:
+                fits[index] = False
+                break
+            if travel.most is None or width <= travel.most + GAP_SLACK:
+                opened[index] = width
+                break
+        else:
+            fits[index] = False
+    return Standing(fits, opened, found.spare)
+
+
+def first_free(standing: list[tuple[int, int, int]], plates: list[Carrier]) -> list[int]:
+    """How many columns outward in all pegs and supports may stand clear of blocked holes, fewest first."""
+    columns = [[c for k, c, _ in standing if k == number] for number in range(len(plates))]
+    lowest = min(row for _, _, row in standing)
+    height = max(row for _, _, row in standing) - lowest
+    rows = plates[0].rows
+    blocked_rows = [one.row for plate in plates for one in plate.blocked if one.row is not None]
+    lifts = range(max(blocked_rows, default=-1) + 2) if rows is None else range(rows - height)
+    left_room = plates[0].column_count - 1 - (max(columns[0]) - min(columns[0]))
+    right_room = plates[1].column_count - 1 - (max(columns[1]) - min(columns[1]))
+    found = set()
+    for left, right in product(range(left_room + 1), range(right_room + 1)):
+        shifts = (plates[0].column_count - 1 - left - max(columns[0]), right - min(columns[1]))
+        if left + right not in found and any(
+            not any(plates[k].is_blocked(c + shifts[k], r - lowest + lift) for k, c, r in standing)
+            for lift in lifts
+        ):
+            found.add(left + right)
+    return sorted(found)

@@ -1,0 +1,93 @@
+"""The command ``supports``, from a result file to a table and a file that ``verify`` accepts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result as Outcome
+
+import workhold
+from workhold import Plate, Workpiece
+from workhold.cli.supports_command import spatial_load
+from workhold.units import MILLIMETRE
+
+Run = Callable[..., Outcome]
+KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
+
+
+@pytest.fixture(scope="module")
+def result_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The result of a part on a plate."""
+    path = tmp_path_factory.mktemp("supports") / "kite.json"
+    workhold.save(workhold.design(KITE, Plate(pitch=15, peg_radius=3), best=3), path)
+    return path
+
+
+def test_best_sets_and_a_file_that_verify_accepts(result_file: Path, tmp_path: Path, run: Run) -> None:
+    """The table has the first sets of all; the file has all, and every one is proven."""
+    out = tmp_path / "supports.json"
+    words = (
+        "supports",
+        result_file,
+        "1",
+        "--thickness",
+        "20",
+        "--load",
+        "at=40,25 axial=300",
+        "--triples",
+        "2",
+    )
+    shown = run(*words, "--out", out)
+    assert shown.exit_code == 0, shown.stderr
+    written = json.loads(out.read_text())
+    assert written["complete"] and f"the best 2 of {len(written['triples'])} sets" in shown.stdout
+    verified = run("verify", out)
+    assert verified.exit_code == 0 and f"{len(written['triples'])} proven, 0 refuted" in verified.stdout
+    plain = json.loads(run(*words, "--json").stdout)
+    assert [one["best"]["clamp_needed"] for one in plain["triples"]] == [
+        one["best"]["clamp_needed"] for one in written["triples"][:2]
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ((), "how thick the part is, is not known: give --thickness."),
+        (("--thickness", "0"), "--thickness"),
+        (("--thickness", "12", "--band", "3"), "give 2 lengths with ':' between them"),
+        (("--thickness", "12", "--band", "3:20"), "cannot press at heights 3 to 20"),
+        (("--thickness", "12", "--pad-radius", "9"), "pads of radius 9 would overlap"),
+        (("--thickness", "12", "--load", "z=3 force=x at=1,1"), "force"),
+        (("--thickness", "12", "--load", "at=1,1 axial=a..b"), "give a number, or a range LOW..HIGH"),
+        (("--thickness", "12", "--load", "at=1,1 axial=5 jump=3"), "unknown key 'jump'"),
+        (("--thickness", "12", "--reach", "1,2,3"), "give 4 lengths"),
+    ],
+)
+def test_refusals(result_file: Path, run: Run, words: tuple[str, ...], sentence: str) -> None:
+    """What cannot be is one sentence, and exit code 2."""
+    shown = run("supports", result_file, "1", *words)
+    assert shown.exit_code == 2 and sentence in shown.stderr
+    assert "force=1" not in shown.stderr and shown.stderr.count("\n") == 1
+
+
+def test_words_of_a_load() -> None:
+    """Heights, axial force and tilt stand beside the words of a load in the plane."""
+    load = spatial_load(
+        "force=80 at=1,2 z=3..4 axial=-5..6 tilt=7,-8 moment=9 direction=0..90", 12.0, MILLIMETRE
+    )
+    assert (load.force, load.heights, load.axial, load.tilt) == (80.0, (3.0, 4.0), (-5.0, 6.0), (7.0, -8.0))
+    assert (load.moment, load.directions, load.points) == (9.0, (0.0, 90.0), ((1.0, 2.0),))
+    drill = spatial_load("at=1,2 axial=300", 12.0, MILLIMETRE)
+    assert (drill.force, drill.heights, drill.axial) == (0.0, (12.0, 12.0), (300.0, 300.0))
+
+
+def test_part_that_no_three_supports_hold_up(tmp_path: Path, run: Run) -> None:
+    """Where no set fits, the command says how many holes could hold a support, and what to try."""
+    kite = Workpiece.from_loops("kite", [[[0, 0, 0], [34, -4, 0.1], [44, 20, 0], [11, 33, 0]]])
+    path = tmp_path / "kite.json"
+    workhold.save(workhold.design(kite, Plate(pitch=20, peg_radius=3), best=1), path)
+    shown = run("supports", path, "1", "--thickness", "10")
+    assert shown.exit_code == 0 and "no three supports hold the part" in shown.stdout

@@ -1,0 +1,68 @@
+"""Supports in every kind of toolkit: what is listed is derived again from the six equations of balance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import workhold
+from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise, Workpiece
+from workhold.files.supports.reader import read_supports
+from workhold.files.supports.writer import write_supports
+from workhold.model.support_request import SpatialLoad, SupportRequest
+from workhold.supports.faces import TouchableFace
+from workhold.supports.listing import supports_of
+from workhold.verification.supports import verify_supports_file
+
+KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
+WINDOW = Workpiece.from_loops(
+    "window", [[[0, 0, 0], [90, 0, 0], [90, 70, 0], [0, 70, 0]], [[30, 20, 0], [70, 26, 0], [44, 58, 0]]]
+)
+LOADS = (
+    SpatialLoad(points=[(30, 20), (50, 30)], force=40, directions=(20, 160), heights=(6, 14), axial=(-9, 70)),
+    SpatialLoad(points=[(40, 25)], axial=300, tilt=(500, -900), moment=700),
+)
+TOOLKITS = [
+    (KITE, Vise(pitch=15, columns=4, peg_radius=3)),
+    (
+        KITE,
+        Vise(
+            pitch=15, columns=5, peg_radius=3, rows=6, max_opening=60, row_offset=4, blocked=("L-C2", "R-A")
+        ),
+    ),
+    (WINDOW, OpeningVise(pitch=12, columns=5, peg_radius=2, min_gap=6)),
+    (KITE, Plate(pitch=20, peg_radius=3, columns=6, rows=6)),
+    (KITE, Plate(pitch=20, peg_radius=3, travel=(10, 40), columns=8, rows=8)),
+    (KITE, Plate(pitch=20, peg_radius=3, clamps=2)),
+    (KITE, Fence(pitch=15, wall_offset=8, peg_radius=3)),
+    (KITE, Fence(pitch=15, wall_offset=8, peg_radius=3, clamps=2)),
+    (KITE, FlatJaw(pitch=15, peg_radius=3, max_opening=40)),
+]
+
+
+@pytest.mark.parametrize(
+    ("part", "toolkit"), TOOLKITS, ids=lambda one: getattr(one, "kind", one.__class__.__name__)
+)
+def test_what_is_listed_is_derived_again(part, toolkit, tmp_path):
+    result = workhold.design(part, toolkit, best=2)
+    assert len(result)
+    asked = SupportRequest(15, 3, 4, band=(3, 11), inside=3)
+    listed = 0
+    for fixture in result:
+        found = supports_of(fixture, result.query, asked, LOADS, best=4)
+        path = tmp_path / "supports.json"
+        write_supports(found, path)
+        outcome = verify_supports_file(path)
+        assert outcome.holds and outcome.proven == len(found.triples), (outcome.faults, outcome.unproven[:1])
+        assert read_supports(path).triples[:1] == found.triples[:1] or found.triples
+        listed += len(found.triples)
+    assert listed
+
+
+def test_points_on_the_diameter_of_a_hole_lie_in_it() -> None:
+    """A hole of two half circles holds the points between its ends, on which chords and arcs say nothing."""
+    square = np.array([[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0]], dtype=float)
+    hole = np.array([[6, 10, -1], [14, 10, -1]], dtype=float)
+    face = TouchableFace.of([square, hole])
+    points = np.array([[9.0, 10.0], [10.0, 10.0], [3.0, 10.0]])
+    assert face.room(points).tolist() == [-3.0, -4.0, 3.0]
