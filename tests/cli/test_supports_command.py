@@ -91,3 +91,38 @@ def test_part_that_no_three_supports_hold_up(tmp_path: Path, run: Run) -> None:
     workhold.save(workhold.design(kite, Plate(pitch=20, peg_radius=3), best=1), path)
     shown = run("supports", path, "1", "--thickness", "10")
     assert shown.exit_code == 0 and "no three supports hold the part" in shown.stdout
+
+
+def test_search_with_supports(run: Run, tmp_path: Path) -> None:
+    """A search tells of its best fixtures which three supports hold the part up best, as the command does."""
+    part = tmp_path / "kite.json"
+    loops = [loop.tolist() for loop in KITE.loops]
+    part.write_text(json.dumps({"name": "kite", "units": "mm", "loops": loops}))
+    words = ("design", part, "--toolkit", "plate", "--pitch", "15", "--peg-radius", "3", "--best", "4")
+    shown = run(*words, "--supports", "--thickness", "20", "--out", tmp_path / "r.json")
+    assert shown.exit_code == 0, shown.stderr
+    rows = [line.split() for line in shown.stdout.split("rank   supports")[-1].splitlines()]
+    first = next(row for row in rows if row and row[0] == "1")
+    alone = run("supports", tmp_path / "r.json", "1", "--thickness", "20")
+    again = next(line.split() for line in alone.stdout.splitlines() if line.strip().startswith("1 "))
+    assert first == again
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--supports",), "how thick the part is, is not known: give --thickness."),
+        (("--thickness", "4"), "--thickness is of supports: give --supports, or leave it out."),
+        (("--supports", "--thickness", "4", "--json"), "--supports prints a table: leave --json out"),
+        (("--not-on-faces-cut-in", "RESULT"), "needs the faces of one solid in both"),
+    ],
+)
+def test_search_with_supports_refuses(
+    run: Run, result_file: Path, words: tuple[str, ...], sentence: str
+) -> None:
+    """What a search cannot do about supports and other set-ups is one sentence."""
+    given = [result_file if word == "RESULT" else word for word in words]
+    shown = run(
+        "design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3", "--best", "1", *given
+    )
+    assert shown.exit_code == 2 and sentence in shown.stderr

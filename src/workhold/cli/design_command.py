@@ -28,9 +28,11 @@ from workhold.cli.outputs import (
     write_found,
 )
 from workhold.cli.progress import search_progress
-from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of
+from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of, without_faces_cut
+from workhold.cli.supports_command import asked_thickness, report_supported
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, optional_count, whole_number
+from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.model.query import Query
@@ -91,6 +93,17 @@ def design(
     force: ForceOption = False,
     list_: str = option(OUTPUT, "N", "How many to list on the terminal.", "--list", default="5"),
     unfit: UnfitOption = False,
+    supports: Annotated[
+        bool,
+        typer.Option(
+            "--supports",
+            help="Also find three supports and a clamp on top for the best twenty, as supports does.",
+            rich_help_panel=OUTPUT,
+        ),
+    ] = False,
+    thickness: str | None = option(
+        OUTPUT, "LENGTH", "With --supports: how thick the part is; that of its solid if not given."
+    ),
     json_: JsonOption = False,
     reading: PartWords,
 ) -> None:
@@ -110,6 +123,8 @@ def design(
     listed = whole_number("--list", list_)
     form = output_form(out, format_)
     refuse_both(json_, out)
+    if json_ and supports:
+        raise InputError("--supports prints a table: leave --json out, or ask the command supports.")
     folder = None if draw is None else Path(draw)
     if out is not None and out != STANDARD_OUTPUT:
         refuse_output(out, (part, held_in.vise, words.loads), force)
@@ -128,6 +143,8 @@ def design(
 
         second = begin_compiling()
     workpiece = reading.load(part).workpiece
+    asked["restrictions"] = without_faces_cut(asked["restrictions"], workpiece, words.not_on_faces_cut_in)
+    high = asked_thickness(supports, thickness, workpiece, shown)
     query = Query(
         workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked
     )
@@ -158,6 +175,8 @@ def design(
         ", compiling on this first run included" if first_run else ""
     )
     report(result, spent, out, form, listed, shown, unfit)
+    if high is not None:
+        report_supported(result, high, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":

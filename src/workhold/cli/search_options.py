@@ -25,7 +25,8 @@ from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.model.requirements import Load, Tolerance, Zone
+    from workhold.model.requirements import Load, Restrictions, Tolerance, Zone
+    from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "FRICTION",
@@ -115,6 +116,12 @@ class QueryWords:
     avoid: list[str] | None = option(
         RULING_OUT, "FACES", "Faces that no peg may touch, such as 3,7 (see workhold features)."
     )
+    not_on_faces_cut_in: str | None = option(
+        RULING_OUT,
+        "FILE",
+        "Of a solid's second side: the result of the first, whose faces to avoid were cut there; they are "
+        "avoided here, too.",
+    )
     keep_out: list[str] | None = option(
         RULING_OUT,
         "ZONE",
@@ -182,6 +189,35 @@ class QueryWords:
             "loads": loads,
             "jaw_force": optional_force("--jaw-force", self.jaw_force),
         }
+
+
+def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: str | None) -> Restrictions:
+    """Restrictions that also avoid what another set-up of the same solid avoided, because it was cut there.
+
+    Parameters
+    ----------
+    before : result file of the other set-up; None for none.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be used, and parts whose faces have no numbers of a solid.
+    """
+    if before is None:
+        return restrictions
+    from workhold.files.result.reader import read_result
+
+    query = read_result(before).query
+    own, other = workpiece.solid, query.workpiece.solid
+    if own is None or other is None or not (own.faces and other.faces):
+        lacking = "PART" if own is None else before
+        raise InputError(
+            f"--not-on-faces-cut-in needs the faces of one solid in both, and {lacking} has none: read both "
+            "from the STEP file, with --peg-height."
+        )
+    cut = {face for number in query.restrictions.avoid for face in other.faces[number]}
+    avoid = [number for number, faces in enumerate(own.faces) if cut.intersection(faces)]
+    return evolve(restrictions, avoid=(*restrictions.avoid, *avoid))
 
 
 def zone(text: str, unit: Unit) -> Zone:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from attrs import asdict
 
@@ -20,10 +20,13 @@ if TYPE_CHECKING:
     from workhold.model.result import Result
     from workhold.model.support_request import SpatialLoad
     from workhold.model.support_triples import SupportPad, Supports, Triple
+    from workhold.model.workpiece import Workpiece
     from workhold.units import Unit
 
-__all__ = ["supports"]
+__all__ = ["asked_thickness", "report_supported", "supports"]
 
+# Fixtures for which a search looks for supports, and with what pads and tip, in mm, where nobody says.
+MOST_SUPPORTED, PAD_RADIUS, TIP_RADIUS = 20, 4.0, 5.0
 PART, SUPPORTS, CLAMP = "Heights of the part", "Supports", "The clamp on top"
 
 
@@ -88,10 +91,8 @@ def supports(
     from workhold.model.support_request import SupportRequest
     from workhold.supports.listing import supports_of
 
-    solid = result.workpiece.solid
-    high = optional_length("--thickness", thickness, shown) or (None if solid is None else solid.height)
-    if high is None:
-        raise InputError("how thick the part is, is not known: give --thickness.")
+    high = asked_thickness(True, thickness, result.workpiece, shown)
+    assert high is not None
     request = SupportRequest(
         high,
         length("--pad-radius", pad_radius, shown),
@@ -114,6 +115,75 @@ def supports(
 
         write_supports(found, out)
     report(found, count, result, rank, out, shown, json_)
+
+
+def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
+    """How thick a part is in mm, where supports are wanted: as it is said, or as its solid is high.
+
+    Raises
+    ------
+    InputError
+        Where nobody knows, or no supports are wanted.
+    """
+    if not wanted:
+        if text is not None:
+            raise InputError("--thickness is of supports: give --supports, or leave it out.")
+        return None
+    solid = workpiece.solid
+    high = optional_length("--thickness", text, unit) or (None if solid is None else solid.height)
+    if high is None:
+        raise InputError("how thick the part is, is not known: give --thickness.")
+    return high
+
+
+def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> None:
+    """Prints for the best fixtures of a result which three supports hold the part up best, if any do."""
+    from workhold.model.support_request import SupportRequest
+    from workhold.supports.listing import supports_of_best
+
+    fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
+    if not fixtures:
+        return
+    found = [
+        one
+        for rank, fixture in enumerate(fixtures, 1)
+        for one in supports_of_best(
+            [fixture],
+            result.query,
+            SupportRequest(thickness, PAD_RADIUS, TIP_RADIUS, bands=bands_of(result, rank, thickness)),
+            each=1,
+        )
+    ]
+    with_loads = bool(result.query.loads)
+    table = Table((">rank", "supports", *columns_of(unit, with_loads)))
+    for rank, one in enumerate(found, 1):
+        if one.triples:
+            table.add_row(str(rank), *row_of(one.triples[0], result, unit, with_loads))
+    bare = [str(rank) for rank, one in enumerate(found, 1) if not one.triples]
+    pad, tip = unit.text(PAD_RADIUS), unit.text(TIP_RADIUS)
+    held = (
+        f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
+    )
+    none = [f"Under {', '.join(bare)} no three hold the part."] if bare else []
+    best = [triple for one in found for triple in one.triples]
+    print_tables("", table, held, *none, *before_first(best), stream=stream)
+
+
+def before_first(listed: Sequence[Triple]) -> list[str]:
+    """Says how holes before column A or row 1 are named, where there are such."""
+    if all(min(pad.column, pad.row) >= 0 for triple in listed for pad in triple.supports):
+        return []
+    return ["A hole before column A or row 1 stands as (column,row), where A1 is (1,1)."]
+
+
+def columns_of(unit: Unit, with_loads: bool) -> tuple[str, ...]:
+    """The headings of what :func:`row_of` says after the supports."""
+    return (
+        f"clamp at {unit.abbreviation}",
+        *((">clamp force N", ">support force N") if with_loads else ()),
+        f">tipping arm {unit.abbreviation}",
+        f">stands by {unit.abbreviation}",
+    )
 
 
 def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[float, ...]:
@@ -224,16 +294,7 @@ def report(
         )
         return
     with_loads = bool(found.loads)
-    table = Table(
-        (
-            ">set",
-            "supports",
-            f"clamp at {unit.abbreviation}",
-            *((">clamp force N", ">support force N") if with_loads else ()),
-            f">tipping arm {unit.abbreviation}",
-            f">stands by {unit.abbreviation}",
-        )
-    )
+    table = Table((">set", "supports", *columns_of(unit, with_loads)))
     for place, triple in enumerate(listed, 1):
         table.add_row(str(place), *row_of(triple, result, unit, with_loads))
     number_of = "" if found.count is None else f" of {found.count}"
@@ -277,4 +338,4 @@ def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]
             "With these supports the jaws stand elsewhere in their holes, opened to "
             f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
         )
-    return notes
+    return notes + before_first(listed)

@@ -17,9 +17,11 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone, BRepPrimAPI_MakeSphere
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fused, upright, write_step
+from typer.testing import CliRunner
 
 from workhold import Fence, Plate, Restrictions, Vise, Workpiece, design, load, save, verify
 from workhold import open as workhold_open
+from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.step.by_height import HeightView, shapes_by_height
 from workhold.files.step.heights import StandingSolid, standing
@@ -432,3 +434,19 @@ def test_damaged_bands(tmp_path: Path, change: dict[str, Any], sentence: str) ->
     (tmp_path / "result.json").write_text(json.dumps(data))
     with pytest.raises(InputError, match=sentence):
         workhold_open(tmp_path / "result.json")
+
+
+def test_second_side_avoids_what_the_first_had_cut(tmp_path: Path) -> None:
+    """The faces to avoid of the first set-up are found again, by the solid's faces, with the other side up."""
+    marked = cut(box(60, 40, 14), box(8, 5, 20, (-1, -1, -1)))
+    path = write_step(tmp_path / "part.step", marked)
+    first, second = tmp_path / "op10.json", tmp_path / "op20.json"
+    words = ["design", str(path), "--toolkit", "plate", "--pitch", "10", "--peg-radius", "3", "--best", "2"]
+    assert CliRunner().invoke(app, [*words, "--avoid", "1", "--out", str(first)]).exit_code == 0
+    over = [*words, "--axis", "-z", "--not-on-faces-cut-in", str(first), "--out", str(second)]
+    assert CliRunner().invoke(app, over).exit_code == 0
+    one, other = (json.loads(file.read_text()) for file in (first, second))
+    cut_faces = [one["workpiece"]["solid_faces"][k] for k in one["restrictions"]["avoid"]]
+    avoided = [other["workpiece"]["solid_faces"][k] for k in other["restrictions"]["avoid"]]
+    assert len(cut_faces) == 1 and avoided == cut_faces
+    assert other["restrictions"]["avoid"] != one["restrictions"]["avoid"]
