@@ -166,7 +166,18 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     )
     none = [f"Under {', '.join(bare)} no three hold the part."] if bare else []
     best = [triple for one in found for triple in one.triples]
-    print_tables("", table, held, *none, *before_first(best), stream=stream)
+    print_tables("", table, held, *none, *before_first(best), *flat_faces(result.workpiece), stream=stream)
+
+
+def flat_faces(workpiece: Workpiece) -> list[str]:
+    """Says that underside and top of a part are taken to be flat, where its solid may be otherwise."""
+    solid = workpiece.solid
+    if solid is None or all(band == (0.0, solid.height) for band in solid.bands):
+        return []
+    return [
+        "The part is taken to be flat below and on top, as far as the outline goes: keep pads off fillets and "
+        "pockets with --keep-out-below, and the tip with --keep-out-above."
+    ]
 
 
 def before_first(listed: Sequence[Triple]) -> list[str]:
@@ -338,4 +349,4 @@ def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]
             "With these supports the jaws stand elsewhere in their holes, opened to "
             f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
         )
-    return notes + before_first(listed)
+    return notes + before_first(listed) + flat_faces(found.query.workpiece)

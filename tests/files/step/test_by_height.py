@@ -450,3 +450,15 @@ def test_second_side_avoids_what_the_first_had_cut(tmp_path: Path) -> None:
     avoided = [other["workpiece"]["solid_faces"][k] for k in other["restrictions"]["avoid"]]
     assert len(cut_faces) == 1 and avoided == cut_faces
     assert other["restrictions"]["avoid"] != one["restrictions"]["avoid"]
+
+
+def test_supports_of_a_solid_say_that_its_faces_are_taken_to_be_flat(tmp_path: Path) -> None:
+    """Of a solid with a rounded foot the command for supports warns; of a prism it has nothing to say."""
+    warned = []
+    for name, shape in (("prism", PLATE), ("rounded", filleted(PLATE, 3.0, at_height(0.0)))):
+        part, result = write_step(tmp_path / f"{name}.step", shape), tmp_path / f"{name}.json"
+        save(design(load(part), Plate(pitch=15, peg_radius=3), best=1), result)
+        shown = CliRunner().invoke(app, ["supports", str(result), "1", "--pad-radius", "3"])
+        assert shown.exit_code == 0
+        warned.append("is taken to be flat below" in " ".join(shown.stdout.split()))
+    assert warned == [False, True]
