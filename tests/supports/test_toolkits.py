@@ -12,6 +12,7 @@ from workhold.files.supports.writer import write_supports
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.supports.faces import TouchableFace
 from workhold.supports.listing import supports_of
+from workhold.verification.support_faces import room_on
 from workhold.verification.supports import verify_supports_file
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
@@ -66,3 +67,17 @@ def test_points_on_the_diameter_of_a_hole_lie_in_it() -> None:
     face = TouchableFace.of([square, hole])
     points = np.array([[9.0, 10.0], [10.0, 10.0], [3.0, 10.0]])
     assert face.room(points).tolist() == [-3.0, -4.0, 3.0]
+
+
+def test_loops_side_by_side_are_faces_of_their_own() -> None:
+    """A disc lies on one of two faces wholly; a loop within one of them is an opening, however it is run."""
+    one = np.array([[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0]], dtype=float)
+    other = one + np.array([30.0, 0.0, 0.0])
+    opening = np.array([[34, 4, 0], [36, 4, 0], [36, 6, 0], [34, 6, 0]], dtype=float)
+    face = TouchableFace.of([one, other, opening])
+    points = np.array([[10.0, 10.0], [25.0, 10.0], [40.0, 5.0], [35.0, 5.0], [18.0, 10.0]])
+    expected = [10.0, -5.0, 4.0, -1.0, 2.0]
+    assert face.room(points).tolist() == expected
+    assert [room_on([one, other, opening], [], (x, y)) for x, y in points.tolist()] == expected
+    low, high = face.box
+    assert (low.tolist(), high.tolist()) == ([0.0, 0.0], [50.0, 20.0])

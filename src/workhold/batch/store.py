@@ -85,7 +85,11 @@ def plain_record(content: bytes) -> dict[str, Any]:
 def workpiece_of(record: dict[str, Any]) -> Workpiece:
     """The part of a drawing's record."""
     solid = record.get("solid") and SolidOutline(
-        **record["solid"], bands=record["bands"], faces=record.get("solid_faces", ())
+        **record["solid"],
+        bands=record["bands"],
+        faces=record.get("solid_faces", ()),
+        bottom=record.get("bottom", ()),
+        top=record.get("top", ()),
     )
     return Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isfinite
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from attrs import asdict
 
@@ -100,6 +100,7 @@ def supports(
         band=(0.0, high) if band is None else lengths("--band", band, ":", 2, shown),
         bands=None if band is not None else bands_of(result, rank, high),
         pad_margin=length("--pad-margin", pad_margin, shown),
+        **level_faces(result.workpiece),
         bottom_zones=[zone(text, shown) for text in keep_out_below or ()],
         top_zones=[zone(text, shown) for text in keep_out_above or ()],
         reach=[lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
@@ -150,7 +151,13 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         for one in supports_of_best(
             [fixture],
             result.query,
-            SupportRequest(thickness, PAD_RADIUS, TIP_RADIUS, bands=bands_of(result, rank, thickness)),
+            SupportRequest(
+                thickness,
+                PAD_RADIUS,
+                TIP_RADIUS,
+                bands=bands_of(result, rank, thickness),
+                **level_faces(result.workpiece),
+            ),
             each=1,
         )
     ]
@@ -166,17 +173,33 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     )
     none = [f"Under {', '.join(bare)} no three hold the part."] if bare else []
     best = [triple for one in found for triple in one.triples]
-    print_tables("", table, held, *none, *before_first(best), *flat_faces(result.workpiece), stream=stream)
+    print_tables(
+        "",
+        *([table] if table.rows else []),
+        held,
+        *none,
+        *before_first(best),
+        *flat_faces(result.workpiece),
+        stream=stream,
+    )
+
+
+def level_faces(workpiece: Workpiece) -> dict[str, Any]:
+    """The faces of a part's solid that pads and the tip may touch; those of a drawing are the outline."""
+    solid = workpiece.solid
+    found = {} if solid is None else {"bottom": solid.bottom, "top": solid.top}
+    return {name: loops for name, loops in found.items() if loops}
 
 
 def flat_faces(workpiece: Workpiece) -> list[str]:
-    """Says that underside and top of a part are taken to be flat, where its solid may be otherwise."""
+    """Says that a solid is taken to be flat below or on top, where no level face of it is known."""
     solid = workpiece.solid
-    if solid is None or all(band == (0.0, solid.height) for band in solid.bands):
+    lacking = [] if solid is None else [name for name in ("bottom", "top") if not getattr(solid, name)]
+    if not lacking:
         return []
     return [
-        "The part is taken to be flat below and on top, as far as the outline goes: keep pads off fillets and "
-        "pockets with --keep-out-below, and the tip with --keep-out-above."
+        f"No level face of the part is known at its {' and '.join(lacking)}, which is taken to be flat as far "
+        "as the outline goes: keep pads and tip off the rest with --keep-out-below and --keep-out-above."
     ]
 
 

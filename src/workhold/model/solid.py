@@ -16,11 +16,27 @@ __all__ = ["AXES", "Band", "HeightRow", "SolidOutline"]
 # The directions of a file that can point up.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 Band = tuple[float, float]
+# Loops of vertices x, y (mm) and bulge.
+Loops = tuple[tuple[tuple[float, ...], ...], ...]
 
 
 def bands_of(values: Iterable[Any]) -> tuple[Band | None, ...]:
     """Bands as pairs of floats, None where nothing may touch."""
     return tuple(None if value is None else (real(value[0]), real(value[1])) for value in values)
+
+
+def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
+    """Loops of (x, y, bulge) as tuples of floats.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    loops = tuple(tuple(tuple(real(one) for one in vertex) for vertex in loop) for loop in values)
+    if any(len(vertex) != 3 or not all(map(isfinite, vertex)) for loop in loops for vertex in loop):
+        raise InputError("a loop of the solid is none: give x, y and bulge of every vertex.")
+    return loops
 
 
 def numbers_of(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
@@ -43,6 +59,8 @@ class SolidOutline:
         None where nothing may touch.
     faces : for every segment the numbers of these faces, as the file lists them; empty where a file does not
         say.
+    bottom, top : loops of the level faces on which the part lies, and of those with nothing above them. Outer
+        ones run counter-clockwise, openings clockwise; none stand where a file does not say.
 
     Raises
     ------
@@ -57,6 +75,8 @@ class SolidOutline:
     least_band: float = field(converter=real)
     bands: tuple[Band | None, ...] = field(converter=bands_of)
     faces: tuple[tuple[int, ...], ...] = field(default=(), converter=numbers_of)
+    bottom: Loops = field(default=(), converter=loops_of)
+    top: Loops = field(default=(), converter=loops_of)
 
     def __attrs_post_init__(self) -> None:
         if self.axis not in AXES:

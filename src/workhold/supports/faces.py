@@ -103,21 +103,31 @@ class TouchableFace:
     @classmethod
     def of(cls, loops: Sequence[Array], zones: Iterable[Array] = ()) -> TouchableFace:
         """A face from loops of (x, y, bulge) vertices, the outer one first, and zones as loops."""
-        rings = [*loops, *zones]
-        return cls(tuple(Border(loop_segments(np.asarray(loop)), k > 0) for k, loop in enumerate(rings)))
+        borders: list[Border] = []
+        for loop in loops:
+            # A loop within another is an opening; one beside it belongs to a further face.
+            segments = loop_segments(np.asarray(loop))
+            start = np.array([segments[0].start])
+            borders.append(
+                Border(segments, any(one.contains(start)[0] for one in borders if not one.is_hole))
+            )
+        return cls((*borders, *(Border(loop_segments(np.asarray(zone)), True) for zone in zones)))
 
     def room(self, points: Array) -> Array:
-        """Radii (N,) of the largest discs about points (N, 2) that lie on the face, negative off it."""
-        out: Array = np.min([border.room(points) for border in self.borders], axis=0)
+        """Radii (N,) of the largest discs about points (N, 2) that lie on a face, negative off all."""
+        within = [border.room(points) for border in self.borders if not border.is_hole]
+        off = [border.room(points) for border in self.borders if border.is_hole]
+        out: Array = np.min([np.max(within, axis=0), *off], axis=0)
         return out
 
     @property
     def box(self) -> tuple[Array, Array]:
         """The least and the greatest x and y that the outer loop may have."""
-        outer = self.borders[0]
-        points = [outer.starts]
-        if len(outer.arcs):
-            points += [outer.arcs[:, :2] - outer.arcs[:, 2:3], outer.arcs[:, :2] + outer.arcs[:, 2:3]]
+        points: list[Array] = []
+        for outer in self.borders:
+            if not outer.is_hole:
+                points += [outer.starts, outer.arcs[:, :2] - outer.arcs[:, 2:3]]
+                points += [outer.arcs[:, :2] + outer.arcs[:, 2:3]]
         every = np.concatenate(points)
         return every.min(axis=0), every.max(axis=0)
 

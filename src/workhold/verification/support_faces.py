@@ -35,13 +35,19 @@ def turns_about(segments: Sequence[Segment], point: tuple[float, float]) -> int:
 
 def room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
     """How large a disc about a point lies on a face and over no zone, in mm; negative off it."""
-    room = inf
+    outer: list[tuple[Segment, ...]] = []
+    best, room = -inf, inf
     for number, loop in enumerate([*loops, *zones]):
-        segments = loop_segments(np.asarray(loop))
+        segments = tuple(loop_segments(np.asarray(loop)))
         near = min(distance_to_segment(point, one) for one in segments)
         is_in = turns_about(segments, point) != 0
-        room = min(room, near if is_in == (number == 0) else -near)
-    return room
+        # A loop within another is an opening, one beside it a further face.
+        if number < len(loops) and all(turns_about(one, segments[0].start) == 0 for one in outer):
+            outer.append(segments)
+            best = max(best, near if is_in else -near)
+        else:
+            room = min(room, -near if is_in else near)
+    return min(best, room)
 
 
 def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:

@@ -58,6 +58,8 @@ class SolidForm(Form):
     least_band: Annotated[float, Field(ge=0, le=LARGEST)]
     bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
     faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = []
+    bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = []
+    top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = []
 
 
 class WorkpieceForm(Form):

@@ -452,13 +452,47 @@ def test_second_side_avoids_what_the_first_had_cut(tmp_path: Path) -> None:
     assert other["restrictions"]["avoid"] != one["restrictions"]["avoid"]
 
 
-def test_supports_of_a_solid_say_that_its_faces_are_taken_to_be_flat(tmp_path: Path) -> None:
-    """Of a solid with a rounded foot the command for supports warns; of a prism it has nothing to say."""
+def test_supports_of_a_solid_without_a_level_face_on_top(tmp_path: Path) -> None:
+    """Of a solid without a level face on top the command for supports says so; else it has nothing to say."""
     warned = []
-    for name, shape in (("prism", PLATE), ("rounded", filleted(PLATE, 3.0, at_height(0.0)))):
+    leaning = BRepPrimAPI_MakeBox(
+        gp_Ax2(gp_Pnt(0, -5, 10), gp_Dir(-0.1, 0, 1), gp_Dir(1, 0, 0.1)), 90, 60, 60
+    )
+    for name, shape in (("prism", PLATE), ("slope", cut(PLATE, leaning.Shape()))):
         part, result = write_step(tmp_path / f"{name}.step", shape), tmp_path / f"{name}.json"
         save(design(load(part), Plate(pitch=15, peg_radius=3), best=1), result)
         shown = CliRunner().invoke(app, ["supports", str(result), "1", "--pad-radius", "3"])
         assert shown.exit_code == 0
-        warned.append("is taken to be flat below" in " ".join(shown.stdout.split()))
+        warned.append("No level face of the part is known at its top" in " ".join(shown.stdout.split()))
     assert warned == [False, True]
+
+
+def rounded_loops(loops: Any) -> list[list[tuple[float, ...]]]:
+    """Loops with their numbers rounded, each beginning at its least vertex."""
+    found = []
+    for loop in loops:
+        vertices = [tuple(round(one, 6) + 0.0 for one in vertex) for vertex in loop]
+        first = vertices.index(min(vertices))
+        found.append(vertices[first:] + vertices[:first])
+    return sorted(found)
+
+
+def test_level_faces_below_and_on_top() -> None:
+    """Pads touch what the part lies on, without fillets and pockets; the tip what nothing stands over."""
+    shape = fused(box(60, 40, 10), box(20, 40, 10, (0, 0, 10)), box(10, 40, 4, (20, 0, 16)))
+    shape = cut(shape, box(10, 10, 3, (40, 15, -1)))
+    drawing = shapes_by_height(
+        [filleted(shape, 2.0, lambda low, high: at_height(0.0)(low, high) and low[0] > 59)], HeightView()
+    )
+    assert rounded_loops(drawing.solid.bottom) == [
+        [(0, 0, 0), (58, 0, 0), (58, 40, 0), (0, 40, 0)],
+        [(40, 15, 0), (40, 25, 0), (50, 25, 0), (50, 15, 0)],
+    ]
+    # What stands over the lower step from x = 20 to 30 takes all of that face away.
+    # Two faces side by side stay two: the tip stands on one of them.
+    assert rounded_loops(drawing.solid.top) == [
+        [(0, 0, 0), (20, 0, 0), (20, 40, 0), (0, 40, 0)],
+        [(20, 0, 0), (30, 0, 0), (30, 40, 0), (20, 40, 0)],
+    ]
+    feet = fused(box(10, 40, 10), box(10, 40, 10, (50, 0, 0)), box(60, 40, 5, (0, 0, 10)))
+    assert len(shapes_by_height([feet], HeightView()).solid.bottom) == 2

@@ -92,6 +92,8 @@ def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:
             **{key: solid[key] for key in ("axis", "height", "peg_height", "head_room", "least_band")},
             bands=workpiece["bands"],
             faces=workpiece.get("solid_faces") or (),
+            bottom=workpiece.get("bottom") or (),
+            top=workpiece.get("top") or (),
         )
     except (TypeError, ValueError, LookupError, AttributeError) as error:
         if isinstance(error, InputError):

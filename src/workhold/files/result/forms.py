@@ -72,6 +72,8 @@ class WorkpiecePart(FormPart):
         None, description="heights at which each segment may be touched; none where it may not"
     )
     solid_faces: list[list[int]] | None = Field(None, description="faces of the solid over each segment")
+    bottom: list[list[list[float]]] | None = Field(None, description="loops on which the solid lies")
+    top: list[list[list[float]]] | None = Field(None, description="loops of its faces with nothing above")
 
 
 class SolidPart(FormPart):
@@ -93,7 +95,13 @@ class SolidPart(FormPart):
         """
         if workpiece.bands is None:
             raise InputError("it has a solid, but the workpiece has no bands.")
-        return SolidOutline(**self.model_dump(), bands=workpiece.bands, faces=workpiece.solid_faces or ())
+        return SolidOutline(
+            **self.model_dump(),
+            bands=workpiece.bands,
+            faces=workpiece.solid_faces or (),
+            bottom=workpiece.bottom or (),
+            top=workpiece.top or (),
+        )
 
 
 class FlatPart(FormPart):

@@ -121,7 +121,8 @@ def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
     if solid is None:
         return {}
     faces = {"solid_faces": [list(faces) for faces in solid.faces]} if solid.faces else {}
-    return {"bands": [None if band is None else list(band) for band in solid.bands], **faces}
+    level = {"bottom": solid.bottom, "top": solid.top} if solid.bottom or solid.top else {}
+    return {"bands": [None if band is None else list(band) for band in solid.bands], **faces, **level}
 
 
 def solid_entry(solid: SolidOutline | None) -> dict[str, Any]:

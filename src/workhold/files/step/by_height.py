@@ -16,6 +16,7 @@ from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Drawing
 from workhold.files.questions import HEAD_ROOM, LEAST_BAND, PEG_HEIGHT, SECTION
 from workhold.files.step.heights import HeightOutline, StandingSolid, standing
+from workhold.files.step.level_faces import bottom_loops, top_loops
 from workhold.files.step.library import load_step_library
 from workhold.files.step.reader import drawing_of
 from workhold.files.step.reader import plain as plain_silhouette
@@ -190,7 +191,8 @@ def plain_drawing(drawing: HeightDrawing) -> Any:
     heights = (solid.height, solid.peg_height, solid.head_room, solid.least_band)
     loops = [loop.tolist() for loop in drawing.loops]
     rows = [astuple(row) for row in drawing.heights]
-    return loops, (solid.axis, *heights, solid.bands, solid.faces), drawing.remarks, rows
+    described = (solid.axis, *heights, solid.bands, solid.faces, solid.bottom, solid.top)
+    return loops, described, drawing.remarks, rows
 
 
 def silhouette_by_height(content: bytes, options: Mapping[str, Any]) -> HeightDrawing:
@@ -270,7 +272,8 @@ def drawn(shape: Any, view: HeightView, of_silhouette: bool = False) -> HeightDr
             f"along {axis} no upright face of the part is at least {least:g} mm high below "
             f"{outline.peg_height:g} mm: {advice(solid, room, least)}."
         )
-    found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces)
+    level = [[loop.tolist() for loop in found] for found in (bottom_loops(solid), top_loops(solid))]
+    found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces, *level)
     rows = [] if of_silhouette and is_prism(solid) else height_table(solid, room, least)
     remarks = [] if of_silhouette else height_remarks(outline, found, rows)
     if of_silhouette:
