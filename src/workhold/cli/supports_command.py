@@ -326,7 +326,16 @@ def report(
             f"Under fixture {rank} no three supports hold the part with the clamp between them: "
             f"{found.positions} holes could hold a support. Try smaller pads, or a smaller tip."
         )
-        return
+    else:
+        print_sets(found, listed, result, rank, unit)
+    if found.count is not None and found.count > len(listed) and out is None:
+        print_remark("more sets can be listed with --triples, and written into a file with --out.")
+    if out is not None:
+        print_tables(f"Written to {out}.")
+
+
+def print_sets(found: Supports, listed: Sequence[Triple], result: Result, rank: int, unit: Unit) -> None:
+    """Prints some sets of three as a table, with what is not seen in it."""
     with_loads = bool(found.loads)
     table = Table((">set", "supports", *columns_of(unit, with_loads)))
     for place, triple in enumerate(listed, 1):
@@ -334,10 +343,6 @@ def report(
     number_of = "" if found.count is None else f" of {found.count}"
     head = f"Fixture {rank}: the best {len(listed)}{number_of} sets of three supports and a clamp on top."
     print_tables(head, table, *notes_of(found, listed, unit))
-    if found.count is not None and found.count > len(listed) and out is None:
-        print_remark("more sets can be listed with --triples, and written into a file with --out.")
-    if out is not None:
-        print_tables(f"Written to {out}.")
 
 
 def row_of(triple: Triple, result: Result, unit: Unit, with_loads: bool) -> list[str]:

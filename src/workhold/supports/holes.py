@@ -61,7 +61,7 @@ def holes_under(
     corners = np.array(list(product((low[0], high[0]), (low[1], high[1]))))
     x, y = fixture.pose.apply(corners[:, 0], corners[:, 1])
     pegs = pegs_in_part(fixture)
-    placed = [k for k, peg in enumerate(fixture.pegs) if not peg.is_on_wall]
+    placed = [k for k, peg in enumerate(fixture.pegs) if peg in fixture.placed]
     bodies = np.array([toolkit.carrier(fixture.pegs[k].carrier).body_radius for k in placed])
     found: list[tuple[Array, ...]] = []
     for number, carrier in enumerate(toolkit.carriers):

@@ -78,7 +78,7 @@ class SupportsJudge:
         segments = {face.number: face.segment for face in self.query.workpiece.faces}
         pushes = []
         for peg, place in zip(self.fixture.pegs, pegs, strict=True):
-            if peg.is_on_wall:
+            if peg not in self.fixture.placed:
                 # A wall runs along x with the part above it.
                 pushes.append(inverse.turn(0.0, 1.0))
                 continue
@@ -107,7 +107,7 @@ class SupportsJudge:
         room = room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
         room -= asked.pad_radius + asked.pad_margin
         for peg, place in zip(self.fixture.pegs, self.pegs, strict=True):
-            if not peg.is_on_wall:
+            if peg in self.fixture.placed:
                 body = self.toolkit.carrier(peg.carrier).body_radius
                 room = min(room, hypot(point[0] - place[0], point[1] - place[1]) - asked.pad_radius - body)
         return room

@@ -82,8 +82,10 @@ def fixture_entry(supports: Supports) -> dict[str, Any]:
     entry: dict[str, Any] = json.loads(line)
     bands = supports.request.bands
     if bands is not None:
-        placed = [band for peg, band in zip(supports.fixture.pegs, bands, strict=True) if not peg.is_on_wall]
-        walls = [band for peg, band in zip(supports.fixture.pegs, bands, strict=True) if peg.is_on_wall]
+        fixture = supports.fixture
+        of_pegs = list(zip(fixture.pegs, bands, strict=True))
+        placed = [band for peg, band in of_pegs if peg in fixture.placed]
+        walls = [band for peg, band in of_pegs if peg not in fixture.placed]
         for peg, band in zip(entry["pegs"], placed, strict=True):
             if band is not None:
                 peg["band"] = list(band)
