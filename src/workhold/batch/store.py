@@ -84,13 +84,7 @@ def plain_record(content: bytes) -> dict[str, Any]:
 
 def workpiece_of(record: dict[str, Any]) -> Workpiece:
     """The part of a drawing's record."""
-    solid = record.get("solid") and SolidOutline(
-        **record["solid"],
-        bands=record["bands"],
-        faces=record.get("solid_faces", ()),
-        bottom=record.get("bottom", ()),
-        top=record.get("top", ()),
-    )
+    solid = SolidOutline.of_entries(record["solid"], record) if record.get("solid") else None
     return Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
 
 

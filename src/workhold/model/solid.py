@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
@@ -92,6 +92,23 @@ class SolidOutline:
         for band in self.bands:
             if band is not None and not (isfinite(band[0]) and 0.0 <= band[0] <= band[1] < 1e9):
                 raise InputError(f"the band {band[0]:g} to {band[1]:g} mm is none: give its lower end first.")
+
+    @classmethod
+    def of_entries(cls, solid: Mapping[str, Any], workpiece: Mapping[str, Any]) -> SolidOutline:
+        """The solid of a file's entries ``solid`` and ``workpiece``; the second has the bands.
+
+        Raises
+        ------
+        InputError, LookupError, TypeError, ValueError
+            For entries that lack something, or hold what cannot be.
+        """
+        return cls(
+            **{key: solid[key] for key in ("axis", "height", "peg_height", "head_room", "least_band")},
+            bands=workpiece["bands"],
+            faces=workpiece.get("solid_faces") or (),
+            bottom=workpiece.get("bottom") or (),
+            top=workpiece.get("top") or (),
+        )
 
     @property
     def untouchable(self) -> frozenset[int]:

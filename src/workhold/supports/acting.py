@@ -46,8 +46,7 @@ def needed_jaw_force(
             name = f"the load '{load.name}'" if load.name else "a load"
             raise InputError(
                 f"a jaw force of {jaw_force:g} N lets a peg lose contact under {name}, which takes "
-                f"{need:.6g} N: "
-                "give more, or leave it out."
+                f"{need:.6g} N: give more, or leave it out."
             )
     return float(jaw_force)
 

@@ -88,13 +88,7 @@ def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:
     if solid is None or not isinstance(workpiece, dict):
         return None
     try:
-        return SolidOutline(
-            **{key: solid[key] for key in ("axis", "height", "peg_height", "head_room", "least_band")},
-            bands=workpiece["bands"],
-            faces=workpiece.get("solid_faces") or (),
-            bottom=workpiece.get("bottom") or (),
-            top=workpiece.get("top") or (),
-        )
+        return SolidOutline.of_entries(solid, workpiece)
     except (TypeError, ValueError, LookupError, AttributeError) as error:
         if isinstance(error, InputError):
             raise

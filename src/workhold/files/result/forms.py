@@ -95,13 +95,7 @@ class SolidPart(FormPart):
         """
         if workpiece.bands is None:
             raise InputError("it has a solid, but the workpiece has no bands.")
-        return SolidOutline(
-            **self.model_dump(),
-            bands=workpiece.bands,
-            faces=workpiece.solid_faces or (),
-            bottom=workpiece.bottom or (),
-            top=workpiece.top or (),
-        )
+        return SolidOutline.of_entries(self.model_dump(), workpiece.model_dump())
 
 
 class FlatPart(FormPart):

@@ -27,11 +27,10 @@ from workhold.files.step.edge_curves import EdgeCurve
 from workhold.files.step.faces import SolidFace
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.geometry.subdivision import BorderPiece, CutCarrier
+from workhold.model.solid import Band
 
-__all__ = ["Band", "Strip", "Walls", "strips_of_loop"]
+__all__ = ["Strip", "Walls", "strips_of_loop"]
 
-# Heights (z0, z1) in mm above the plane on which the part lies.
-Band = tuple[float, float]
 # How far inside a piece its ends are looked at: a share of it, and in units of what makes two points one.
 INSIDE, STEP = 1e-7, 3.0
 # Heights that differ by less, in mm, are one: of an edge, and of a band that goes on from piece to piece.

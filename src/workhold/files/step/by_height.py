@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -15,12 +15,12 @@ from workhold.errors import InputError
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Drawing
 from workhold.files.questions import HEAD_ROOM, LEAST_BAND, PEG_HEIGHT, SECTION
+from workhold.files.step.heights import HEAD_ROOM as USUAL_ROOM
+from workhold.files.step.heights import LEAST_BAND as USUAL_BAND
 from workhold.files.step.heights import HeightOutline, StandingSolid, standing
 from workhold.files.step.level_faces import bottom_loops, top_loops
 from workhold.files.step.library import load_step_library
-from workhold.files.step.reader import drawing_of
-from workhold.files.step.reader import plain as plain_silhouette
-from workhold.files.step.reader import prepare as prepare_reader
+from workhold.files.step.reader import drawing_of, guarded, of_solids, plain_drawing, prepare
 from workhold.files.step.solids import (
     along,
     axis_named,
@@ -37,15 +37,13 @@ from workhold.model.solid import HeightRow, SolidOutline
 
 __all__ = [
     "HeightDrawing",
-    "HeightRow",
     "HeightView",
+    "prepare",
     "read_by_height",
     "read_by_height_apart",
     "shapes_by_height",
 ]
 
-# What is kept free above the pegs, and the shortest band that may be touched, both in mm, where nobody says.
-USUAL_HEAD_ROOM, USUAL_LEAST_BAND = 0.5, 1.0
 # Heights of the pegs that the table looks at, at most.
 MOST_ROWS = 60
 
@@ -132,7 +130,7 @@ def read_silhouette_apart(content: bytes, **options: Any) -> tuple[Drawing, Heig
 
 
 def height_drawing_of(answered: Any) -> HeightDrawing:
-    """The drawing of what :func:`plain_drawing` makes."""
+    """The drawing of what :func:`plain_heights` makes."""
     loops, solid, remarks, rows = answered
     return HeightDrawing(
         tuple(np.array(loop) for loop in loops),
@@ -140,11 +138,6 @@ def height_drawing_of(answered: Any) -> HeightDrawing:
         tuple(remarks),
         tuple(HeightRow(*row) for row in rows),
     )
-
-
-def prepare() -> None:
-    """Loads the library, see :func:`workhold.files.apart.run_apart`."""
-    prepare_reader()
 
 
 def plain(
@@ -158,53 +151,28 @@ def plain(
         As :func:`read_by_height`, and where the library or the arithmetic after it fails over the file.
     """
     if silhouette is None:
-        return guarded(lambda: plain_drawing(read_by_height(content, HeightView(**(view or {})))))
-    drawing = plain_silhouette(content, **silhouette)
+        return guarded(lambda: plain_heights(read_by_height(content, HeightView(**(view or {})))), ValueError)
+    load_step_library()
+    solids = guarded(lambda: read_solids(content))
+    drawing = guarded(lambda: plain_drawing(of_solids(content, solids, **silhouette)))
+    chosen = chosen_solid(solids, silhouette.get("part_number"))
+    upright = HeightView(axis=silhouette.get("axis"))
     try:
-        return drawing, guarded(lambda: plain_drawing(silhouette_by_height(content, silhouette)))
+        return drawing, guarded(
+            lambda: plain_heights(drawn(chosen.shape, upright, of_silhouette=True)), ValueError
+        )
     except InputError:
         return drawing, None
 
 
-def guarded(read: Callable[[], Any]) -> Any:
-    """What some reading returns.
-
-    Raises
-    ------
-    InputError
-        Its own, and one where the library or the arithmetic after it fails.
-    """
-    try:
-        return read()
-    except InputError:
-        raise
-    except Exception as error:
-        kinds = ArithmeticError | LookupError | RuntimeError | TypeError | ValueError
-        if not isinstance(error, kinds) and not type(error).__module__.startswith("OCP"):
-            raise
-        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
-
-
-def plain_drawing(drawing: HeightDrawing) -> Any:
-    """A drawing as plain data."""
+def plain_heights(drawing: HeightDrawing) -> Any:
+    """An outline by height as plain data, see :func:`height_drawing_of`."""
     solid = drawing.solid
     heights = (solid.height, solid.peg_height, solid.head_room, solid.least_band)
     loops = [loop.tolist() for loop in drawing.loops]
     rows = [astuple(row) for row in drawing.heights]
     described = (solid.axis, *heights, solid.bands, solid.faces, solid.bottom, solid.top)
     return loops, described, drawing.remarks, rows
-
-
-def silhouette_by_height(content: bytes, options: Mapping[str, Any]) -> HeightDrawing:
-    """The silhouette of a solid as pegs see it that are as high as the part.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_by_height`.
-    """
-    chosen = chosen_solid(read_solids(content), options.get("part_number"))
-    return drawn(chosen.shape, HeightView(axis=options.get("axis")), of_silhouette=True)
 
 
 def read_by_height(content: bytes, view: HeightView) -> HeightDrawing:
@@ -250,16 +218,16 @@ def drawn(shape: Any, view: HeightView, of_silhouette: bool = False) -> HeightDr
     """
     axis = axis_named(view.axis)
     solid = standing(along(shape, axis))
-    room = USUAL_HEAD_ROOM if view.head_room is None else view.head_room
-    least = USUAL_LEAST_BAND if view.least_band is None else view.least_band
+    room = USUAL_ROOM if view.head_room is None else view.head_room
+    least = USUAL_BAND if view.least_band is None else view.least_band
     try:
         outline = solid.outline(view.peg_height, room, least)
     except InputError as error:
         raise InputError(f"along {axis}: {error}; {advice(solid, room, least)}.") from error
     loops = [vertices_of(loop) for loop in outline.loops]
     areas = [signed_area(loop_segments(loop)) for loop in loops]
-    if sum(area > 0 for area in areas) > 1:
-        feet = sum(area > 0 for area in areas)
+    feet = sum(area > 0 for area in areas)
+    if feet > 1:
         raise InputError(
             f"along {axis} pegs of {outline.peg_height:g} mm meet the part in {feet} separate pieces: "
             f"{advice(solid, room, least, one_piece=True)}."
@@ -275,9 +243,9 @@ def drawn(shape: Any, view: HeightView, of_silhouette: bool = False) -> HeightDr
     level = [[loop.tolist() for loop in found] for found in (bottom_loops(solid), top_loops(solid))]
     found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces, *level)
     rows = [] if of_silhouette and is_prism(solid) else height_table(solid, room, least)
-    remarks = [] if of_silhouette else height_remarks(outline, found, rows)
-    if of_silhouette:
-        remarks = better_height(rows, measures(outline)[2])
+    remarks = (
+        better_height(rows, measures(outline)[2]) if of_silhouette else height_remarks(outline, found, rows)
+    )
     return HeightDrawing(tuple(loops[k] for k in order), found, tuple(remarks), tuple(rows))
 
 

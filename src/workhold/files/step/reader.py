@@ -10,9 +10,9 @@ they are.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from attrs import evolve
@@ -54,6 +54,9 @@ __all__ = [
 ]
 
 
+T = TypeVar("T")
+
+
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
     """Runs :func:`read_step` in a process of its own: damaged files crash or hang the library.
 
@@ -66,7 +69,7 @@ def read_step_apart(content: bytes, **options: Any) -> Drawing:
 
 
 def drawing_of(answered: Any) -> Drawing:
-    """The drawing of what :func:`plain` makes."""
+    """The drawing of what :func:`plain_drawing` makes."""
     chains = [
         Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels))
         for points, bulges, labels in answered[0]
@@ -96,14 +99,30 @@ def plain(content: bytes, **options: Any) -> Any:
     InputError
         As :func:`read_step`, and where the library or the arithmetic after it fails over what it was given.
     """
+    return guarded(lambda: plain_drawing(read_step(content, **options)))
+
+
+def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
+    """What some reading returns; ``further`` are errors that come of a damaged file as well.
+
+    Raises
+    ------
+    InputError
+        Its own, and one where the library or the arithmetic after it fails over what it was given.
+    """
     try:
-        drawing = read_step(content, **options)
-    except (ArithmeticError, LookupError, RuntimeError, TypeError) as error:
-        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
+        return read()
+    except InputError:
+        raise
     except Exception as error:
-        if not type(error).__module__.startswith("OCP"):
+        damaged = isinstance(error, ArithmeticError | LookupError | RuntimeError | TypeError)
+        if not (damaged or isinstance(error, further)) and not type(error).__module__.startswith("OCP"):
             raise
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
+
+
+def plain_drawing(drawing: Drawing) -> Any:
+    """A drawing as plain data, see :func:`drawing_of`."""
     chains = [[chain.points, chain.bulges, chain.labels] for chain in drawing.chains]
     curves = [
         [label, one.place, one.departure, one.is_disguise, one.pieces.tolist(), one.arcs]
@@ -140,7 +159,24 @@ def read_step(
         For files that cannot be read, and parts whose silhouette is not that of their upright faces.
     """
     load_step_library()
-    solids = read_solids(content)
+    return of_solids(content, read_solids(content), axis, section_height, part_number, fit)
+
+
+def of_solids(
+    content: bytes,
+    solids: tuple[Solid, ...],
+    axis: str | None,
+    section_height: float | None = None,
+    part_number: int | None = None,
+    fit: float | None = None,
+) -> Drawing:
+    """The outline of a solid in a STEP file of which the solids are read already, see :func:`read_step`.
+
+    Raises
+    ------
+    InputError
+        See there.
+    """
     drawing = read_solid(solids, axis, section_height, part_number, fit)
     return evolve(drawing, remarks=(*lost_remarks(content, solids), *drawing.remarks))
 
