@@ -369,6 +369,24 @@ def test_silhouette_has_its_bands(tmp_path: Path) -> None:
     assert load(write_step(tmp_path / "section.step", FLANGED), section=10.0).solid is None
 
 
+def test_sections_that_the_library_cannot_unite_do_no_harm(tmp_path: Path) -> None:
+    """A block with all edges broken and holes up to its chamfers is read by height, as are its wholes from solids."""
+    block = chamfered(box(90, 60, 40), 2, lambda low, high: True)
+    block = cut(
+        block,
+        cylinder(8, 20, (20, 15, 25)),
+        cylinder(5, 20, (70, 45, -1)),
+        cylinder(7, 50, (-1, 30, 20), (1, 0, 0)),
+    )
+    block = cut(block, cylinder(4.2, 60, (20, 45, -1)))
+    path = write_step(tmp_path / "manifold.step", block)
+    for part in (load(path), load(block)):
+        assert part.solid is not None
+        assert part.bounds == pytest.approx((0.0, 0.0, 90.0, 60.0))
+        assert [len(loop) for loop in part.loops] == [8, 2]
+        assert {tuple(round(z, 9) for z in band or ()) for band in part.solid.bands} == {(2, 38), (0, 40)}
+
+
 def test_bands_in_files(tmp_path: Path) -> None:
     """A result file has the solid, the bands, and each peg's band; reading and writing changes nothing."""
     shape = fused(box(60, 40, 14), box(30, 20, 3, (15, 40, 0)))

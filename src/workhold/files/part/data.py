@@ -162,13 +162,16 @@ def drawing_of_object(
     if unit is not None:
         raise InputError(f"shapes of Open CASCADE are in mm: leave {DRAWING_UNIT} out.")
     name = str(getattr(part, "label", "") or "shape")
-    if by_height(view, fit):
-        from workhold.files.step.by_height import HeightView, shapes_by_height
+    from workhold.files.step.by_height import HeightView, shapes_by_height, shapes_usual
 
-        heights = {key: view[key] for key in ("axis", "peg_height", "head_room", "least_band")}
-        return ObjectPart(
-            shapes_by_height(shapes, HeightView(**heights, part_number=part_number)), name, None
-        )
+    heights = {key: view[key] for key in ("axis", "peg_height", "head_room", "least_band")}
+    height_view = HeightView(**heights, part_number=part_number)
+    if by_height(view, fit):
+        return ObjectPart(shapes_by_height(shapes, height_view), name, None)
+    if view["section"] is None and fit is None:
+        found = shapes_usual(shapes, height_view)
+        if found is not None:
+            return ObjectPart(found, name, None)
     from workhold.files.step.reader import read_shapes
 
     drawing, rest = read_shapes(

@@ -20,7 +20,7 @@ from workhold.files.outline.joining import Loop
 from workhold.files.outline.nesting import chosen_part, nest
 from workhold.files.part.data import drawing_of_object
 from workhold.files.part.finding import builtin_parts, builtin_path, found, kind_of, read_bytes
-from workhold.files.part.loaded import Loaded, built, from_drawing, from_heights, refuse_large, with_bands
+from workhold.files.part.loaded import Loaded, built, from_drawing, from_heights, refuse_large
 from workhold.files.questions import (
     DRAWING_UNIT,
     UnitAskedError,
@@ -267,20 +267,16 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
     refuse_layers(options["layers"])
     if options["unit"] is not None:
         raise InputError(f"the STEP file gives its own unit: leave {DRAWING_UNIT} out.")
-    if by_height(options, options["fit"]):
-        from workhold.files.step.by_height import HeightView, read_by_height_apart
+    asked = by_height(options, options["fit"])
+    if asked or (options["section"] is None and options["fit"] is None):
+        from workhold.files.step.by_height import HeightView, read_by_height_apart, read_usual_apart
 
         keys = ("axis", "peg_height", "head_room", "least_band", "part_number")
         view = HeightView(**{key: options[key] for key in keys})
-        return from_heights(path.stem, read_by_height_apart(content, view))
-    if options["section"] is None and options["fit"] is None:
-        from workhold.files.step.by_height import read_silhouette_apart
-
-        drawing, solid = read_silhouette_apart(
-            content, axis=options["axis"], part_number=options["part_number"]
-        )
-        loaded = from_drawing(path, drawing, None, 0.0, None)
-        return loaded if solid is None else with_bands(loaded, solid)
+        read = read_by_height_apart(content, view) if asked else read_usual_apart(content, view)
+        if isinstance(read, Drawing):
+            return from_drawing(path, read, None, 0.0, None)
+        return from_heights(path.stem, read)
     from workhold.files.step.reader import read_step_apart
 
     drawing = read_step_apart(

@@ -32,7 +32,7 @@ from workhold.model.workpiece import Workpiece
 if TYPE_CHECKING:
     from workhold.files.step.by_height import HeightDrawing
 
-__all__ = ["Loaded", "built", "from_drawing", "from_heights", "refuse_large", "with_bands"]
+__all__ = ["Loaded", "built", "from_drawing", "from_heights", "refuse_large"]
 
 # A part of more segments than this is a scan or a picture, and would keep every later step busy for hours.
 MOST_SEGMENTS = 20_000
@@ -72,25 +72,6 @@ def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
     workpiece = built(name, loops, with_labels=False, solid=drawing.solid)
     remarks = (*drawing.remarks, *workpiece.remarks)
     return Loaded(workpiece, remarks, nest(loops)[:1], heights=drawing.heights)
-
-
-# The silhouette and the outline by height are one where their areas differ by less, in proportion.
-SAME_OUTLINE = 1e-7
-
-
-def with_bands(loaded: Loaded, drawing: HeightDrawing) -> Loaded:
-    """A silhouette with its bands, as it was read where the outline by height is another.
-
-    Parameters
-    ----------
-    drawing : the solid at its own height.
-    """
-    bands = from_heights(loaded.workpiece.name, drawing)
-    areas = [one.parts[0].area for one in (loaded, bands)]
-    if loaded.workpiece.departure or abs(areas[0] - areas[1]) > SAME_OUTLINE * areas[0]:
-        return loaded
-    remarks = (*loaded.remarks, *drawing.remarks)
-    return evolve(loaded, workpiece=bands.workpiece, remarks=remarks, heights=drawing.heights)
 
 
 def from_drawing(

@@ -15,13 +15,15 @@ from workhold.errors import InputError
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Drawing
 from workhold.files.questions import HEAD_ROOM, LEAST_BAND, PEG_HEIGHT, SECTION
+from workhold.files.step.departures import other_axis_remarks
 from workhold.files.step.heights import HEAD_ROOM as USUAL_ROOM
 from workhold.files.step.heights import LEAST_BAND as USUAL_BAND
 from workhold.files.step.heights import HeightOutline, StandingSolid, standing
 from workhold.files.step.level_faces import bottom_loops, top_loops
 from workhold.files.step.library import load_step_library
-from workhold.files.step.reader import drawing_of, guarded, of_solids, plain_drawing, prepare
+from workhold.files.step.reader import drawing_of, guarded, plain_drawing, prepare, read_solid
 from workhold.files.step.solids import (
+    Solid,
     along,
     axis_named,
     chosen_solid,
@@ -41,7 +43,9 @@ __all__ = [
     "prepare",
     "read_by_height",
     "read_by_height_apart",
+    "read_usual_apart",
     "shapes_by_height",
+    "shapes_usual",
 ]
 
 # Heights of the pegs that the table looks at, at most.
@@ -108,25 +112,17 @@ def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
     return height_drawing_of(run_apart(__name__, content, {"view": asdict(view)}, "the STEP file"))
 
 
-def read_silhouette_apart(content: bytes, **options: Any) -> tuple[Drawing, HeightDrawing | None]:
-    """Runs ``files.step.reader.read_step`` in a process of its own, and looks at the solid by heights too.
-
-    Parameters
-    ----------
-    options : of :func:`workhold.files.step.reader.read_step`, the axis and the part's number.
-
-    Returns
-    -------
-    The silhouette; and the same outline with its bands, None where it has none that can be touched, or is not
-    made of lines and arcs alone.
+def read_usual_apart(content: bytes, view: HeightView) -> HeightDrawing | Drawing:
+    """Reads a solid as high as it is in a process of its own, see :func:`usual_drawing`.
 
     Raises
     ------
     InputError
-        As :func:`workhold.files.step.reader.read_step`.
+        As :func:`usual_drawing`, and for a file that the process does not survive.
     """
-    silhouette, by_height = run_apart(__name__, content, {"silhouette": options}, "the STEP file")
-    return drawing_of(silhouette), None if by_height is None else height_drawing_of(by_height)
+    options = {"view": asdict(view), "or_silhouette": True}
+    by_height, answered = run_apart(__name__, content, options, "the STEP file")
+    return height_drawing_of(answered) if by_height else drawing_of(answered)
 
 
 def height_drawing_of(answered: Any) -> HeightDrawing:
@@ -140,29 +136,53 @@ def height_drawing_of(answered: Any) -> HeightDrawing:
     )
 
 
-def plain(
-    content: bytes, view: dict[str, Any] | None = None, silhouette: dict[str, Any] | None = None
-) -> Any:
-    """What :func:`read_by_height` reads as plain data, or the silhouette with it.
+def plain(content: bytes, view: dict[str, Any], or_silhouette: bool = False) -> Any:
+    """What :func:`read_by_height` reads as plain data; or which of two :func:`read_usual` reads, with it.
 
     Raises
     ------
     InputError
-        As :func:`read_by_height`, and where the library or the arithmetic after it fails over the file.
+        As these, and where the library or the arithmetic after it fails over the file.
     """
-    if silhouette is None:
-        return guarded(lambda: plain_heights(read_by_height(content, HeightView(**(view or {})))), ValueError)
+    if not or_silhouette:
+        return guarded(lambda: plain_heights(read_by_height(content, HeightView(**view))), ValueError)
+    found = guarded(lambda: read_usual(content, HeightView(**view)), ValueError)
+    if isinstance(found, Drawing):
+        return False, plain_drawing(found)
+    return True, plain_heights(found)
+
+
+def read_usual(content: bytes, view: HeightView) -> HeightDrawing | Drawing:
+    """The outline of a solid in a STEP file of which nobody says how high the pegs are.
+
+    Raises
+    ------
+    InputError
+        As :func:`usual_drawing`.
+    """
     load_step_library()
-    solids = guarded(lambda: read_solids(content))
-    drawing = guarded(lambda: plain_drawing(of_solids(content, solids, **silhouette)))
-    chosen = chosen_solid(solids, silhouette.get("part_number"))
-    upright = HeightView(axis=silhouette.get("axis"))
+    solids = read_solids(content)
+    found = usual_drawing(solids, view)
+    return evolve(found, remarks=(*lost_remarks(content, solids), *found.remarks))
+
+
+def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing | Drawing:
+    """The outline of pegs as high as the part; the silhouette where there is none of these to be touched.
+
+    The silhouette offers lines and arcs in the place of other curves. It has no heights, and faces that lean
+    may be touched.
+
+    Raises
+    ------
+    InputError
+        As :func:`workhold.files.step.reader.read_step`.
+    """
+    chosen = chosen_solid(solids, view.part_number)
     try:
-        return drawing, guarded(
-            lambda: plain_heights(drawn(chosen.shape, upright, of_silhouette=True)), ValueError
-        )
+        drawing = guarded(lambda: drawn(chosen.shape, view), ValueError)
     except InputError:
-        return drawing, None
+        return read_solid(solids, view.axis, None, view.part_number, None)
+    return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
 
 
 def plain_heights(drawing: HeightDrawing) -> Any:
@@ -208,7 +228,24 @@ def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
     return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
 
 
-def drawn(shape: Any, view: HeightView, of_silhouette: bool = False) -> HeightDrawing:
+def shapes_usual(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Drawing | None:
+    """The outline of one of some shapes of Open CASCADE of which nobody says how high the pegs are.
+
+    Returns
+    -------
+    As of :func:`usual_drawing`; None for shapes without a solid.
+
+    Raises
+    ------
+    InputError
+        As :func:`usual_drawing`.
+    """
+    load_step_library()
+    solids = numbered([solid for shape in shapes for solid in sub_shapes(shape, "SOLID")])
+    return usual_drawing(solids, view) if solids else None
+
+
+def drawn(shape: Any, view: HeightView) -> HeightDrawing:
     """The outline of a solid, with remarks on what may be touched and on a height that offers more.
 
     Raises
@@ -242,10 +279,11 @@ def drawn(shape: Any, view: HeightView, of_silhouette: bool = False) -> HeightDr
         )
     level = [[loop.tolist() for loop in found] for found in (bottom_loops(solid), top_loops(solid))]
     found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces, *level)
-    rows = [] if of_silhouette and is_prism(solid) else height_table(solid, room, least)
-    remarks = (
-        better_height(rows, measures(outline)[2]) if of_silhouette else height_remarks(outline, found, rows)
-    )
+    plain_prism = view.peg_height is None and is_prism(solid)
+    rows = [] if plain_prism else height_table(solid, room, least)
+    remarks = [] if plain_prism else height_remarks(outline, found, rows)
+    if any(band is None for band in bands):
+        remarks += other_axis_remarks(shape, axis)
     return HeightDrawing(tuple(loops[k] for k in order), found, tuple(remarks), tuple(rows))
 
 
@@ -325,15 +363,20 @@ def is_one_piece(outline: HeightOutline) -> bool:
 def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]) -> list[str]:
     """What an outline by height is, what may be touched of it, and a height at which more may be."""
     _, border, touchable, band = measures(outline)
-    remarks = [
-        f"The part is {found.height:.6g} mm high along {found.axis}; the outline is what pegs of "
-        f"{outline.peg_height:.6g} mm, with {outline.head_room:g} mm free above, can meet."
-    ]
+    reach = (
+        "pegs are taken to reach as high"
+        if outline.peg_height == found.height
+        else f"the outline is what pegs of {outline.peg_height:.6g} mm, with {outline.head_room:g} mm free "
+        "above, can meet"
+    )
+    remarks = [f"The part is {found.height:.6g} mm high along {found.axis}; {reach}."]
     if touchable < border * (1 - 1e-9):
         remarks.append(
-            f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of it, and only these are touched; "
-            f"the shortest is {band:.4g} mm high there."
+            f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of the outline, and only these are "
+            f"touched; the shortest is {band:.4g} mm high there."
         )
+    elif band < min(outline.peg_height, found.height) - SAME_HEIGHT:
+        remarks.append(f"The shortest upright face on the outline is {band:.4g} mm high there.")
     return [*remarks, *better_height(rows, touchable)]
 
 

@@ -29,7 +29,7 @@ from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["Outline", "departure_remarks", "refuse_overhang"]
+__all__ = ["Outline", "departure_remarks", "other_axis_remarks", "refuse_overhang"]
 
 
 @frozen
@@ -146,10 +146,17 @@ def departure_remarks(
         )
     else:
         remarks.append(silhouette_remark(outline, layers, shape))
-    hint = other_axis(solid, axis, "")
-    if hint and any(face.lie == "leaning" for face in faces):
-        remarks.append(f"Along {hint} no face leans: give {AXIS} {hint} if the pegs are parallel to that.")
+    if any(face.lie == "leaning" for face in faces):
+        remarks += other_axis_remarks(solid, axis)
     return remarks
+
+
+def other_axis_remarks(solid: Any, axis: str) -> list[str]:
+    """A sentence on another axis along which no face of a solid leans, where there is one."""
+    hint = other_axis(solid, axis, "")
+    return (
+        [f"Along {hint} no face leans: give {AXIS} {hint} if the pegs are parallel to that."] if hint else []
+    )
 
 
 def departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:

@@ -159,24 +159,7 @@ def read_step(
         For files that cannot be read, and parts whose silhouette is not that of their upright faces.
     """
     load_step_library()
-    return of_solids(content, read_solids(content), axis, section_height, part_number, fit)
-
-
-def of_solids(
-    content: bytes,
-    solids: tuple[Solid, ...],
-    axis: str | None,
-    section_height: float | None = None,
-    part_number: int | None = None,
-    fit: float | None = None,
-) -> Drawing:
-    """The outline of a solid in a STEP file of which the solids are read already, see :func:`read_step`.
-
-    Raises
-    ------
-    InputError
-        See there.
-    """
+    solids = read_solids(content)
     drawing = read_solid(solids, axis, section_height, part_number, fit)
     return evolve(drawing, remarks=(*lost_remarks(content, solids), *drawing.remarks))
 
