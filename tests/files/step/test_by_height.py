@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,7 @@ from workhold.files.step.regions import area_of, section
 from workhold.files.step.solids import along
 from workhold.files.toolkit_file import load_toolkit
 from workhold.geometry.loop import loop_segments, signed_area
-from workhold.geometry.segment import segment_rows
+from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.model.solid import Band
 
@@ -367,6 +368,21 @@ def test_silhouette_has_its_bands(tmp_path: Path) -> None:
     lying = load(write_step(tmp_path / "lying.step", cylinder(7, 80, (0, 0, 0), (1, 0, 0))))
     assert lying.solid is None
     assert load(write_step(tmp_path / "section.step", FLANGED), section=10.0).solid is None
+
+
+def test_a_wall_that_ends_in_a_point_is_touched_up_to_there_whichever_way_it_runs(tmp_path: Path) -> None:
+    """The round ends of two lugs leave no height at their tips; the sides before them are touched all the same."""
+    lug = fused(box(35, 10, 40, (30, 0, 0)), cylinder(20, 10, (65, 0, 20), (0, 1, 0)))
+    other = fused(box(35, 10, 40, (30, 30, 0)), cylinder(20, 10, (65, 30, 20), (0, 1, 0)))
+    part = load(write_step(tmp_path / "clevis.step", fused(fused(box(30, 40, 40), lug), other)))
+    assert part.solid is not None
+    sides = defaultdict[float, float](float)
+    for segment, band in zip(part.segments, part.solid.bands, strict=True):
+        if isinstance(segment, Line) and abs(segment.tangent[0]) == 1.0 and band is not None:
+            sides[round(segment.start[1], 9)] += segment.length
+    # At a height of 1 mm the tip begins 20 - sqrt(20² - 0.5²) mm before the end.
+    tip = 85.0 - (20.0 - (400.0 - 0.25) ** 0.5)
+    assert sides == pytest.approx({0.0: tip, 10.0: tip - 30.0, 30.0: tip - 30.0, 40.0: tip}, abs=1e-6)
 
 
 def test_sections_that_the_library_cannot_unite_do_no_harm(tmp_path: Path) -> None:

@@ -260,7 +260,7 @@ def strips_of_run(run: Sequence[Ends], walls: Walls, least: float) -> list[Strip
     Strips are made as long as they can be, one after the other. Over one piece each end of the band rises or
     falls only, so a part of a piece has in common what its own two ends have.
     """
-    if run[0].first is None:
+    if all(one.first is None and one.last is None for one in run):
         return strips_between(run[0], 0.0, run[-1], 1.0, None, run)
     strips: list[Strip] = []
     opened: tuple[int, float] | None = None
