@@ -365,8 +365,7 @@ def test_silhouette_has_its_bands(tmp_path: Path) -> None:
     part = load(write_step(tmp_path / "flanged.step", FLANGED))
     assert part.solid is not None
     assert (part.solid.peg_height, set(part.solid.bands)) == (25.0, {(20.0, 25.0)})
-    lying = load(write_step(tmp_path / "lying.step", cylinder(7, 80, (0, 0, 0), (1, 0, 0))))
-    assert lying.solid is None
+    assert load(write_step(tmp_path / "ball.step", BRepPrimAPI_MakeSphere(7.0).Shape())).solid is None
     assert load(write_step(tmp_path / "section.step", FLANGED), section=10.0).solid is None
 
 
@@ -383,6 +382,18 @@ def test_a_wall_that_ends_in_a_point_is_touched_up_to_there_whichever_way_it_run
     # At a height of 1 mm the tip begins 20 - sqrt(20² - 0.5²) mm before the end.
     tip = 85.0 - (20.0 - (400.0 - 0.25) ** 0.5)
     assert sides == pytest.approx({0.0: tip, 10.0: tip - 30.0, 30.0: tip - 30.0, 40.0: tip}, abs=1e-6)
+
+
+def test_ends_of_a_lying_cylinder_are_touched(tmp_path: Path) -> None:
+    """Its two flat ends are upright, and as high as half a circle leaves them; its sides lean."""
+    part = load(write_step(tmp_path / "lying.step", cylinder(7, 80, (0, 0, 0), (1, 0, 0))))
+    assert part.solid is not None
+    ends = {
+        round(segment.start[0], 9)
+        for segment, band in zip(part.segments, part.solid.bands, strict=True)
+        if band
+    }
+    assert ends == {0.0, 80.0}
 
 
 def test_sections_that_the_library_cannot_unite_do_no_harm(tmp_path: Path) -> None:
