@@ -13,7 +13,7 @@ run : neighbouring pieces of one carrier over which the band's ends are continuo
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
 from math import pi, tan, tau
@@ -35,6 +35,8 @@ __all__ = ["Strip", "Walls", "strips_of_loop"]
 INSIDE, STEP = 1e-7, 3.0
 # Heights that differ by less, in mm, are one: of an edge, and of a band that goes on from piece to piece.
 ONE_HEIGHT, SAME_BAND = 1e-9, 1e-5
+# Edges this far from a carrier in mm, and farther, are not asked whether they lie on it.
+NEAR = 1e-4
 # Shares of a piece below this are not worth a strip of their own.
 LEAST_SHARE = 1e-4
 NOTHING = (0.0, 0.0)
@@ -92,27 +94,52 @@ class Walls:
     edges: Sequence[EdgeCurve]
     low: float
     high: float
+    # Edges of upright faces that are not upright themselves, with the segments under them.
+    upright: list[tuple[EdgeCurve, Segment]] = field(init=False)
+    # Of each of them (x, y) of both ends and a radius of 0, or those of an arc's centre twice and its radius.
+    places: NDArray[np.float64] = field(init=False)
     found: dict[int, list[Wall]] = field(init=False, factory=dict)
 
-    def upright_edges(self) -> Iterator[tuple[EdgeCurve, Segment]]:
-        """Edges of upright faces that are not upright themselves, with the segments under them."""
-        for edge in self.edges:
-            if self.faces[edge.face].lie == "upright" and edge.segment is not None:
-                yield edge, edge.segment
+    def __attrs_post_init__(self) -> None:
+        self.upright = [
+            (edge, edge.segment)
+            for edge in self.edges
+            if self.faces[edge.face].lie == "upright" and edge.segment is not None
+        ]
+        places = [
+            (*segment.center, *segment.center, segment.radius)
+            if isinstance(segment, Arc)
+            else (*segment.start, *segment.end, 0.0)
+            for _, segment in self.upright
+        ]
+        self.places = np.array(places, np.float64).reshape(-1, 5)
 
     def cuts(self) -> list[tuple[Segment, Point]]:
         """Points at which an outline is to be cut: where an edge of a wall is highest or lowest."""
-        return [(segment, point) for edge, segment in self.upright_edges() for point in edge.turning_points()]
+        return [(segment, point) for edge, segment in self.upright for point in edge.turning_points()]
 
     def over(self, carrier: CutCarrier) -> list[Wall]:
         """The walls that stand on a carrier."""
         if id(carrier) not in self.found:
             edges = defaultdict(list)
-            for edge, segment in self.upright_edges():
+            for k in self.near(carrier.segment).tolist():
+                edge, segment = self.upright[k]
                 if carrier.holds(segment):
                     edges[edge.face].append((edge, positions(carrier, edge.points)))
             self.found[id(carrier)] = [Wall(index, tuple(own)) for index, own in edges.items()]
         return self.found[id(carrier)]
+
+    def near(self, segment: Segment) -> NDArray[np.intp]:
+        """Numbers of upright faces' edges that may lie on a segment's line or circle."""
+        radius = self.places[:, 4]
+        if isinstance(segment, Arc):
+            away = np.abs(self.places[:, [0, 1, 4]] - (*segment.center, segment.radius)).max(
+                axis=1, initial=0
+            )
+            return np.flatnonzero((radius > 0.0) & (away <= NEAR))
+        (x, y), (tx, ty) = segment.middle, segment.tangent
+        across = np.abs((self.places[:, 0:4:2] - x) * ty - (self.places[:, 1:4:2] - y) * tx)
+        return np.flatnonzero((radius == 0.0) & (across.max(axis=1, initial=0) <= NEAR))
 
     def band(
         self, piece: BorderPiece, position: float, beside: float = 0.0

@@ -69,7 +69,7 @@ class StandingSolid:
     def __attrs_post_init__(self) -> None:
         self.faces = solid_faces(self.shape)
         self.edges = edge_curves(self.faces)
-        self.material = Material(self.shape, self.faces)
+        self.material = Material(self.shape, self.faces, self.edges)
 
     @property
     def height(self) -> float:
