@@ -60,7 +60,7 @@ bench: $(INSTALLED)
 # Thousands of planted fixtures, ten thousand random SVG drawings against resvg, signals at every stage, the paper's Table 2, then
 # both engines on the complete sets, the paper's parts and random parts.
 prove: $(INSTALLED_DEV)
-	$(BIN)/python -m pytest -n 2 -m prove
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m prove
 	$(BIN)/python benchmarks/prove.py
 
 # Everything made by the above but the environment.

@@ -16,11 +16,13 @@ import batch_queue
 import batch_simulation
 import floor
 import growth
+import in_space
 import many
 import memory
 import processes
 import pruning
 import seating
+import solids
 import table_one
 import threads
 import toolkits
@@ -53,6 +55,8 @@ def main() -> None:
         toolkits.run,
         pruning.run,
         seating.run,
+        solids.run,
+        in_space.run,
         batch.run,
         batch_queue.run,
         batch_estimate.run,

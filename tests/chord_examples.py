@@ -76,6 +76,25 @@ def coincident_arcs(random: Random) -> tuple[Array, Array, float]:
     return arc_row(1.0, -2.0, radius), arc_row(1.0 + step[0], -2.0 + step[1], radius), hypot(*step)
 
 
+def touching(random: Random) -> tuple[Array, Array, float, float]:
+    """Two arcs that touch where a chord runs along or against their centres' line, and its direction there."""
+    step, apart = random.choice([((3, 4), 5), ((-4, 3), 5), ((5, 12), 13), ((8, -15), 17)])
+    while True:
+        radii = random.randint(8, 60) / 4, random.randint(8, 60) / 4
+        along = random.random() < 0.6
+        d = apart + random.choice([1, -1]) * (radii[0] - radii[1]) if along else sum(radii) - apart
+        if d > 1.0 and abs(radii[0] - radii[1]) > 0.25 * min(radii):
+            break
+    a, b = arc_row(1.0, -2.0, radii[0]), arc_row(1.0 + step[0], -2.0 + step[1], radii[1])
+    turn = float(np.arctan2(step[1], step[0]))
+    return a, b, d, turn if along else turn + pi
+
+
+def touching_arcs(random: Random) -> tuple[Array, Array, float]:
+    """Two arcs that touch where a chord runs along or against their centres' line."""
+    return touching(random)[:3]
+
+
 def coincident_line(random: Random) -> tuple[Array, Array, float]:
     """A line and an arc whose centre is exactly as far beyond it as the chord is longer than the radius."""
     radius, d = random.randint(8, 60) / 4, random.randint(16, 100) / 4
@@ -146,6 +165,7 @@ SPECIAL = (
     nearly_one_chord_apart,
     coincident_arcs,
     coincident_line,
+    touching_arcs,
     tangent_joint,
     unlike_arcs,
     nearly_touching,
@@ -161,7 +181,8 @@ def is_rounded_coincidence(a: Array, b: Array, d: float) -> bool:
     p, q, size = [Fraction(float(v)) for v in a], [Fraction(float(v)) for v in b], Fraction(float(d))
     dx, dy = q[1] - p[1], q[2] - p[2]
     if p[0] and q[0]:
-        return p[6] != q[6] or dx * dx + dy * dy != size * size
+        lengths = size + p[6] - q[6], size - p[6] + q[6], p[6] + q[6] - size
+        return all(dx * dx + dy * dy != length * length for length in lengths)
     line, radius = (q, p[6]) if p[0] else (p, q[6])
     apart = abs(line[4] * dx - line[3] * dy)
     return line[3] ** 2 + line[4] ** 2 != 1 or abs(size - radius) != apart

@@ -112,27 +112,40 @@ def near_an_end(judge: Judge, fixture: Listed, within: float = 1e-6) -> bool:
     return False
 
 
+Named = list[tuple[Listed, tuple[Any, float, tuple[float, float]]]]
+
+
 def missing(ours: list[Listed], expected: list[Listed], judge: Judge) -> list[Listed]:
     """Expected fixtures that are not among ours and are not marginal; both are given for the judge's part and vise."""
+    return lost(named(ours, judge), named(expected, judge), judge)
+
+
+def named(fixtures: list[Listed], judge: Judge) -> Named:
+    """Fixtures with what names them."""
+    return [(fixture, judge.identity(fixture)) for fixture in fixtures]
+
+
+def lost(ours: Named, expected: Named, judge: Judge) -> list[Listed]:
+    """Those expected that are not among ours and are not marginal."""
     have: dict[Any, list[tuple[float, tuple[float, float]]]] = {}
-    for fixture in ours:
-        key, *pose = judge.identity(fixture)
+    for _, (key, *pose) in ours:
         have.setdefault(key, []).append(tuple(pose))
-    lost = []
-    for fixture in expected:
-        key, theta, place = judge.identity(fixture)
-        found = any(
+    return [
+        fixture
+        for fixture, (key, theta, place) in expected
+        if not any(
             abs((theta - t + pi) % tau - pi) < 1e-5 and dist(place, p) < 1e-5 for t, p in have.get(key, [])
         )
-        if not found and not judge.check(fixture)[1] and not near_an_end(judge, fixture):
-            lost.append(fixture)
-    return lost
+        and not judge.check(fixture)[1]
+        and not near_an_end(judge, fixture)
+    ]
 
 
 def assert_same(ours: list[Listed], theirs: list[Listed], judge: Judge) -> None:
     """Both lists hold the same fixtures, apart from marginal ones."""
-    assert missing(ours, theirs, judge) == []
-    assert missing(theirs, ours, judge) == []
+    one, other = named(ours, judge), named(theirs, judge)
+    assert lost(one, other, judge) == []
+    assert lost(other, one, judge) == []
 
 
 def turned(fixtures: list[Listed], angle: float, face: Callable[[int], int] = lambda k: k) -> list[Listed]:

@@ -44,7 +44,7 @@ def lowest(part: Workpiece, angle: float) -> tuple[int, Point]:
     """The lowest point of the part, in its own frame, when it is turned by an angle, and which corner or arc it is of."""
     down = atan2(*reversed(turned((0.0, -1.0), -angle)))
     points = []
-    for number, segment in enumerate(part.loop_segments[0]):
+    for number, segment in enumerate(part.segments[: part.outer_count]):
         points.append((2 * number, segment.start))
         convex = isinstance(segment, Arc) and segment.sign > 0
         if convex and abs((down - segment.mid_angle + pi) % tau - pi) <= segment.half_sweep:
@@ -142,7 +142,9 @@ def slow_fence(part: Workpiece, fence: Fence) -> set[tuple[Any, ...]]:
     for angle, left, right in orientations(part):
         (x0, y0), (x1, _) = turned(left, angle), turned(right, angle)
         loops = [[(*turned((x, y), angle), b) for x, y, b in loop] for loop in part.loops]
-        laid = Workpiece.from_loops("laid", [[(x - x0, y - y0, b) for x, y, b in loop] for loop in loops])
+        laid = Workpiece.from_loops(
+            "laid", [[(x - x0, y - y0, b) for x, y, b in loop] for loop in loops], solid=part.solid
+        )
         low, _, high, top = laid.bounds
         rows = [fence.wall_offset + k * fence.pitch[1] for k in range(int(top / fence.pitch[1]) + 2)][
             : fence.rows

@@ -8,12 +8,14 @@ import pickle
 import re
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import workhold
 
+EXAMPLES = Path(__file__).parent.parent / "examples"
 WEDGE = [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]
 CLASSES = [name for name in workhold.__all__ if isinstance(getattr(workhold, name), type)]
 # A line of a terminal or a notebook, and a bit more.
@@ -53,6 +55,10 @@ MAKERS: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
         lambda: workhold.Plate(pitch=20, peg_radius=3, clamps=2),
     ),
     "Pose": (lambda: result()[0].pose, lambda: workhold.Pose(0, 0, 0)),
+    "Program": (
+        lambda: workhold.Program.read(EXAMPLES / "bracket.nc", thickness=12),
+        lambda: workhold.Program.read(EXAMPLES / "bracket.nc", thickness=13),
+    ),
     "Query": (lambda: result().query, lambda: workhold.Query(wedge("other"), result().toolkit)),
     "Restrictions": (
         lambda: workhold.Restrictions(avoid=(1,), zones=(workhold.circle_zone(1, 2, 3),)),
@@ -93,7 +99,7 @@ def test_what_is_public_pickles_copies_and_compares(name: str) -> None:
     assert not same(one, other())
 
 
-@pytest.mark.parametrize("name", ["Fixture", "Result", "Workpiece"])
+@pytest.mark.parametrize("name", ["Fixture", "Program", "Result", "Workpiece"])
 def test_what_is_large_is_told_in_a_short_line(name: str) -> None:
     """Neither arrays nor lists of pegs."""
     told = repr(MAKERS[name][0]())

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from workhold.fixels.plate import Plate
     from workhold.fixels.vise import OpeningVise, Vise
     from workhold.model.fixture import Fixture, Peg, Pose
+    from workhold.model.program import Program
     from workhold.model.query import Query
     from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
     from workhold.model.result import Result
@@ -45,6 +46,7 @@ __all__ = [
     "Peg",
     "Plate",
     "Pose",
+    "Program",
     "Query",
     "Restrictions",
     "Result",
@@ -75,6 +77,7 @@ HOMES = {
     "Peg": "workhold.model.fixture",
     "Plate": "workhold.fixels.plate",
     "Pose": "workhold.model.fixture",
+    "Program": "workhold.model.program",
     "Query": "workhold.model.query",
     "Restrictions": "workhold.model.requirements",
     "Result": "workhold.model.result",
@@ -99,10 +102,14 @@ HOMES = {
 # The functions that methods of the model's classes call, see ``delegates``.
 DELEGATES = {
     "fixture_picture": "workhold.presenting.papers",
+    "fixture_supports": "workhold.supports.asking",
     "preset_fields": "workhold.files.toolkit_file",
     "preset_names_of": "workhold.files.toolkit_file",
     "preset_tolerance": "workhold.files.toolkit_file",
+    "read_program": "workhold.files.program.reader",
     "result_picture": "workhold.presenting.papers",
+    "result_supports": "workhold.supports.asking",
+    "save_glb": "workhold.files.glb.writer",
     "save_sheet": "workhold.presenting.papers",
     "to_arrow": "workhold.presenting.data",
     "to_pandas": "workhold.presenting.data",

@@ -230,6 +230,9 @@ ALIGNED = 1e-7
 SAME_HEIGHT = 1e-5
 # mm. Gaps between the edges of a border that are rounding and not worth a word.
 EDGE_GAP = 1e-6
+# mm. The two ends of an arc of a program may differ by so much in their distance from its centre: coordinates
+# that are written with two digits, which controls let pass as well.
+ARC_RADII = 0.02
 
 # == Statics ==
 

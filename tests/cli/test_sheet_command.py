@@ -13,6 +13,7 @@ import numpy as np
 import pypdfium2
 import pytest
 from drawing_examples import diamond
+from svg_reading import by_class
 
 from workhold import __version__
 from workhold.files.result.writer import write_result
@@ -128,7 +129,7 @@ def test_lengths_of_loads_are_in_the_unit_of_the_sheet(run: Any, folder: Path) -
 
 def test_what_the_program_is_not_told_is_to_be_written(run: Any, folder: Path) -> None:
     """Without thickness, length, height and dowel there are lines to write on; with them, what was given."""
-    run("sheet", "r.json", 1, "-o", "a.svg")
+    run("sheet", "r.json", 1, "-o", "a.svg", "--thickness", "11")
     empty = (folder / "a.svg").read_text()
     options = (
         "--thickness",
@@ -146,7 +147,14 @@ def test_what_the_program_is_not_told_is_to_be_written(run: Any, folder: Path) -
     for name, value in zip(names, ("12.000 mm", "20.000 mm", "6.350 mm", "6 mm m6 in H7"), strict=True):
         assert name in empty and name in full
         assert value not in empty and value in full
-    assert empty.count("<line") + empty.count("<path") >= full.count("<line") + full.count("<path")
+    # Three lines to write on are gone.
+    assert lines_to_write_on(empty) - lines_to_write_on(full) == 3
+
+
+def lines_to_write_on(svg: str) -> int:
+    """How many level lines of the width of those to write on there are among the words."""
+    groups = [group for page in [svg] for group in by_class(page, "words")]
+    return sum(one.get("stroke-width") == "0.8" for group in groups for one in group)
 
 
 def test_pins_are_listed(run: Any, folder: Path) -> None:

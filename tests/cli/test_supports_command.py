@@ -11,7 +11,7 @@ from typer.testing import Result as Outcome
 
 import workhold
 from workhold import Plate, Workpiece
-from workhold.cli.supports_command import spatial_load
+from workhold.cli.spatial_loads import spatial_load
 from workhold.units import MILLIMETRE
 
 Run = Callable[..., Outcome]
@@ -64,6 +64,8 @@ def test_best_sets_and_a_file_that_verify_accepts(result_file: Path, tmp_path: P
         (("--thickness", "12", "--load", "at=1,1 axial=a..b"), "give a number, or a range LOW..HIGH"),
         (("--thickness", "12", "--load", "at=1,1 axial=5 jump=3"), "unknown key 'jump'"),
         (("--thickness", "12", "--reach", "1,2,3"), "give 4 lengths"),
+        (("--thickness", "12", "--glb", "a.step"), "let it end in .glb"),
+        (("--thickness", "12", "--support-height", "5"), "give --glb or --step too"),
     ],
 )
 def test_refusals(result_file: Path, run: Run, words: tuple[str, ...], sentence: str) -> None:
@@ -126,3 +128,27 @@ def test_search_with_supports_refuses(
         "design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3", "--best", "1", *given
     )
     assert shown.exit_code == 2 and sentence in shown.stderr
+
+
+def test_files_in_three_dimensions(result_file: Path, tmp_path: Path, run: Run) -> None:
+    """The best set stands in a GLB file with its supports and the clamp on top."""
+    path = tmp_path / "kite.glb"
+    shown = run("supports", result_file, "1", "--thickness", "20", "--glb", path, "--support-height", "9")
+    assert shown.exit_code == 0, shown.stderr
+    names = next(line.split()[1:4] for line in shown.stdout.splitlines() if line.strip().startswith("1 "))
+    content = path.read_bytes()
+    assert all(f"support {name}".encode() in content for name in names) and b"clamp on top" in content
+
+
+def test_supports_of_a_result_in_python() -> None:
+    """A result answers for its best fixtures what each fixture answers by itself."""
+    result = workhold.design(KITE, Plate(pitch=15, peg_radius=3), best=4)
+    every = result.supports(20, best=3, each=2, tip_radius=4)
+    assert [one.triples for one in every] == [
+        fixture.supports(20, best=2, tip_radius=4).triples for fixture in result[:3]
+    ]
+    assert every[0].request.inside == 4.0 and every[0].request.pad_radius == 4.0
+    with pytest.raises(workhold.InputError, match="supports have no 'pads': give some of pad_radius"):
+        result[0].supports(20, pads=3)
+    with pytest.raises(workhold.InputError, match="how thick the part is, is not known"):
+        result.supports()

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from math import isclose
 from pathlib import Path
 from typing import Any
 
 import pytest
+import typer
 from reading_helpers import new_dxf, rectangle
 from svg_reading import texts
 
 from fakes import fake_result
+from workhold.cli import options
 from workhold.cli.tables import fixture_tables, result_table
 from workhold.cli.values import length, pitches
 from workhold.errors import InputError
@@ -217,3 +220,36 @@ def test_the_manual_lists_every_preset() -> None:
         assert f"\n| `{name}` | {pitch} {of} | {peg} {of} | {first.columns or 'any'} |" in page
     kinds = ("plate-", "table-", "gripper-", "clamp-", "fence-", "two-clamp-", "machine-vise-")
     assert sum(page.count(f"\n| `{kind}") for kind in kinds) == len(preset_names())
+
+
+# A drawing without a unit: refused with both sizes, and on a terminal asked for.
+@pytest.fixture
+def drawing(tmp_path: Path) -> Path:
+    """A plate of 60 by 40, nobody knows of what."""
+    document, space = new_dxf(0)
+    rectangle(space)
+    document.saveas(tmp_path / "plate.dxf")
+    return tmp_path / "plate.dxf"
+
+
+def test_both_sizes_are_shown(run: Callable[..., Any], drawing: Path) -> None:
+    """What it would be in mm and in inches, and the option that says which."""
+    outcome = run("features", drawing)
+    assert outcome.exit_code == 2 and outcome.stdout == ""
+    assert (
+        "it is 60 mm wide, or 60 in = 1,524 mm; say which with --unit mm (or inch, cm, m)" in outcome.stderr
+    )
+
+
+def test_somebody_at_a_terminal_is_asked(
+    run: Callable[..., Any], drawing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The answer is the drawing's unit; one that is none is refused."""
+    monkeypatch.setattr(options, "at_terminal", lambda: True)
+    answers = iter(["inch", "ell"])
+    monkeypatch.setattr(typer, "prompt", lambda *words, **more: next(answers))
+    outcome = run("features", drawing)
+    assert outcome.exit_code == 0 and "plate: 1524.000 x 1016.000 mm" in outcome.stdout
+    assert "it is 60 mm wide" in outcome.stderr
+    refused = run("features", drawing)
+    assert "Unit 'ell' is not known" in refused.stderr and refused.exit_code == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from itertools import combinations
+from math import inf
 from random import Random
 
 import numpy as np
@@ -11,7 +12,21 @@ import pytest
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.family.covering import Cover, as_sets, cover, first_cover, greedy, load_solver, maximal, packing
+from workhold.family.covering import (
+    Cover,
+    LossTable,
+    Point,
+    Search,
+    as_sets,
+    cover,
+    curve_of,
+    first_cover,
+    greedy,
+    load_solver,
+    maximal,
+    packing,
+    points_of,
+)
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -113,3 +128,126 @@ def test_larger_covers_are_proven_too(seed: int) -> None:
     found = cover(sets)
     assert found.is_least and len(found.sets) < len(greedy(sets))
     assert sets[list(found.sets)].any(axis=0).all()
+
+
+# The curve against trying everything, on families of six.
+pytest.importorskip("scipy", reason="the extra [batch] is not installed")
+
+
+def table_from(losses: NDArray[np.float64]) -> LossTable:
+    """The table of losses (P, M), NaN where a pattern does not hold a member; patterns are named by their numbers."""
+    pattern, member = np.nonzero(~np.isnan(losses))
+    loss = losses[pattern, member]
+    order = np.argsort(loss, kind="stable")
+    number = np.arange(len(losses))
+    return LossTable(losses.shape[1], number[:, None], number, pattern[order], member[order], loss[order])
+
+
+def random_losses(random: Random, patterns: int, members: int) -> NDArray[np.float64]:
+    """Losses (P, M) of which many tie; every member has a pattern that loses nothing."""
+    losses = np.full((patterns, members), np.nan)
+    for pattern in range(patterns):
+        for member in range(members):
+            if random.random() < 0.5:
+                losses[pattern, member] = random.choice([1.0, 1.1, 1.1, 1.25, 1.5, 2.0, 3.0, inf])
+    for member in range(members):
+        losses[random.randrange(patterns), member] = 1.0
+    return losses
+
+
+def least_losses(losses: NDArray[np.float64]) -> dict[int, float]:
+    """For each number of patterns that can hold all the least worst loss, by trying everything."""
+    worst = np.where(np.isnan(losses), np.nan, losses)
+    out: dict[int, float] = {}
+    for size in range(1, losses.shape[1] + 1):
+        for some in combinations(range(len(losses)), size):
+            with np.errstate(all="ignore"):
+                held = worst[list(some)]
+            if np.isnan(held).all(axis=0).any():
+                continue
+            out[size] = min(out.get(size, inf), float(np.nanmin(held, axis=0).max()))
+        if out.get(size) == 1.0:
+            break
+    return out
+
+
+def worst_loss(losses: NDArray[np.float64], point: Point) -> float:
+    """The worst loss of the patterns of a point."""
+    return float(np.nanmin(losses[list(point.patterns)], axis=0).max())
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_families_of_six_by_trying_everything(seed: int) -> None:
+    random = Random(seed)
+    losses = random_losses(random, random.randint(4, 12), 6)
+    points = curve_of(table_from(losses))
+    expected = least_losses(losses)
+    steps = {k: loss for k, loss in expected.items() if k - 1 not in expected or loss < expected[k - 1]}
+    assert {point.setups: point.loss for point in points} == steps
+    for point in points:
+        assert point.is_least and point.at_least == point.setups == len(point.patterns)
+        assert worst_loss(losses, point) == point.loss
+        assert point.patterns == first_patterns(losses, point)
+
+
+def first_patterns(losses: NDArray[np.float64], point: Point) -> tuple[int, ...]:
+    """Of the sets of patterns of a point's size and loss, each the first of those that hold the same and nothing more than
+    another, the first in lexicographic order."""
+    sets = losses <= point.loss
+    inside = [
+        any((one <= other).all() and ((one != other).any() or b < a) for b, other in enumerate(sets))
+        for a, one in enumerate(sets)
+    ]
+    chosen = [number for number in range(len(sets)) if not inside[number]]
+    return next(some for some in combinations(chosen, point.setups) if sets[list(some)].any(axis=0).all())
+
+
+def test_a_largest_loss_ends_the_curve() -> None:
+    losses = random_losses(Random(3), 9, 6)
+    whole = curve_of(table_from(losses))
+    bounded = curve_of(table_from(losses), 1.2)
+    assert [point for point in whole if point.loss <= 1.2][1:] == list(bounded[1:])
+    assert bounded[0].setups == min(point.setups for point in whole if point.loss <= 1.2)
+    assert len(bounded) < len(whole)
+
+
+def test_seventy_members_take_two_words() -> None:
+    # Pattern k holds members k to k + 34; the two that are best for all are the ends.
+    losses = np.full((36, 70), np.nan)
+    for pattern in range(36):
+        losses[pattern, pattern : pattern + 35] = 1.0 + pattern / 100
+    (point,) = curve_of(table_from(losses))
+    assert (point.setups, point.patterns, point.loss) == (2, (0, 35), 1.35)
+
+
+def test_when_time_is_over_it_is_told_what_is_known() -> None:
+    # Every pair of twelve members: greed finds six pairs, or more, and packing proves what it can.
+    random = Random(11)
+    losses = np.full((40, 24), np.nan)
+    for pattern in range(40):
+        for member in random.sample(range(24), 4):
+            losses[pattern, member] = random.choice([1.0, 1.2, 1.5])
+    losses[range(24), range(24)] = 1.0
+    known, proven = curve_of(table_from(losses), deadline=0.0), curve_of(table_from(losses))
+    assert not all(point.is_least and point.at_least == point.setups for point in known)
+    for point in known:
+        assert worst_loss(losses, point) <= point.loss
+        assert len(point.patterns) <= point.setups
+        best = next(one for one in proven if one.loss <= point.loss)
+        assert point.at_least <= best.setups <= point.setups
+
+
+def test_progress_ends_at_one() -> None:
+    told: list[float] = []
+    curve_of(table_from(random_losses(Random(1), 12, 6)), progress=told.append)
+    assert told == sorted(told) and told[-1] == pytest.approx(1.0)
+
+
+def test_a_number_is_the_least_where_the_bound_before_needs_more() -> None:
+    losses = np.array([[1.0, np.nan], [np.nan, 1.0], [1.5, 1.5]])
+    search = Search(table_from(losses), np.array([1.0, 1.5]), None, lambda fraction: None)
+    search.covers = {0: Cover((0, 1), 2), 1: Cover((2,), 1)}
+    assert [point.is_least for point in points_of(search)] == [True, True]
+    # One set-up is not ruled out at the smaller bound.
+    search.covers = {0: Cover((0, 1), 1), 1: Cover((2,), 1)}
+    assert [(point.at_least, point.is_least) for point in points_of(search)] == [(1, True), (1, False)]

@@ -14,12 +14,13 @@ from attrs import evolve
 from family_parts import shop_parts
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer
 from workhold.errors import InputError
-from workhold.family.family import Asked, Family, family_of, family_text
+from workhold.family.family import Asked, Family, family_of, family_text, peg_entry
 from workhold.family.members import RANKINGS, losses, member_of, threshold, with_half_turns
 from workhold.family.patterns import holes_of, shifted, turned
 from workhold.family.plan import Holding
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.ranking import measured
+from workhold.model.fixture import Peg
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.model.requirements import Restrictions
 from workhold.model.result import FixtureTable, fixture_at
@@ -330,3 +331,24 @@ def test_numbers_of_plans(twenty: Family) -> None:
     )
     with pytest.raises(InputError, match="2 set-ups cannot hold all parts"):
         lacking.plan(2)
+
+
+# A family's file says where every peg stands, in the words of the carrier that it stands on.
+BOLTED = Plate(pitch=20, peg_radius=3, travel=(5, 30))
+FENCE = Fence(pitch=20, peg_radius=3, wall_offset=8)
+
+
+@pytest.mark.parametrize(
+    ("toolkit", "carrier", "written"),
+    [
+        (Vise(pitch=10, columns=2, peg_radius=3), "right", '{"jaw": "right", "column": 4, "row": 1}'),
+        (FENCE, "plate", '{"role": "locator", "column": 4, "row": 1}'),
+        (FENCE, "wall", '{"role": "locator", "column": 4, "row": 1}'),
+        (FENCE, "clamp -x", '{"role": "clamp", "direction": "-x", "row": 1, "hole": null}'),
+        (FENCE, "clamp +y", '{"role": "clamp", "direction": "+y", "column": 4, "hole": null}'),
+        (BOLTED, "clamp -x", '{"role": "clamp", "direction": "-x", "row": 1, "hole": [4, 1]}'),
+    ],
+)
+def test_a_peg_is_written_by_its_carrier(toolkit: Toolkit, carrier: str, written: str) -> None:
+    """The ends of a wall have the role of locators, and a clamp its line, and its hole where that is known."""
+    assert json.dumps(peg_entry(Peg(carrier, 4, 1, 0.0, 0.0, 0, 1.0), toolkit)) == written

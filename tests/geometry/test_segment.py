@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import atan, cos, hypot, pi, sin, tan
+from math import atan, cos, hypot, pi, sin, tan, tau
+from random import Random
 
+import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from workhold.geometry.segment import Arc, Line, bounding_box, segment_from_bulge, segment_rows
+from strategies import outlines, seeds
+from workhold.geometry.segment import (
+    Arc,
+    Line,
+    bounding_box,
+    circle_circle,
+    common_points,
+    contains_parameter,
+    segment_from_bulge,
+    segment_rows,
+)
+from workhold.model.workpiece import Workpiece
 
 places = st.tuples(st.floats(-100, 100), st.floats(-100, 100)).map(lambda p: (round(p[0], 3), round(p[1], 3)))
 bulges = st.one_of(st.floats(0.01, 20), st.floats(-20, -0.01))
@@ -145,3 +158,125 @@ def test_a_shallow_arc_is_where_it_is_drawn(points, size, sign, by):
         assert arc.parameter((x, y)) * arc.radius == pytest.approx(s * arc.half_sweep * arc.radius, abs=1e-11)
         outer = (x + arc.sign * by * nx, y + arc.sign * by * ny)
         assert abs(off_circle(grown, outer)) < 3e-13
+
+
+# Faces: neighbouring segments of one line or circle are one face.
+def faces(*loops):
+    """Faces of a workpiece of some loops."""
+    return Workpiece.from_loops("part", loops).faces
+
+
+@given(outlines())
+def test_faces_partition_the_segments(part):
+    """Every segment belongs to one face, a face is named by its smallest segment, and lengths add up."""
+    numbers = sorted(n for face in part.faces for n in face.segments)
+    assert numbers == list(range(len(part.segments)))
+    assert [face.number for face in part.faces] == sorted(min(face.segments) for face in part.faces)
+    for face in part.faces:
+        assert face.segment.length == pytest.approx(sum(part.segments[n].length for n in face.segments))
+
+
+@given(outlines())
+def test_splitting_segments_changes_no_face(part):
+    """Every segment cut in two: twice the segments, the same faces."""
+    loops = []
+    for vertices, segments in zip(part.loops, part.loop_segments, strict=True):
+        loop = []
+        for (x, y, bulge), segment in zip(vertices, segments, strict=True):
+            half = tan(np.arctan(bulge) / 2)
+            loop += [[x, y, half], [*segment.at(0.0), half]]
+        loops.append(loop)
+    split = Workpiece.from_loops("split", loops)
+    assert len(split.faces) == len(part.faces)
+    for one, two in zip(part.faces, split.faces, strict=True):
+        assert sorted(two.segments) == sorted(2 * n + k for n in one.segments for k in (0, 1))
+        assert two.segment.length == pytest.approx(one.segment.length)
+        if not (isinstance(one.segment, Arc) and one.segment.is_full):
+            assert two.segment.at(0.0) == pytest.approx(one.segment.at(0.0), abs=1e-6)
+
+
+def test_collinear_segments_are_one_face_across_the_first_vertex():
+    """A square begun in the middle of a side has four faces, the first of segments 4 and 0, named 0."""
+    found = faces([[10, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0], [0, 0, 0]])
+    assert [face.number for face in found] == [0, 1, 2, 3]
+    assert sorted(found[0].segments) == [0, 4]
+    assert isinstance(found[0].segment, Line) and found[0].segment.length == pytest.approx(20)
+    assert found[0].segment.start == pytest.approx((0, 0))
+
+
+@pytest.mark.parametrize("pieces", [2, 3, 5])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_circle_drawn_in_pieces_is_one_face(pieces, sign):
+    """k arcs of one circle, either way round, are one whole circle: convex outside, concave as a hole."""
+    bulge = sign * tan(tau / pieces / 4)
+    circle = [
+        [8 * cos(sign * tau * k / pieces), 8 * sin(sign * tau * k / pieces), bulge] for k in range(pieces)
+    ]
+    (face,) = faces(circle)
+    assert face.segment.is_full and face.segment.sign == 1.0 and face.number == 0
+    assert face.segment.radius == pytest.approx(8) and face.segment.half_sweep == pi
+    square = [[-20, -20, 0], [20, -20, 0], [20, 20, 0], [-20, 20, 0]]
+    hole = faces(square, circle)[4]
+    assert hole.segment.is_full and hole.segment.sign == -1.0 and hole.number == 4
+
+
+def test_different_carriers_stay_apart():
+    """A bend of 1e-6 rad, and arcs of two radii joined tangentially, are separate faces."""
+    assert len(faces([[0, 0, 0], [10, 0, 0], [20, 2e-5, 0], [20, 20, 0], [0, 20, 0]])) == 5
+    lens = [[0, 0, tan(pi / 8)], [10, 10, tan(pi / 8)], [-10, 30, 0], [-10, 0, 0]]
+    assert len(faces(lens)) == 4
+
+
+# Where segments meet, and the boxes around them.
+@given(seeds)
+def test_a_box_holds_its_arc_and_touches_it_on_all_sides(seed: int) -> None:
+    """Of arcs of any sweep, also of those that hardly pass an extreme point or nearly close: points all along lie in the
+    box, and some on each of its sides."""
+    random = Random(seed)
+    half = random.choice([random.uniform(0.01, pi), pi - 10 ** random.uniform(-6, -1)])
+    middle = random.choice(
+        [random.uniform(-pi, pi), random.randrange(4) * pi / 2 + half - 10 ** random.uniform(-6, -1)]
+    )
+    arc = Arc((3.0, -2.0), 7.0, middle, half, random.choice([1.0, -1.0]))
+    low_x, low_y, high_x, high_y = bounding_box(arc)
+    angles = middle + half * np.concatenate([np.linspace(-1, 1, 2001), 1 - np.geomspace(1e-9, 1e-2, 60)])
+    extremes = np.arange(-12, 13) * pi / 2
+    angles = np.concatenate([angles, extremes[np.abs(extremes - middle) <= half]])
+    x, y = 3.0 + 7.0 * np.cos(angles), -2.0 + 7.0 * np.sin(angles)
+    assert (low_x - 1e-12 <= x).all() and (x <= high_x + 1e-12).all()
+    assert (low_y - 1e-12 <= y).all() and (y <= high_y + 1e-12).all()
+    assert [x.min(), y.min(), x.max(), y.max()] == pytest.approx([low_x, low_y, high_x, high_y], abs=1e-4)
+
+
+def test_a_segment_that_lies_in_another_meets_it_at_both_its_ends() -> None:
+    """On one line and on one circle the carriers have no common points to list: the ends do, whichever comes first."""
+    inner, outer = Line((2.0, 1.0), (5.0, 1.0)), Line((0.0, 1.0), (10.0, 1.0))
+    wide, narrow = Arc((0.0, 0.0), 5.0, 1.0, 1.2, 1.0), Arc((0.0, 0.0), 5.0, 0.9, 0.3, -1.0)
+    for whole, part in ((outer, inner), (wide, narrow)):
+        for pair in ((whole, part), (part, whole)):
+            assert {(round(x, 9), round(y, 9)) for x, y in common_points(*pair, 1e-7)} == {
+                (round(x, 9), round(y, 9)) for x, y in (part.start, part.end)
+            }
+    assert common_points(outer, Line((0.0, 1.1), (10.0, 1.1)), 1e-7) == []
+    apart = Arc((0.0, 0.0), 5.0, 1.0 + pi, 0.3, 1.0)
+    assert common_points(narrow, apart, 1e-7) == []
+    assert common_points(narrow, Line((cos(0.9), sin(0.9)), (9 * cos(0.9), 9 * sin(0.9))), 1e-7) == [
+        pytest.approx((5 * cos(0.9), 5 * sin(0.9)))
+    ]
+
+
+def test_circles_that_touch_have_one_common_point_and_one_inside_another_none() -> None:
+    """Whichever of them comes first; a touch from inside lies beyond the centre of the smaller one."""
+    wide, narrow = ((0.0, 0.0), 5.0), ((2.0, 0.0), 3.0)
+    for one, two in ((wide, narrow), (narrow, wide)):
+        assert circle_circle(*one, *two) == [pytest.approx((5.0, 0.0))]
+        assert circle_circle(*one, two[0], two[1] + 1e-6 * (1 if two is wide else -1)) == []
+    assert circle_circle(*wide, (8.0, 0.0), 3.0) == [pytest.approx((5.0, 0.0))]
+    assert circle_circle(*wide, (8.0 + 1e-6, 0.0), 3.0) == []
+
+
+def test_a_tolerance_at_the_end_of_an_arc_is_a_length() -> None:
+    """So much along the arc, whatever its radius."""
+    arc = Arc((0.0, 0.0), 100.0, 0.0, 0.5, 1.0)
+    assert contains_parameter(arc, 0.5 + 0.9e-5, 1e-3)
+    assert not contains_parameter(arc, 0.5 + 1.1e-5, 1e-3)

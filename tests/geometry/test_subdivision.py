@@ -102,5 +102,5 @@ def test_border_that_does_not_close() -> None:
     """A border of which a piece is missing is refused with the place."""
     open_sides = sides((0, 0, 4, 4))[:3]
     pieces = border_pieces(subdivide(open_sides), lambda p: 0 < p[0] < 4 and 0 < p[1] < 4)
-    with pytest.raises(InputError, match=r"the border ends at \("):
+    with pytest.raises(InputError, match=r"the outline does not close at \("):
         border_loops(pieces)

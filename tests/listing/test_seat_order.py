@@ -18,6 +18,7 @@ from workhold import Plate, Query, Result, answer
 from workhold.completeness import verify
 from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.geometry.symmetry import rotated
+from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact import record
 from workhold.kernels.contact.seat_numbers import ASIDE
 from workhold.listing import seat_order
@@ -185,6 +186,9 @@ def test_locators_are_known_where_a_clamp_grazes_an_arc(monkeypatch: pytest.Monk
             moved[:, record.PSI] += away[:, 2] / problem.wrench_length
             moved[:, record.LARGEST_RADIUS] += 4 * size
             assert (seat_order.places_off(moved, problem) + off >= np.hypot(*away.T[:2])).all()
+            # Beside the holes a place is known no better than the orientation, nor where it is hardly known.
+            moved[:, record.REACH] += size / problem.wrench_length
+            assert (seat_order.places_off(moved, problem) >= size).all()
 
 
 def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -251,3 +255,29 @@ def test_a_group_holds_several_places_and_is_bounded_by_the_best() -> None:
     """Contacts on the same holes at the same angle may be of two seats: neither stands for the other."""
     order, off = np.array([4, 3, 1, 2, 0]), np.array([3.0, 1.0, 1.0, 1.0, 2.0])
     assert seat_order.best_known(order, off, np.array([0, 3])).tolist() == [1, 2]
+
+
+def test_no_two_heads_push_along_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Locators across a slot as wide as a pitch, and on a diameter, fix no pose with a third."""
+    for seed, pitch in ((11, 20.0), (6, 20.0)):
+        query = Query(cad_part(seed), Plate(pitch=pitch, peg_radius=3, clamps=2), best=5)
+        for records, problem in zip(*contacts_of(query, monkeypatch), strict=True):
+            features, columns, rows = (
+                records[:, first + 1 : first + 3].astype(int)
+                for first in (record.FEATURES, record.COLUMNS, record.ROWS)
+            )
+            lengths = pitch * np.hypot(np.diff(columns, axis=1), np.diff(rows, axis=1))[:, 0]
+            heads = {
+                (*both, length)
+                for both, length in zip(map(tuple, features.tolist()), lengths.tolist(), strict=True)
+            }
+            assert len(heads) > 100
+            for a, b, length in heads:
+                assert not share_one_line(problem.rows[a], problem.rows[b], length)
+
+
+def test_heads_on_one_line_still_count_as_contacts() -> None:
+    """The measure of the paper asks of contacts nothing but to be ones."""
+    points = [(0, 0), (60, 0), (60, 50), (43, 50), (43, 17), (17, 17), (17, 50), (0, 50)]
+    slotted = workhold.Workpiece.from_loops("slot", [[(x, y, 0) for x, y in points]])
+    assert workhold.count_contacts(slotted, workhold.Vise(pitch=20, columns=3, peg_radius=3)) == 47679

@@ -27,6 +27,8 @@ WAYS = {"-x": (-1.0, 0.0), "+x": (1.0, 0.0), "-y": (0.0, -1.0), "+y": (0.0, 1.0)
 HALF_TURN = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
+# It has thousands of pairs; in every run hundreds are counted by hand, and by a slow enumeration below.
+@pytest.mark.prove
 @pytest.mark.parametrize("path", COMPLETE, ids=lambda path: path.stem)
 def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     """Every fixture of the set and no other, each by itself beyond reproach; and nothing undecided."""

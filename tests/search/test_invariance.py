@@ -15,7 +15,8 @@ from strategies import outlines
 from workhold import Vise, Workpiece, design
 
 EXAMPLES = 5
-pitches = st.sampled_from([9.0, 12.0, 16.0])
+# Few holes: what must not change shows on a hundred fixtures as on ten thousand.
+pitches = st.sampled_from([12.0, 16.0, 20.0])
 columns = st.integers(1, 2)
 offsets = st.sampled_from([0.0, 0.0, 0.5, 0.3])
 

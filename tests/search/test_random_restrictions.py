@@ -6,14 +6,14 @@ an inexact rule loses it or lets it in.
 
 from __future__ import annotations
 
-from math import cos, hypot, radians, sin
+from math import cos, hypot, inf, pi, radians, sin
 from random import Random
 from typing import Any
 
 import pytest
 
 from strategies import random_outline
-from workhold import Fence, FlatJaw, InputError, OpeningVise, Plate, Result, Vise, design
+from workhold import Fence, FlatJaw, InputError, OpeningVise, Plate, Result, Vise, Workpiece, design
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.requirements import Restrictions, circle_zone
@@ -78,9 +78,8 @@ def restricted(random: Random, free: Result) -> tuple[dict[str, object], list[bo
     at, side = random.choice(fixtures), random.choice([-HAIR, HAIR])
     kind = random.randrange(4)
     is_round = not isinstance(toolkit, Fence | FlatJaw)
-    # A whole circle has no end, but a distance to the farthest place on it.
-    if kind == 0 and is_round and len(free.workpiece.loops) == 1:
-        margin = max(at.quality["end_distance"] + side, 0.0)
+    margin = max(at.quality["end_distance"] + side, 0.0)
+    if kind == 0 and is_round and margin <= half_circumference(free):
         return {"contact_margin": margin}, [f.quality["end_distance"] >= margin for f in fixtures]
     if kind == 1 and is_round:
         random_peg, (x, y) = random.choice(on_part(at))
@@ -104,6 +103,18 @@ def restricted(random: Random, free: Result) -> tuple[dict[str, object], list[bo
     low = at.pose.theta_deg + side
     high = low + random.uniform(1.0, 170.0)
     return {"restrictions": Restrictions(angles=((low, high),))}, [lies(f, low, high) for f in fixtures]
+
+
+def half_circumference(free: Result) -> float:
+    """The least end distance in mm of a peg in a bore, which has no end: beyond it none but the figure is smaller."""
+    radii = [hypot(x - u, y - v) / 2 for (x, y, _), (u, v, _) in filter(is_bore, free.workpiece.loops)]
+    pegs = [carrier.peg_radius for carrier in free.toolkit.carriers]
+    return min((pi * (radius - peg) for radius in radii for peg in pegs if radius > peg), default=inf)
+
+
+def is_bore(loop: Any) -> bool:
+    """Whether a loop is a circle of two halves."""
+    return len(loop) == 2 and all(abs(bulge) == 1.0 for _, _, bulge in loop)
 
 
 def radius_of(peg: Any, toolkit: Toolkit) -> float:
@@ -147,3 +158,15 @@ MOST = 1500
 @pytest.mark.parametrize("block", [0, *(pytest.param(k, marks=pytest.mark.prove) for k in range(1, 200))])
 def test_restrictions_leave_what_keeps_to_them_and_the_best_are_the_first(block: int) -> None:
     assert [line for seed in range(50 * block, 50 * (block + 1)) for line in differences(seed)] == []
+
+
+def test_no_margin_rules_a_bore_out() -> None:
+    """A whole circle has no end: half its circumference is a figure that no rule asks for."""
+    outline = [(0.0, 0.0, 0.0), (80.0, 0.0, 0.0), (80.0, 60.0, 0.0), (0.0, 60.0, 0.0)]
+    bored = Workpiece.from_loops("bored", [outline, [(35.0, 33.0, 1.0), (45.0, 33.0, 1.0)]])
+    plate = Plate(20.0, 3.0, clamp_radius=3.0, directions=["-x"])
+    free, limited = (design(bored, plate, contact_margin=margin) for margin in (0.0, 7.0))
+    in_bore = {key_of(f) for f in limited if any(peg.face == 4 for peg in f.pegs)}
+    assert half_circumference(free) == pytest.approx(2 * pi)
+    assert in_bore and in_bore < {key_of(f) for f in free}
+    assert all(f.quality["end_distance"] == pytest.approx(2 * pi) for f in limited if key_of(f) in in_bore)

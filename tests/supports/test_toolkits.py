@@ -81,3 +81,24 @@ def test_loops_side_by_side_are_faces_of_their_own() -> None:
     assert [room_on([one, other, opening], [], (x, y)) for x, y in points.tolist()] == expected
     low, high = face.box
     assert (low.tolist(), high.tolist()) == ([0.0, 0.0], [50.0, 20.0])
+
+
+def test_faces_that_meet_and_the_top_of_a_boss_are_faces_of_their_own() -> None:
+    """Of a solid loops run clockwise around openings: a boss fills its opening, a neighbour shares a side."""
+    step = np.array([[20, 0, 0], [40, 0, 0], [40, 20, 0], [20, 20, 0]], dtype=float)
+    floor = np.array([[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0]], dtype=float)
+    boss = np.array([[6, 10, 1], [14, 10, 1]], dtype=float)
+    around = np.array([[14, 10, -1], [6, 10, -1]], dtype=float)
+    points = [(10.0, 10.5), (3.0, 10.0), (30.0, 8.0), (16.5, 10.0), (20.0, 5.0), (50.0, 10.0)]
+    expected = [3.5, 3.0, 8.0, 2.5, 0.0, -10.0]
+    for loops in ([floor, around, boss, step], [step, boss, floor, around], [boss, around, step, floor]):
+        assert TouchableFace.of(loops).room(np.array(points)).tolist() == expected
+        assert [room_on(loops, [], point) for point in points] == expected
+    pocket = [floor[::-1], [[2, 2, 0], [18, 2, 0], [18, 18, 0], [2, 18, 0]], around[::-1]]
+    inside = [[2, 18, 0], [18, 18, 0], [18, 2, 0], [2, 2, 0]]
+    assert TouchableFace.of(pocket).room(np.array(points[:2])).tolist() == [-7.5, -1.0]
+    assert TouchableFace.of([floor, inside, pocket[1], around]).room(np.array(points[:2])).tolist() == [
+        -3.5,
+        1.0,
+    ]
+    assert room_on([floor, inside, pocket[1], around], [], points[0]) == -3.5

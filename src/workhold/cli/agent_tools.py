@@ -38,7 +38,7 @@ from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zo
 from workhold.model.result import Result
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
 
-__all__ = ["TOOLS", "Tool"]
+__all__ = ["TOOLS", "AgentTool"]
 
 
 @frozen
@@ -50,7 +50,7 @@ class Answer:
 
 
 @frozen
-class Tool:
+class AgentTool:
     """A tool: its description, the form of its arguments and the function that runs it.
 
     Parameters
@@ -220,29 +220,29 @@ def sheet(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:
     return Answer({"written": [asked.path]})
 
 
-TOOLS: Mapping[str, Tool] = {
-    "load": Tool(
+TOOLS: Mapping[str, AgentTool] = {
+    "load": AgentTool(
         "Read a part and list its numbered faces; numbers of faces are what avoid takes.", LoadArguments, load
     ),
-    "design": Tool(
+    "design": AgentTool(
         "Find every way to hold a part in a vise, on a plate with clamps or on a fence, proven complete; "
         "reports the best and writes all to a result file.",
         DesignArguments,
         design,
     ),
-    "show": Tool(
+    "show": AgentTool(
         "Show how to set up one fixture of a result file: holes, opening, pose, quality, and what loads do "
         "to it.",
         ShowArguments,
         show,
     ),
-    "sheet": Tool(
+    "sheet": AgentTool(
         "Write the setup sheet of a fixture of a result file, or its set-up as DXF or STEP, or its list of "
         "pins.",
         SheetArguments,
         sheet,
     ),
-    "explain": Tool(
+    "explain": AgentTool(
         "Explain why there is no way to hold a part, which rule took the last candidates away, and which "
         "changes would help.",
         DesignArguments,

@@ -13,6 +13,7 @@ from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
+from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
 from workhold.cli.toolkit_lists import ListWords, Named, query_of, toolkits_to_try, words_of
@@ -29,12 +30,11 @@ if TYPE_CHECKING:
     from workhold.batch.store import Store
     from workhold.batch.workers import LocalWorkers
     from workhold.cli.progress import BatchProgress
-    from workhold.units import Unit
 
 __all__ = ["batch"]
 
-# What is asked of the fixtures, and of their seating.
-AskedWords = tuple[QueryWords, SeatingWords]
+# What is asked of the fixtures, of their seating, and of a program.
+AskedWords = tuple[QueryWords, SeatingWords, ProgramWords]
 
 TOOLKITS, WORK = "Toolkits to try", "The work"
 # Fixtures that are kept of each job.
@@ -74,6 +74,7 @@ def batch(
     varied: ListWords,
     words: QueryWords,
     seated_by: SeatingWords,
+    machined: ProgramWords,
     out: str = option(
         "Results", "DIR", "The folder for tables, report and records; the same again goes on.", default=""
     ),
@@ -121,8 +122,8 @@ def batch(
     from workhold.batch.tables import has_parquet, table_names
 
     names = (*table_names(), REPORT)
-    refuse_output_folder(folder, names, (*parts, words.loads), force)
-    requests = requests_of(parts, toolkit, varied, (words, seated_by), reading, folder)
+    refuse_output_folder(folder, names, (*parts, words.loads, *machined.files), force)
+    requests = requests_of(parts, toolkit, varied, (words, seated_by, machined), reading, folder)
     from workhold.batch.durations import Measured
     from workhold.batch.run import BatchRun, run_batch
     from workhold.batch.store import FolderStore, store_at
@@ -234,24 +235,30 @@ def requests_of(
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
     from workhold.files.part_list import part_list
 
-    unit = length_unit(reading.unit)
     lists = varied.has_pitches or toolkit is not None
     named = asked_toolkits(toolkit, varied, reading) if lists else None
-    asked_of(words, unit)
+    asked_of(words, reading)
     requests = []
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
     if plain:
         if named is None:
             raise InputError("no toolkit is given: name one or more with --toolkit (see workhold toolkits).")
-        options, held_in = reading.options(), held_in_all(named, words, reading)
-        requests = [Request(part, options, held_in) for part in part_list(plain, [folder])]
+        held_in = held_in_all(named, words, reading)
+        requests = [
+            Request(part, words[2].reading(part.name, reading).options(), held_in)
+            for part in part_list(plain, [folder])
+        ]
     for name in parts:
         if name in plain:
             continue
         for job in read_jobs(Path(name)):
             try:
                 own_reading = evolve(reading, **job.reading)
-                own_words = evolve(words[0], **job.query), evolve(words[1], **job.seating)
+                own_words = (
+                    evolve(words[0], **job.query),
+                    evolve(words[1], **job.seating),
+                    evolve(words[2], **job.program),
+                )
                 own = named
                 if job.toolkits is not None:
                     own = asked_toolkits(list(job.toolkits), ListWords(), own_reading)
@@ -259,8 +266,11 @@ def requests_of(
                     raise InputError(
                         "no toolkit is given: name one or more under toolkit, or for all of them."
                     )
-                options, held_in = own_reading.options(), held_in_all(own, own_words, own_reading)
-                requests += [Request(part, options, held_in) for part in part_list([job.part], [folder])]
+                held_in = held_in_all(own, own_words, own_reading)
+                requests += [
+                    Request(part, own_words[2].reading(part.name, own_reading).options(), held_in)
+                    for part in part_list([job.part], [folder])
+                ]
             except InputError as error:
                 raise InputError(f"{job.place}: {error}") from error
     return requests
@@ -295,7 +305,7 @@ def asked_toolkits(
     return toolkits_to_try(others or None, kind, varied, length_unit(reading.unit))
 
 
-def asked_of(words: AskedWords, unit: Unit) -> dict[str, Any]:
+def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
     """Keyword arguments of a query.
 
     Raises
@@ -303,8 +313,9 @@ def asked_of(words: AskedWords, unit: Unit) -> dict[str, Any]:
     InputError
         For words that mean nothing.
     """
-    wishes, seated_by = words
-    return wishes.asked(unit) | seated_by.asked(unit)
+    wishes, seated_by, machined = words
+    unit, has_program = length_unit(reading.unit), machined.program is not None
+    return wishes.asked(unit, has_program) | seated_by.asked(unit) | machined.asked(unit, reading.peg_height)
 
 
 def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -> list[HeldIn]:
@@ -317,7 +328,7 @@ def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -
     """
     from workhold.batch.run import ANY_PART, HeldIn
 
-    asked = asked_of(words, length_unit(reading.unit))
+    asked = asked_of(words, reading)
     return [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in named]
 
 

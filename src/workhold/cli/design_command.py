@@ -12,6 +12,7 @@ import typer
 
 from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.design_report import explain_none, picture_names
+from workhold.cli.design_sheet import first_sheet, refuse_sheet, report_sheet
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import (
@@ -27,6 +28,7 @@ from workhold.cli.outputs import (
     refuse_output_folder,
     write_found,
 )
+from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of, without_faces_cut
 from workhold.cli.supports_command import asked_thickness, report_supported
@@ -64,6 +66,7 @@ def design(
     held_in: ToolkitWords,
     words: QueryWords,
     seated_by: SeatingWords,
+    machined: ProgramWords,
     type_: str = option(
         SEARCH,
         "I|II|both",
@@ -101,8 +104,11 @@ def design(
             rich_help_panel=OUTPUT,
         ),
     ] = False,
-    thickness: str | None = option(
-        OUTPUT, "LENGTH", "With --supports: how thick the part is; that of its solid if not given."
+    sheet: str | None = option(
+        OUTPUT,
+        "FILE",
+        "Write the setup sheet of the first choice into this file (.pdf, .svg, .png), with --supports on "
+        "its supports.",
     ),
     json_: JsonOption = False,
     reading: PartWords,
@@ -126,12 +132,14 @@ def design(
     if json_ and supports:
         raise InputError("--supports prints a table: leave --json out, or ask the command supports.")
     folder = None if draw is None else Path(draw)
+    given = (part, held_in.vise, words.loads, *machined.files)
     if out is not None and out != STANDARD_OUTPUT:
-        refuse_output(out, (part, held_in.vise, words.loads), force)
+        refuse_output(out, given, force)
     if folder is not None:
-        refuse_output_folder(folder, picture_names(), (part, held_in.vise, words.loads), force)
+        refuse_output_folder(folder, picture_names(), given, force)
+    refuse_sheet(sheet, (*given, words.not_on_faces_cut_in), out, force)
     toolkit, tolerance = held_in.asked(shown)
-    asked = words.asked(shown) | seated_by.asked(shown)
+    asked = words.asked(shown, machined.program is not None) | seated_by.asked(shown)
     asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
     from workhold.kernels.base.compiling import is_first_run
@@ -142,8 +150,10 @@ def design(
         from workhold.cli.warming import begin_compiling, compile_kernels
 
         second = begin_compiling()
-    workpiece = reading.load(part).workpiece
+    workpiece = machined.reading(part, reading).load(part).workpiece
+    asked |= machined.asked(shown, reading.peg_height, workpiece)
     asked["restrictions"] = without_faces_cut(asked["restrictions"], workpiece, words.not_on_faces_cut_in)
+    thickness = machined.thickness if supports or machined.program is None else None
     high = asked_thickness(supports, thickness, workpiece, shown)
     query = Query(
         workpiece, toolkit, None if type_ == EVERY_TYPE else type_, best=kept, listing=listing, **asked
@@ -167,6 +177,9 @@ def design(
         result = write_found(result, out, form)
     if json_:
         further = further_data(result, engine, workers, folder, shown)
+        if sheet is not None:
+            written = first_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in)
+            further["sheet"] = sheet if written else None
         print_json(**report_data(result, listed, unfit, out), **further)
         if not result.complete:
             raise typer.Exit(INTERRUPTED)
@@ -183,6 +196,8 @@ def design(
         explain_none(result, workers, folder, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
     elif folder is not None:
         draw_pictures(result, folder, out, shown)
+    if sheet is not None:
+        report_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in)
 
 
 def with_size_remark(

@@ -13,6 +13,7 @@ from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
 from workhold.cli.toolkit_lists import SWEEP, ListWords, query_of, toolkits_to_try
@@ -42,6 +43,7 @@ def explore(
     toolkit: str | None = TOOLKIT,
     varied: ListWords,
     words: QueryWords,
+    machined: ProgramWords,
     out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values."),
     force: ForceOption = False,
     json_: JsonOption = False,
@@ -58,14 +60,22 @@ def explore(
 
     shown = length_unit(reading.unit)
     toolkits = toolkits_to_try(vise, toolkit, varied, shown)
-    asked = words.asked(shown)
+    asked = words.asked(shown, machined.program is not None)
     if out is not None:
         refuse_output(
-            out, (part, words.loads, *(name for names in vise or () for name in names.split(","))), force
+            out,
+            (
+                part,
+                words.loads,
+                *machined.files,
+                *(name for names in vise or () for name in names.split(",")),
+            ),
+            force,
         )
     from workhold.kernels.base.compiling import is_first_run
 
-    workpiece = reading.load(part).workpiece
+    workpiece = machined.reading(part, reading).load(part).workpiece
+    asked |= machined.asked(shown, reading.peg_height, workpiece)
     refuse_unknown_faces(workpiece, asked["restrictions"])
     queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]
     from workhold.search.design import explore as try_all
@@ -127,10 +137,10 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
     from workhold.cli.table import Table, print_tables
     from workhold.cli.tables import figure_text, heading
     from workhold.files.toolkit_file import is_sold
-    from workhold.model.quality import FIGURES, LOCATION_ERROR
+    from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
 
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
-    figures = [figure for key in keys for figure in FIGURES if figure.key == key]
+    figures = [figure for key in keys for figure in (*FIGURES, PROGRAM_FIGURE) if figure.key == key]
     # What is known of all, then what there may be no room for: later figures, and of which types the fixtures
     # are.
     headings = [*(f">{heading(figure, unit)}" for figure in figures), *(f">type {name}" for name in types)]

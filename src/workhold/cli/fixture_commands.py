@@ -14,6 +14,7 @@ from workhold.cli.body_options import GLB, GLB_THICKNESS, asked_model, write_bod
 from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.program_options import passing_data, passing_words
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
 from workhold.cli.seat_table import seat_table
 from workhold.cli.table import Table, print_tables
@@ -353,6 +354,7 @@ def show(
 
         print_json(
             fixture=fixture_data(fixture, result.toolkit, rank),
+            **passing_data(result, rank),
             listed=len(result),
             complete=bool(result.complete),
             loads=[load_case_data(case) for case in cases],
@@ -373,4 +375,4 @@ def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Un
         print_tables(*seating_words(fixture, result, unit))
     elif not toolkit.closes_at_once and rank <= (result.query.seating or 0):
         print_tables(*by_hand_words(rank, result, unit))
-    print_tables(*load_tables(cases, fixture, toolkit, unit))
+    print_tables(*passing_words(result, rank, unit), *load_tables(cases, fixture, toolkit, unit))

@@ -28,6 +28,7 @@ from attrs import evolve, fields_dict, frozen
 
 from workhold.cli.commands import print_remark
 from workhold.cli.options import PartWords
+from workhold.cli.program_options import ProgramWords
 from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of
 from workhold.cli.values import length_unit
 from workhold.errors import InputError
@@ -44,13 +45,14 @@ JOB_ENDINGS = (".csv", ".toml")
 # Bytes; a job takes a hundred.
 LARGEST_FILE = 100_000_000
 PART, TOOLKIT = "part", "toolkit"
-OF_PART, OF_QUERY, OF_SEATING = (tuple(fields_dict(words)) for words in (PartWords, QueryWords, SeatingWords))
-KEYS = (PART, TOOLKIT, *OF_PART, *OF_QUERY, *OF_SEATING)
+GROUPS = PartWords, QueryWords, SeatingWords, ProgramWords
+OF_PART, OF_QUERY, OF_SEATING, OF_PROGRAM = (tuple(fields_dict(words)) for words in GROUPS)
+KEYS = (PART, TOOLKIT, *OF_PART, *OF_QUERY, *OF_SEATING, *OF_PROGRAM)
 # Words that are true or false.
 FLAGS = {"foolproof": {"true": True, "yes": True, "false": False, "no": False}}
 # Words of which there may be several.
 LISTS = (TOOLKIT, "layer", "avoid", "keep_out", "angle", "load")
-FILES = (PART, TOOLKIT, "loads")
+FILES = (PART, TOOLKIT, "loads", "program", "tools")
 
 
 @frozen
@@ -62,8 +64,8 @@ class JobWords:
     place : where it stands, for messages.
     part : file, folder or built-in name.
     toolkits : names and files; None where the file gives none.
-    reading, query, seating : what the file says of reading the part, of its fixtures and of their seating, by
-        the names of options.
+    reading, query, seating, program : what the file says of reading the part, of its fixtures, of their
+        seating and of the program to pass, by the names of options.
     """
 
     place: str
@@ -72,6 +74,7 @@ class JobWords:
     reading: Mapping[str, Any]
     query: Mapping[str, Any]
     seating: Mapping[str, Any]
+    program: Mapping[str, Any]
 
 
 def read_jobs(path: Path) -> list[JobWords]:
@@ -165,7 +168,8 @@ def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
         words[name] = values if name in LISTS else ",".join(values)
     if PART not in words:
         raise InputError(f"{place} has no part: name a file, a folder or a built-in part.")
-    groups = ({name: words[name] for name in of if name in words} for of in (OF_PART, OF_QUERY, OF_SEATING))
+    known = OF_PART, OF_QUERY, OF_SEATING, OF_PROGRAM
+    groups = ({name: words[name] for name in of if name in words} for of in known)
     toolkits = tuple(words[TOOLKIT]) if TOOLKIT in words else None
     return JobWords(place, words[PART], toolkits, *groups)
 
@@ -233,6 +237,8 @@ def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[Fam
                 raise InputError(
                     f"{job.place} names a toolkit: the parts of a family share that of the command line."
                 )
+            if job.program:
+                raise InputError(f"{job.place} names a program: a family of parts is planned without any.")
             own_words, own_reading = evolve(words, **job.query), evolve(reading, **job.reading)
             try:
                 own_words.asked(length_unit(own_reading.unit))

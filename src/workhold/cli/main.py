@@ -77,6 +77,9 @@ COMMANDS = {
     ),
     "features": "List the numbered faces of PART, as pictures and result files name them.",
     "parts": "List the built-in parts.",
+    "program": (
+        "Report what was understood of a program for the mill: tools, lengths, heights, time, lines left out."
+    ),
     "toolkits": "List the vises, plates and fences that come with workhold, or show all figures of one.",
     "drill": "Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.",
     "verify": "Prove or refute every fixture of a result, and every number written with it.",
@@ -95,7 +98,7 @@ SHARED_MODULES = {
     "fixture_commands": ("seat", "show"),
     "result_commands": ("convert", "verify"),
     "serving_commands": ("completion", "mcp", "serve"),
-    "workshop_commands": ("copies", "drill", "sheet"),
+    "workshop_commands": ("copies", "drill"),
 }
 MODULES = {name: f"{name}_command" for name in COMMANDS} | {
     name: module for module, names in SHARED_MODULES.items() for name in names

@@ -3,30 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite
-from typing import TYPE_CHECKING, Any, TextIO
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
 
-from attrs import asdict
+import typer
+from attrs import asdict, evolve
 
 from workhold.cli.commands import option, print_remark
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
-from workhold.cli.search_options import JAW_FORCE, parse_load, zone
+from workhold.cli.progress import progress_bar
+from workhold.cli.search_options import JAW_FORCE, zone
+from workhold.cli.spatial_loads import spatial_load
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import length, length_unit, number, optional_count, optional_force, optional_length
+from workhold.cli.values import length, length_unit, optional_count, optional_force, optional_length
 from workhold.errors import InputError
+from workhold.files.atomic import write_bytes
 
 if TYPE_CHECKING:
     from workhold.model.result import Result
-    from workhold.model.support_request import SpatialLoad
-    from workhold.model.support_triples import SupportPad, Supports, Triple
+    from workhold.model.support_triples import Supports, Triple
     from workhold.model.workpiece import Workpiece
     from workhold.units import Unit
 
 __all__ = ["asked_thickness", "report_supported", "supports"]
 
-# Fixtures for which a search looks for supports, and with what pads and tip, in mm, where nobody says.
-MOST_SUPPORTED, PAD_RADIUS, TIP_RADIUS = 20, 4.0, 5.0
+# Fixtures for which a search looks for supports.
+MOST_SUPPORTED = 20
 PART, SUPPORTS, CLAMP = "Heights of the part", "Supports", "The clamp on top"
 
 
@@ -39,7 +43,11 @@ def supports(
         "LOW:HIGH",
         "Heights at which pegs may press on its faces; those of its solid, or all, if not given.",
     ),
-    pad_radius: str = option(SUPPORTS, "LENGTH", "Radius of the supports' round pads.", default="4mm"),
+    pad_radius: str | None = option(
+        SUPPORTS,
+        "LENGTH",
+        "Radius of the supports' round pads; 4mm, or less where the holes ask for it, if not given.",
+    ),
     pad_margin: str = option(
         SUPPORTS, "LENGTH", "Least distance of a pad from the border of the face below.", default="0mm"
     ),
@@ -70,6 +78,13 @@ def supports(
     jaw_force: str | None = JAW_FORCE,
     triples: str = option(None, "K", "How many sets of three to list.", default="3"),
     out: str | None = option(None, "FILE", "Write all sets of three, with every figure, into this file."),
+    glb: str | None = option(
+        None, "FILE", "Write the fixture on the best set in three dimensions into this .glb file."
+    ),
+    step: str | None = option(None, "FILE", "The same as a STEP assembly, for CAM, into this .step file."),
+    support_height: str | None = option(
+        SUPPORTS, "LENGTH", "How far supports stand out of the plates, in --glb and --step; 6mm if not given."
+    ),
     force: ForceOption = False,
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
@@ -85,22 +100,30 @@ def supports(
     shown = length_unit(unit)
     count = optional_count("--triples", triples)
     closing = optional_force("--jaw-force", jaw_force)
-    if out is not None:
-        refuse_output(out, (result_file,), force)
+    for path, endings in ((out, None), (glb, (".glb",)), (step, (".step", ".stp"))):
+        if path is not None:
+            refuse_output(path, (result_file,), force)
+            if endings is not None and Path(path).suffix.lower() not in endings:
+                raise InputError(f"{path} is not the name of such a file: let it end in {endings[0]}.")
+    raised = optional_length("--support-height", support_height, shown)
+    if raised is not None and glb is None and step is None:
+        raise InputError("--support-height is of a file in three dimensions: give --glb or --step too.")
     result = result_with(result_file, rank)
     from workhold.model.support_request import SupportRequest
     from workhold.supports.listing import supports_of
 
     high = asked_thickness(True, thickness, result.workpiece, shown)
     assert high is not None
-    request = SupportRequest(
-        high,
-        length("--pad-radius", pad_radius, shown),
-        length("--tip-radius", tip_radius, shown),
-        band=(0.0, high) if band is None else lengths("--band", band, ":", 2, shown),
-        bands=None if band is not None else bands_of(result, rank, high),
+    request = evolve(
+        SupportRequest.of(
+            result.workpiece,
+            high,
+            pad_radius=optional_length("--pad-radius", pad_radius, shown),
+            tip_radius=length("--tip-radius", tip_radius, shown),
+            toolkit=result.toolkit,
+        ),
+        band=None if band is None else lengths("--band", band, ":", 2, shown),
         pad_margin=length("--pad-margin", pad_margin, shown),
-        **level_faces(result.workpiece),
         bottom_zones=[zone(text, shown) for text in keep_out_below or ()],
         top_zones=[zone(text, shown) for text in keep_out_above or ()],
         reach=[lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
@@ -109,13 +132,54 @@ def supports(
     )
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in load] if load else None
-    every = out is not None
-    found = supports_of(result[rank - 1], result.query, request, loads, closing, None if every else count)
+    every, written = out is not None, [path for path in (out, glb, step) if path is not None]
+    with (
+        ask_to_stop("the best of what was looked at is kept") as cancel,
+        progress_bar("Looking for supports", "of 1 fixture") as show,
+    ):
+        found = supports_of(
+            result[rank - 1],
+            result.query,
+            request,
+            loads,
+            closing,
+            None if every else count,
+            cancel=cancel,
+            progress=lambda fraction: show(fraction, 0),
+        )
     if out is not None:
         from workhold.files.supports.writer import write_supports
 
         write_supports(found, out)
-    report(found, count, result, rank, out, shown, json_)
+    if glb is not None or step is not None:
+        write_standing(found, glb, step, raised)
+    report(found, count, result, rank, written, shown, json_)
+    if found.stopped:
+        raise typer.Exit(INTERRUPTED)
+
+
+def write_standing(found: Supports, glb: str | None, step: str | None, raised: float | None) -> None:
+    """Writes the fixture on its best set of three supports as a GLB file and as a STEP assembly.
+
+    Raises
+    ------
+    InputError
+        When there is no set.
+    """
+    from workhold.model.bodies import BodySizes
+    from workhold.model.support_bodies import SUPPORT_HEIGHT, triple_of_rank
+
+    high = SUPPORT_HEIGHT if raised is None else raised
+    sizes = BodySizes.of(found.query.workpiece, found.request.thickness, support_height=high)
+    first = triple_of_rank(found, 1)
+    if glb is not None:
+        from workhold.files.glb.writer import supports_glb
+
+        write_bytes(glb, supports_glb(found, first, sizes))
+    if step is not None:
+        from workhold.files.step.writer import supports_step
+
+        write_bytes(step, supports_step(found, first, sizes))
 
 
 def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
@@ -145,29 +209,15 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
         return
-    found = [
-        one
-        for rank, fixture in enumerate(fixtures, 1)
-        for one in supports_of_best(
-            [fixture],
-            result.query,
-            SupportRequest(
-                thickness,
-                PAD_RADIUS,
-                TIP_RADIUS,
-                bands=bands_of(result, rank, thickness),
-                **level_faces(result.workpiece),
-            ),
-            each=1,
-        )
-    ]
+    request = SupportRequest.of(result.workpiece, thickness, toolkit=result.toolkit)
+    found = supports_of_best(fixtures, result.query, request, each=1)
     with_loads = bool(result.query.loads)
     table = Table((">rank", "supports", *columns_of(unit, with_loads)))
     for rank, one in enumerate(found, 1):
         if one.triples:
-            table.add_row(str(rank), *row_of(one.triples[0], result, unit, with_loads))
+            table.add_row(str(rank), *row_of(one.triples[0], unit, with_loads))
     bare = [str(rank) for rank, one in enumerate(found, 1) if not one.triples]
-    pad, tip = unit.text(PAD_RADIUS), unit.text(TIP_RADIUS)
+    pad, tip = unit.text(request.pad_radius), unit.text(request.tip_radius)
     held = (
         f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
     )
@@ -182,13 +232,6 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         *flat_faces(result.workpiece),
         stream=stream,
     )
-
-
-def level_faces(workpiece: Workpiece) -> dict[str, Any]:
-    """The faces of a part's solid that pads and the tip may touch; those of a drawing are the outline."""
-    solid = workpiece.solid
-    found = {} if solid is None else {"bottom": solid.bottom, "top": solid.top}
-    return {name: loops for name, loops in found.items() if loops}
 
 
 def flat_faces(workpiece: Workpiece) -> list[str]:
@@ -234,92 +277,21 @@ def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[fl
     return tuple(length(name, word, unit) for word in words)
 
 
-def bands_of(result: Result, rank: int, thickness: float) -> tuple[tuple[float, float] | None, ...] | None:
-    """The band of each peg's face on a solid, as far as the part is thick; None for a part without bands."""
-    solid = result.workpiece.solid
-    if solid is None:
-        return None
-    bands = (solid.bands[peg.face] for peg in result[rank - 1].pegs)
-    return tuple(band and (min(band[0], thickness), min(band[1], thickness)) for band in bands)
-
-
-def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
-    """A load with its heights, its axial force and what tilts, from the text of ``--load``.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing.
-    """
-    from workhold.model.support_request import SpatialLoad
-
-    place = f'--load "{text}"'
-    own, rest = dict[str, str](), list[str]()
-    for word in text.split():
-        key, _, value = word.partition("=")
-        if key in ("z", "axial", "tilt"):
-            own[key] = value
-        else:
-            rest.append(word)
-    acts = any(word.startswith(("force=", "moment=")) for word in rest)
-    try:
-        planar = parse_load(" ".join(rest if acts else [*rest, "force=1"]), unit.millimetres)
-    except InputError as error:
-        raise InputError(str(error).replace(" force=1", "")) from error
-    heights = ranged(place, own.get("z"), (thickness, thickness))
-    scale = unit.millimetres
-    tilt = own.get("tilt", "0,0").split(",")
-    if len(tilt) != 2:
-        raise InputError(f"{place} cannot be used at 'tilt': give tilt=ABOUTX,ABOUTY in N mm.")
-    return SpatialLoad(
-        points=planar.points,
-        heights=(heights[0] * scale, heights[1] * scale) if "z" in own else heights,
-        force=planar.force if acts else 0.0,
-        directions=planar.directions,
-        axial=ranged(place, own.get("axial"), (0.0, 0.0)),
-        moment=planar.moment,
-        tilt=(number(tilt[0]), number(tilt[1])),
-        name=planar.name,
-    )
-
-
-def ranged(place: str, text: str | None, usual: tuple[float, float]) -> tuple[float, float]:
-    """One number or a range LOW..HIGH.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
-    if text is None:
-        return usual
-    low, _, high = text.partition("..")
-    found = number(low), number(high or low)
-    if not all(map(isfinite, found)):
-        raise InputError(f"{place} cannot be used at '{text}': give a number, or a range LOW..HIGH.")
-    return found
-
-
-def support_name(pad: SupportPad, letter: str) -> str:
-    """The hole of a support as a machinist counts it; one before column A or row 1 by its numbers."""
-    from workhold.fixels.carrier import column_letters
-
-    if pad.column >= 0 and pad.row >= 0:
-        return f"{letter}{column_letters(pad.column)}{pad.row + 1}"
-    return f"{letter}({pad.column + 1},{pad.row + 1})"
-
-
 def report(
-    found: Supports, count: int | None, result: Result, rank: int, out: str | None, unit: Unit, as_json: bool
+    found: Supports,
+    count: int | None,
+    result: Result,
+    rank: int,
+    written: list[str],
+    unit: Unit,
+    as_json: bool,
 ) -> None:
     """Prints the best sets, and what is not seen in the table."""
     listed = found.triples[:count]
     if as_json:
         rows = [asdict(triple) for triple in listed]
         counts = {"positions": found.positions, "sets": found.count}
-        print_json(
-            fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=[out] if out else []
-        )
+        print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written)
         return
     if not found.triples:
         print_tables(
@@ -328,10 +300,12 @@ def report(
         )
     else:
         print_sets(found, listed, result, rank, unit)
-    if found.count is not None and found.count > len(listed) and out is None:
+    if found.count is not None and found.count > len(listed) and not written:
         print_remark("more sets can be listed with --triples, and written into a file with --out.")
-    if out is not None:
-        print_tables(f"Written to {out}.")
+    if written:
+        print_tables(f"Written to {', '.join(written)}.")
+    if found.stopped:
+        print_remark("stopped before all sets were looked at: there may be better ones.")
 
 
 def print_sets(found: Supports, listed: Sequence[Triple], result: Result, rank: int, unit: Unit) -> None:
@@ -339,23 +313,22 @@ def print_sets(found: Supports, listed: Sequence[Triple], result: Result, rank: 
     with_loads = bool(found.loads)
     table = Table((">set", "supports", *columns_of(unit, with_loads)))
     for place, triple in enumerate(listed, 1):
-        table.add_row(str(place), *row_of(triple, result, unit, with_loads))
+        table.add_row(str(place), *row_of(triple, unit, with_loads))
     number_of = "" if found.count is None else f" of {found.count}"
     head = f"Fixture {rank}: the best {len(listed)}{number_of} sets of three supports and a clamp on top."
     print_tables(head, table, *notes_of(found, listed, unit))
 
 
-def row_of(triple: Triple, result: Result, unit: Unit, with_loads: bool) -> list[str]:
+def row_of(triple: Triple, unit: Unit, with_loads: bool) -> list[str]:
     """The words of a set of three."""
     clamp = triple.clamp
-    letters = {one.name: f"{one.letter}-" if one.letter else "" for one in result.toolkit.plates}
     forces = []
     if with_loads:
         forces = [f"{clamp.clamp_needed:.0f}", f"{clamp.support_force or 0.0:.0f}"]
     at = clamp.at if with_loads or triple.given else triple.arm_at
     arm = clamp.arm if with_loads or triple.given else triple.arm
     return [
-        " ".join(support_name(pad, letters[pad.carrier]) for pad in triple.supports),
+        " ".join(pad.hole for pad in triple.supports),
         f"({unit.number(at[0])}, {unit.number(at[1])})",
         *forces,
         unit.number(arm),

@@ -141,12 +141,13 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
     table looks as sorted as it is.
     """
-    from workhold.model.quality import FIGURES, LOCATION_ERROR, RANKED, SEATING_FIGURES
+    from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE, RANKED, SEATING_FIGURES
     from workhold.model.setup import settings_of
     from workhold.statics.judging import unfit
 
     ranked = [figure for key in result.query.ranking for figure in RANKED if figure.key == key]
     others = [] if FIGURES[LOCATION_ERROR] in ranked else [FIGURES[LOCATION_ERROR]]
+    others += [] if PROGRAM_FIGURE in ranked else [PROGRAM_FIGURE]
     figures = [f for f in [*ranked, *others] if len(result) and f.key in result[0].figures]
     if result.seating:
         # First what it is ranked by, then how wide open the part is caught, and what a reading must show.
@@ -262,10 +263,10 @@ def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Tabl
     """Tabulates the figures of quality of a fixture, and their meaning where ``mover`` (such as a jaw)
     presses.
     """
-    from workhold.model.quality import FIGURES
+    from workhold.model.quality import FIGURES, PROGRAM_FIGURE
 
     table = Table(("figure", ">value", "unit", "better", "meaning"))
-    for figure in FIGURES:
+    for figure in (*FIGURES, PROGRAM_FIGURE):
         if figure.key in fixture.quality:
             of = unit.abbreviation if figure.unit == "mm" else figure.unit
             better = "more" if figure.more_is_better else "less"

@@ -8,10 +8,14 @@ contact feature : a straight or circular piece of the locus that faces a face; o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from attrs import field, frozen
 from numpy.typing import NDArray
 
+from workhold.contact.swept import Swept
+from workhold.contact.trimming import most_in_the_way, parts_clear_of
 from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
 from workhold.fixels.pegs import Flat
@@ -67,13 +71,21 @@ def contact_features(
 
 
 def allowed_features(
-    features: list[ContactFeature], workpiece: Workpiece, restrictions: Restrictions, body_radius: float
+    features: list[ContactFeature],
+    workpiece: Workpiece,
+    restrictions: Restrictions,
+    body_radius: float,
+    swept: Sequence[tuple[Swept, float]] = (),
 ) -> list[ContactFeature]:
-    """Contact features without avoided faces and places where a peg's body would stand over a keep-out zone.
+    """Contact features without avoided faces and places where a peg's body would stand in the way.
+
+    In the way it stands over a keep-out zone, and near what a program sweeps.
 
     Parameters
     ----------
     body_radius : of the pegs' bodies, in mm.
+    swept : what a program sweeps, and what a peg's centre keeps besides the tool's radius, in mm; that of
+        the peg itself first.
 
     Raises
     ------
@@ -95,7 +107,16 @@ def allowed_features(
             f"the keep-out zones cover every place along {workpiece.name} where a peg could stand: make them "
             "smaller."
         )
-    return left
+    clear = left
+    for pieces, beyond in swept:
+        clear = [kept for feature in clear for kept in passed_by(feature, pieces, beyond)]
+    if not clear:
+        line = most_in_the_way([feature.segment for feature in left], *swept[0])
+        raise InputError(
+            f"the program's tools pass every place along {workpiece.name} where a peg could stand, line "
+            f"{line} most of them: lower the pegs, machine less in this set-up, or ask for less clearance."
+        )
+    return clear
 
 
 def face_of_segment(workpiece: Workpiece, number: int) -> int:
@@ -118,6 +139,12 @@ def face_of_segment(workpiece: Workpiece, number: int) -> int:
 def clear_of(feature: ContactFeature, zone: Zone, body_radius: float) -> list[ContactFeature]:
     """The parts of a contact feature on which a peg's body stays clear of a zone."""
     parts = clear_parts(feature.segment, zone.segments, body_radius)
+    return [ContactFeature(feature.face, part, feature.cut_from) for part in parts]
+
+
+def passed_by(feature: ContactFeature, swept: Swept, beyond: float) -> list[ContactFeature]:
+    """The parts of a contact feature that tools pass at their radius and so many mm ``beyond``."""
+    parts = parts_clear_of(feature.segment, swept, beyond)
     return [ContactFeature(feature.face, part, feature.cut_from) for part in parts]
 
 

@@ -23,6 +23,7 @@ from workhold.contact.features import (
     end_slacks,
     feature_rows,
 )
+from workhold.contact.swept import Swept, swept_below
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Toolkit, Travel
@@ -35,7 +36,7 @@ from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Frame", "Problem", "Progress"]
+__all__ = ["Frame", "Problem", "Progress", "keeps_of", "swept_of"]
 
 IntArray = NDArray[np.int64]
 
@@ -255,9 +256,11 @@ class Problem:
         one, other = ((each.peg_radius, each.body_radius, each.flat) for each in carriers)
         loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if one == other else 2]]
         allowed = loci
-        if restrictions or workpiece.untouchable:
+        if restrictions or workpiece.untouchable or query.program is not None:
             allowed = [
-                allowed_features(locus, workpiece, restrictions, carrier.body_radius)
+                allowed_features(
+                    locus, workpiece, restrictions, carrier.body_radius, keeps_of(query, carrier)
+                )
                 for locus, carrier in zip(loci, carriers, strict=False)
             ]
         features = [feature for part in allowed for feature in part]
@@ -298,6 +301,11 @@ class Problem:
         return self.query.restrictions
 
     @property
+    def swept(self) -> tuple[Swept, float] | None:
+        """What the program sweeps, in the part's coordinates, and the clearance from it in mm."""
+        return swept_of(self.query)
+
+    @property
     def wrench_length(self) -> float:
         """L of the wrenches: half the diameter of the peg-centre locus."""
         return self.diameter / 2
@@ -336,6 +344,29 @@ class Problem:
         frame = self.frame
         standing, moving = (carrier.least_standoff for carrier in frame.carriers)
         return Setting(frame.lattice, self.limits, standing, moving, self.backward_error)
+
+
+def keeps_of(query: Query, carrier: Carrier) -> list[tuple[Swept, float]]:
+    """What a query's program sweeps at the heights of a carrier's pegs, and what their centres keep besides.
+
+    Where pegs have a shoulder below the part, what is swept there follows, with what that keeps.
+    """
+    swept = swept_of(query)
+    if swept is None or query.program is None:
+        return []
+    pieces, clearance = swept
+    keeps = [(pieces, clearance + carrier.peg_radius)]
+    if carrier.body_radius > carrier.peg_radius:
+        keeps.append((swept_below(query.program, 0.0), clearance + carrier.body_radius))
+    return keeps
+
+
+def swept_of(query: Query) -> tuple[Swept, float] | None:
+    """What a query's program sweeps at the heights of pegs, and the clearance in mm; None without one."""
+    if query.passed is None:
+        return None
+    program, height = query.passed
+    return swept_below(program, height), program.clearance
 
 
 def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:

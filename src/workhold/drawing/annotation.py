@@ -172,7 +172,7 @@ OUTSIDE = 1e6
 COLLISION = 200.0
 CROSSING = 120.0
 WALL = 12.0
-STRIKE = 30.0
+STRIKE = 120.0
 # Labels keep this far apart, page units.
 GAP = 4.0
 # The dearest candidates are dropped before labels compete with each other.

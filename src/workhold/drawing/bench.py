@@ -27,6 +27,7 @@ from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "ARROW",
+    "LOWEST",
     "PART_FILL",
     "PEG_FILL",
     "TOUCHED",
@@ -328,7 +329,7 @@ def draw_inset(
 def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
     """Writes the number of each hole at its centre, where it has room for it."""
     for count, (loop, center) in enumerate(
-        zip(workpiece.loop_segments[1:], hole_centers(workpiece), strict=True), 1
+        zip(workpiece.hole_segments, hole_centers(workpiece), strict=True), 1
     ):
         boxes = [bounding_box(segment) for segment in loop]
         room = (

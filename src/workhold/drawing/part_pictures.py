@@ -86,7 +86,7 @@ def draw_header(
     group = scene.group("header")
     width = float(scene.element.attrib["viewBox"].split()[2]) - 2 * EDGE
     group.text((EDGE, EDGE + 12), shortened(workpiece.name, 26, width, bold=True), 26, bold=True)
-    faces, holes = len(workpiece.faces), len(workpiece.loops) - 1
+    faces, holes = len(workpiece.faces), len(workpiece.hole_segments)
     words = [plural(faces, "face"), plural(holes, "hole") if holes else "no holes"]
     words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
     if peg_radius is not None:
@@ -144,7 +144,7 @@ def draw_numbers(
     if peg_radius is not None:
         features = [feature.segment for feature in contact_features(workpiece, peg_radius)]
         placer.avoid_ink(sampled(features, view, 3.0), 0.6)
-    outer = len(workpiece.loop_segments[0])
+    outer = workpiece.outer_count
     places = placer.place(
         [number_label(face, view, size, shares, face.number < outer) for face in workpiece.faces]
     )

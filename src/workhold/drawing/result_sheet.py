@@ -6,12 +6,16 @@ from collections.abc import Sequence
 from datetime import date
 from typing import Any
 
+from attrs import evolve
+
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_facts import Caution, SheetDetails, cautions_of, edge_distances
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
+from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.setup import part_zero
@@ -70,6 +74,11 @@ def result_details(
     number: int | None = None,
     count: int | None = None,
     seating: bool | None = None,
+    supports: ChosenSupports | None = None,
+    support_height: float | None = None,
+    plate_thickness: float | None = None,
+    first_side: FirstSide | None = None,
+    listed_as: str = "Fixture",
 ) -> tuple[Fixture, SheetDetails]:
     """One fixture with all figures of quality, and the further details of its setup sheet.
 
@@ -86,6 +95,8 @@ def result_details(
     result_hash, day, paper, unit, part_name, jaw_force, friction, machine_position : see
         :class:`SheetDetails`.
     thickness, peg_length, peg_height, dowel : see :class:`SheetDetails`.
+    supports, support_height, plate_thickness, first_side, listed_as : see :class:`SheetDetails`. With
+        supports the sheet is of their fixture in holes that all have names.
 
     Raises
     ------
@@ -100,6 +111,10 @@ def result_details(
         result.toolkit,
     )
     known, not_seated = result[rank - 1].seating if seating is not False else None, ""
+    if supports is not None and supports.recounted.fixture.pegs != fixture.pegs:
+        # The readings of its seats would be those of other holes.
+        seating, known = seating or known is not None, None
+        fixture = evolve(supports.recounted.fixture, quality=fixture.quality)
     if seating is None and not toolkit.closes_at_once:
         seating = rank <= (result.query.seating or 0)
     put_in = None if not seating or toolkit.closes_at_once else by_hand(fixture, workpiece, toolkit)
@@ -131,5 +146,10 @@ def result_details(
         seating=known,
         by_hand=put_in,
         not_seated=not_seated,
+        supports=supports,
+        support_height=support_height,
+        plate_thickness=plate_thickness,
+        first_side=first_side,
+        listed_as=listed_as,
     )
     return fixture, details

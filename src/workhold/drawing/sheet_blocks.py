@@ -1,22 +1,12 @@
-"""The blocks of words and tables on a setup sheet: title, steps, quality, loads, and the part's upper side.
-
-A part turned over shows the mirror image of its outline. Where that is the outline itself, nothing
-distinguishes the sides. Else two marks do that look like no others: the way from one to the other,
-counter-clockwise about the middle, is less than half a turn on one side only. Turning the part round does not
-change that.
-"""
+"""The blocks of words and tables on a setup sheet: title, steps, quality, loads, and which there are."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import combinations
-from math import atan2, hypot, pi
 
-from attrs import frozen
-
-from workhold.drawing.bench import draw_inset
+from workhold.drawing.hardware_table import write_hardware
 from workhold.drawing.panel import TextColumn, draw_legend, fixture_words, pegs_words
-from workhold.drawing.scene import BLACK, Box, LengthUnit, shortened, text_width, wrapped
+from workhold.drawing.scene import BLACK, LengthUnit, shortened, text_width, wrapped
 from workhold.drawing.seats import write_seating, write_wrong_seats
 from workhold.drawing.sheet_setting import CLAMPS, OPENING, write_counting, write_pegs
 from workhold.drawing.sheet_writing import (
@@ -26,13 +16,13 @@ from workhold.drawing.sheet_writing import (
     MovingBlocks,
     Sheet,
     Writer,
-    fact_or_field,
     heading,
 )
+from workhold.drawing.supports_block import support_steps, write_heights, write_supports
+from workhold.drawing.supports_drawn import draw_pad, draw_tip
+from workhold.drawing.two_sides import write_side_up
+from workhold.drawing.upper_side import write_part, write_side
 from workhold.fixels.carrier import Measure
-from workhold.geometry.segment import Arc, Point
-from workhold.geometry.symmetry import is_own_mirror_image, middle_of
-from workhold.model.fixture import Fixture
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
@@ -43,12 +33,11 @@ from workhold.model.quality import (
     WRENCH_RADIUS,
 )
 from workhold.model.requirements import ANY_DIRECTION, Load
-from workhold.model.setup import contact_names, hole_centers
-from workhold.model.workpiece import Workpiece
+from workhold.model.setup import contact_names
 from workhold.statics.loads import jaw_words
 from workhold.units import INCH
 
-__all__ = ["Mark", "blocks_of", "distinguishing_marks", "marks_of", "side_words"]
+__all__ = ["blocks_of"]
 
 ON_THE_SHEET = (
     CLOSURE_MARGIN,
@@ -155,138 +144,6 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
     )
 
 
-# Of the larger one: lengths and radii of two marks that differ by less look the same.
-SEEN = 0.025
-# The sine of the angle between two marks, seen from the middle, is at least this; and of the part's diagonal
-# each is so far from the middle.
-APART, AWAY = 0.3, 0.08
-# So many of the longest marks are compared.
-MOST_MARKS = 60
-EIGHTHS = ("right", "upper right", "top", "upper left", "left", "lower left", "bottom", "lower right")
-# Height of the picture of the part as drawn by its width, and at most, page units.
-TALLEST_INSET, HIGHEST_INSET, INSET_ROOM = 0.75, 230.0, 56.0
-
-
-def write_side(column: TextColumn, sheet: Sheet) -> None:
-    """Writes the part's thickness, and which side is up."""
-    heading(column, "Part and its upper side")
-    thickness = sheet.details.thickness
-    fact_or_field(column, "thickness", None if thickness is None else sheet.lengths.words(thickness))
-    column.paragraph(side_words(sheet.workpiece, sheet.fixture, sheet.lengths), BODY)
-
-
-def write_part(column: TextColumn, sheet: Sheet) -> None:
-    """Draws the part as it was drawn."""
-    x0, y0, x1, y1 = sheet.workpiece.bounds
-    height = INSET_ROOM + min(HIGHEST_INSET, column.width * min(TALLEST_INSET, (y1 - y0) / (x1 - x0)))
-    column.y += 10
-    box = Box(column.x, column.y, column.x + column.width, column.y + height)
-    draw_inset(column.scene, box, sheet.workpiece, sheet.fixture, sheet.toolkit, sheet.zero.point)
-    column.y += height
-
-
-@frozen
-class Mark:
-    """A hole or a face of the outer outline; lengths in mm.
-
-    Parameters
-    ----------
-    hole : its number, counted from 1; 0 for a face.
-    place : its middle, from that of the part's outside dimensions, in the part's coordinates.
-    length : of its outline.
-    radius : of a round hole or an arc; 0 for what is straight or has several faces.
-    bend : 1 where it bulges out of the part, -1 into it, 0 where it is straight; 2 for holes.
-    """
-
-    hole: int
-    place: Point
-    length: float
-    radius: float
-    bend: int
-
-    def is_like(self, other: Mark) -> bool:
-        """Whether the two look the same."""
-        sizes = ((self.length, other.length), (self.radius, other.radius))
-        return self.bend == other.bend and all(abs(a - b) <= SEEN * max(a, b) for a, b in sizes)
-
-    def words(self, lengths: LengthUnit) -> str:
-        """What it is."""
-        if self.hole:
-            return f"hole {self.hole}" + (f", Ø {lengths.short(2 * self.radius, 4)}," if self.radius else "")
-        if self.radius:
-            return (
-                f"the {'rounding' if self.bend > 0 else 'hollow'} of radius {lengths.short(self.radius, 4)}"
-            )
-        return f"the straight edge {lengths.short(self.length, 4)} long"
-
-
-def marks_of(workpiece: Workpiece) -> list[Mark]:
-    """The holes, and after them the faces of the outer outline, the longest first of either."""
-    outer, (x, y) = len(workpiece.loops[0]), workpiece.center
-    segments = {face.number: face.segment for face in workpiece.faces}
-    holes, number = [], outer
-    for count, (loop, at) in enumerate(
-        zip(workpiece.loop_segments[1:], hole_centers(workpiece), strict=True), 1
-    ):
-        face = segments.get(number)
-        radius = face.radius if isinstance(face, Arc) and face.is_full else 0.0
-        holes.append(Mark(count, (at[0] - x, at[1] - y), sum(segment.length for segment in loop), radius, 2))
-        number += len(loop)
-    faces = []
-    for segment in (segments[number] for number in segments if number < outer):
-        radius, bend = (segment.radius, int(segment.sign)) if isinstance(segment, Arc) else (0.0, 0)
-        at = middle_of(segment)
-        faces.append(Mark(0, (at[0] - x, at[1] - y), segment.length, radius, bend))
-    ordered = [sorted(several, key=lambda mark: -mark.length) for several in (holes, faces)]
-    return (ordered[0] + ordered[1])[:MOST_MARKS]
-
-
-def distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
-    """The two marks, each like no other, that are plainest to see; None where there are no two.
-
-    They span the largest triangle with the middle. A triangle counts twice with one hole and three times with
-    two.
-    """
-    marks = marks_of(workpiece)
-    x0, y0, x1, y1 = workpiece.bounds
-    away = AWAY * hypot(x1 - x0, y1 - y0)
-    single = [
-        mark
-        for mark in marks
-        if hypot(*mark.place) >= away and not any(mark.is_like(other) for other in marks if other is not mark)
-    ]
-    best: tuple[float, tuple[Mark, Mark]] | None = None
-    for one, other in combinations(single, 2):
-        area = abs(one.place[0] * other.place[1] - one.place[1] * other.place[0])
-        if area < APART * hypot(*one.place) * hypot(*other.place):
-            continue
-        plain = area * (1 + (one.hole > 0) + (other.hole > 0))
-        if best is None or plain > best[0]:
-            best = plain, (one, other)
-    return best and best[1]
-
-
-def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
-    """Sentences on which side is up in a fixture and how to see it."""
-    if is_own_mirror_image([face.segment for face in workpiece.faces]):
-        return (
-            "The outline is its own mirror image: either side up looks alike and lies in the same pegs. If "
-            "the sides differ, mark the upper one first."
-        )
-    marks = distinguishing_marks(workpiece)
-    if marks is None:
-        return (
-            "The outline differs from its mirror image, but by nothing that is plain to see: mark the upper "
-            "side first, and hold the part beside the plan."
-        )
-    (x, y), places = fixture.pose.apply(*workpiece.center), []
-    for mark in marks:
-        there = fixture.pose.apply(mark.place[0] + workpiece.center[0], mark.place[1] + workpiece.center[1])
-        eighth = round(atan2(float(there[1] - y), float(there[0] - x)) / (pi / 4)) % 8
-        places.append(f"{mark.words(lengths)} at the {EIGHTHS[eighth]}")
-    return f"Lying as in the plan, it has {places[0]} and {places[1]}. Turned over, it never has."
-
-
 NAME_SIZES = (26.0, 22.0, 18.0)
 MOST_NAME_LINES = 3
 # What a sheet says of what moves, by what is set on it.
@@ -300,6 +157,11 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     others: list[Writer] = [write_side, write_part, write_steps]
     if sheet.cautions:
         needed.append(write_cautions)
+    upright: list[Writer] = [] if sheet.details.supports is None else [write_supports]
+    upright += [write_hardware] if sheet.heights is None else [write_heights, write_hardware]
+    if sheet.workpiece.solid is not None:
+        upright.append(write_side_up)
+    others = [*upright, *others]
     if sheet.seating is not None:
         others += [write_seating, write_wrong_seats]
     elif sheet.details.by_hand is not None or sheet.details.not_seated:
@@ -382,7 +244,9 @@ def write_steps(column: TextColumn, sheet: Sheet) -> None:
     heading(column, "Setting up")
     given = "as given under part zero X0 Y0, or touch off the part there"
     zero = f"Set the machine's zero, G54, from {sheet.datum.name} {given}."
-    for number, step in enumerate([*MOVING[sheet.toolkit.moving.measure].steps(sheet), zero], 1):
+    for number, step in enumerate(
+        [*support_steps(sheet, MOVING[sheet.toolkit.moving.measure].steps(sheet)), zero], 1
+    ):
         column.scene.text((column.x, column.y + 0.75 * BODY), f"{number}.", BODY, bold=True, middle=False)
         column.paragraph(step, BODY, indent=18)
         column.y += 2
@@ -392,3 +256,8 @@ def write_legend(column: TextColumn, sheet: Sheet) -> None:
     """Explains the signs of the plan."""
     heading(column, "Signs")
     draw_legend(column, sheet.toolkit, BLACK)
+    if sheet.details.supports is not None:
+        for draw, words in ((draw_pad, "support below the part"), (draw_tip, "clamp on top, presses down")):
+            draw(column.scene, (column.x + 16, column.y + 8))
+            column.scene.text((column.x + 44, column.y + 8), words, 11.5, fill=BLACK)
+            column.y += 21

@@ -13,7 +13,9 @@ from attrs import field, frozen
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
+from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Tolerance
 from workhold.model.seating import Seating
 from workhold.model.setup import PartZero
@@ -57,6 +59,11 @@ class SheetDetails:
     seating : where else the pegs can hold the part; None where the sheet does not show it.
     by_hand : how the part is put into two clamps; None where the sheet does not show it.
     not_seated : why there is no seating though it was asked for, in a sentence.
+    supports : three supports under the part and a clamp on top; None where there are none.
+    support_height : of these supports, in mm; None where nobody said.
+    plate_thickness : of the plates that pegs stand through, in mm; None where nobody said.
+    first_side : the set-up before this one, which had another side of the part up; None where there was none.
+    listed_as : what ``number`` counts.
     """
 
     number: int
@@ -81,6 +88,11 @@ class SheetDetails:
     seating: Seating | None = None
     by_hand: ByHand | None = None
     not_seated: str = ""
+    supports: ChosenSupports | None = None
+    support_height: float | None = None
+    plate_thickness: float | None = None
+    first_side: FirstSide | None = None
+    listed_as: str = "Fixture"
 
 
 UNFIT = "No fixture for a workshop: the part may lie anywhere, or one peg hardly holds. Choose another."

@@ -11,6 +11,7 @@ from workhold.drawing.panel import FACT_NAME, TextColumn, pegs_words
 from workhold.drawing.scene import BLACK, GREY, LengthUnit, Scene, text_width
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.sheet_facts import Caution, SheetDetails
+from workhold.drawing.sheet_heights import SheetHeights
 from workhold.errors import listed
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.setup_words import Datum
@@ -48,7 +49,16 @@ Block = Callable[[TextColumn], None]
 
 @frozen
 class Sheet:
-    """The data of a setup sheet; ``zero_shown`` and ``origin_shown`` are whether these are on the plan."""
+    """The data of a setup sheet.
+
+    Parameters
+    ----------
+    fixture, workpiece, toolkit, details : what it is of, and what does not follow from these.
+    lengths : how lengths are written.
+    cautions : what to beware of.
+    heights : those that are known; None where nobody knows how thick the part is.
+    zero_shown, origin_shown : whether these are on the plan.
+    """
 
     fixture: Fixture
     workpiece: Workpiece
@@ -56,6 +66,7 @@ class Sheet:
     details: SheetDetails
     lengths: LengthUnit
     cautions: tuple[Caution, ...]
+    heights: SheetHeights | None = None
     zero_shown: bool = True
     origin_shown: bool = True
 
@@ -186,7 +197,7 @@ def lies_words(sheet: Sheet) -> str:
 
 def inside_words(sheet: Sheet) -> str:
     """Which pegs stand in holes of the part, a sentence behind another one; nothing where none does."""
-    outer = len(sheet.workpiece.loops[0])
+    outer = sheet.workpiece.outer_count
     inside = [peg.hole for peg in sheet.fixture.pegs if peg.face >= outer]
     return (
         f" {listed(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part."
@@ -210,6 +221,9 @@ def write_dowel(column: TextColumn, sheet: Sheet) -> None:
         )
         column.paragraph(f"Pin of {pin} in a hole of {hole_limits}.", NOTE)
     jaws = f"{carrier.noun}{'s' * (len(sheet.toolkit.plates) > 1)}"
-    sizes = ((f"{carrier.peg} length", details.peg_length), (f"height above the {jaws}", details.peg_height))
-    for name, size in sizes:
+    length, height, mark = details.peg_length, details.peg_height, ""
+    known = sheet.heights
+    if known is not None and "peg_top" not in known.assumed:
+        length, height, mark = known.peg_length, known.above_plate, known.sure("peg_length")
+    for name, size in ((f"{carrier.peg} length{mark}", length), (f"height above the {jaws}", height)):
         fact_or_field(column, name, None if size is None else lengths.words(size))

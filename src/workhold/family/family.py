@@ -155,8 +155,8 @@ def family_of(
     Raises
     ------
     InputError
-        When SciPy is not installed, a loss below 1 is asked for, parts are asked for in different toolkits or
-        for different figures, and as ``search.design.answer``.
+        When SciPy is not installed, a loss below 1 is asked for, parts are asked for in different toolkits,
+        for different figures or with a program, and as ``search.design.answer``.
 
     Examples
     --------
@@ -178,6 +178,8 @@ def family_of(
             raise InputError(
                 f"{one.name} is asked for in another toolkit: the parts of a family share theirs."
             )
+        if one.query.program is not None:
+            raise InputError(f"{one.name} has a program to let pass: a family of parts is planned without.")
         if one.query.ranking[0] != first.ranking[0]:
             raise InputError(
                 f"{one.name} is ranked by another figure: the losses of a family are of one figure."

@@ -248,6 +248,11 @@ class Carrier:
         return self.on is None or self.travel is None or self.travel.most is not None
 
     @property
+    def has_body_behind(self) -> bool:
+        """Whether what stands on it reaches from its tip back to a hole in which it is bolted."""
+        return self.contact is CLAMP_TIP and self.has_a_hole
+
+    @property
     def counted(self) -> tuple[bool, bool]:
         """Whether the column of what stands on it says where that is, and whether the row does."""
         if not self.contact.is_placed:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import ClassVar
 
 from attrs import evolve
@@ -117,7 +118,7 @@ class Vise(Toolkit):
     def __attrs_post_init__(self) -> None:
         settle(self, noun=NOUN, peg="peg")
 
-    @property
+    @cached_property
     def carriers(self) -> tuple[Carrier, Carrier]:
         """The left jaw, and the right jaw, whose travel is the jaw separation."""
         left = lattice_carrier(

@@ -15,6 +15,7 @@ end : where a hull edge ends: at a corner, at the end of a face that lies along 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import accumulate
 from math import hypot
 
 import numpy as np
@@ -128,14 +129,22 @@ class HullPieces:
     faces: tuple[tuple[int, ...], ...]
 
     @classmethod
-    def of(cls, segments: Sequence[Segment]) -> HullPieces:
-        """The pieces of a closed chain of segments that may lie on its hull."""
+    def of(cls, segments: Sequence[Segment], counts: Sequence[int] | None = None) -> HullPieces:
+        """The pieces of closed chains of segments that may lie on their hull, see :func:`hull_edges`."""
+        chains = [len(segments)] if counts is None else counts
+        firsts = [
+            first
+            for first, count in zip(accumulate([0, *chains[:-1]]), chains, strict=True)
+            for _ in range(count)
+        ]
+        sizes = [count for count in chains for _ in range(count)]
         joints: dict[Point, tuple[int, ...]] = {}
         rows: list[tuple[float, ...]] = []
         faces: list[tuple[int, ...]] = []
         for k, segment in enumerate(segments):
             if not (isinstance(segment, Arc) and segment.is_full):
-                joints[segment.start] = ((k - 1) % len(segments), k)
+                first, size = firsts[k], sizes[k]
+                joints[segment.start] = (first + (k - first - 1) % size, k)
             if isinstance(segment, Arc) and segment.sign > 0:
                 middle = np.cos(segment.mid_angle), np.sin(segment.mid_angle)
                 cosine = -2.0 if segment.is_full else np.cos(segment.half_sweep)
@@ -189,12 +198,14 @@ def farthest(pieces: HullPieces, normal: Array) -> Array:
     return out
 
 
-def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
+def hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = None) -> tuple[HullEdge, ...]:
     """The hull edges of an outline, those of the lowest faces first.
 
     Parameters
     ----------
-    segments : the outer loop's faces, a closed chain with material on the left.
+    segments : the outer loop's faces, a closed chain with material on the left; of several pieces one chain
+        after the other.
+    counts : how many segments each chain has; None for one chain.
 
     Examples
     --------
@@ -204,7 +215,7 @@ def hull_edges(segments: Sequence[Segment]) -> tuple[HullEdge, ...]:
     >>> [(edge.start.faces, edge.end.faces) for edge in hull_edges(outline)]
     [((0,), (0,)), ((1,), (1,)), ((1, 2), (3, 4)), ((4,), (4,)), ((5,), (5,))]
     """
-    pieces = HullPieces.of(segments)
+    pieces = HullPieces.of(segments, counts)
     found: list[HullEdge] = []
     for start, end, normal in tangents(pieces):
         level = (pieces.center[start] * normal).sum(axis=1) + pieces.radius[start]

@@ -304,7 +304,7 @@ def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[lis
             near = np.flatnonzero(np.hypot(starts[:, 0] - x, starts[:, 1] - y) <= reach)
             free = [int(k) for k in near if k in left or k == first]
             if not free:
-                raise InputError(f"the border ends at ({x:.6g}, {y:.6g})")
+                raise InputError(f"the outline does not close at ({x:.6g}, {y:.6g})")
             heading = pieces[loop[-1]].heading(at_end=True)
             following = max(free, key=lambda k: turn_left(heading, pieces[k].heading(at_end=False)))
             if following == first:

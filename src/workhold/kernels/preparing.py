@@ -40,6 +40,8 @@ from workhold.kernels.contact.contact_matrix import contact_matrices_of
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.record import RECORD_LENGTH, WORK_LENGTH
 from workhold.kernels.contact.seat_numbers import numbers_of_seats
+from workhold.kernels.contact.swept import DEPTH as TREE_DEPTH
+from workhold.kernels.contact.swept import SweptTree, nearest_swept
 from workhold.kernels.curves.sliding_pairs import sliding_three_and_one, sliding_two_and_two
 from workhold.kernels.curves.table import tail_curves
 from workhold.kernels.curves.three_and_one import three_and_one_cells
@@ -56,6 +58,7 @@ from workhold.kernels.seating.candidates import (
     judge_balance,
     settle,
 )
+from workhold.kernels.seating.cell_middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.closing import close_jaws, reach_out
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -79,10 +82,11 @@ from workhold.kernels.seating.descent_paths import (
 )
 from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
 from workhold.kernels.seating.free_space import free_poses, leave
-from workhold.kernels.seating.freedom import first_of_each, free_runs, keep_free
+from workhold.kernels.seating.freedom import free_runs, keep_free
 from workhold.kernels.seating.gathering import (
     GATHERED_LENGTH,
     SUBSET_LENGTH,
+    first_of_each,
     first_sets,
     gathered,
     write_beyond,
@@ -99,10 +103,11 @@ from workhold.kernels.seating.parallel_and_concentric import (
 )
 from workhold.kernels.seating.slides import SLIDE_LENGTH, slides_blocked, slides_held, slides_squared
 from workhold.kernels.seating.sticking import least_friction
-from workhold.kernels.seating.three_contacts import MIDDLE_LENGTH, ROOT_LENGTH, three_contacts, write_middles
+from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
+from workhold.kernels.seating.tip_in_pocket import tip_in_pocket
 from workhold.kernels.seating.turning import SHAPE_LENGTH
 from workhold.kernels.seating.two_contact_curves import make_cells
-from workhold.kernels.seating.wall_equilibria import Stood, stationary, tip_in_pocket
+from workhold.kernels.seating.wall_equilibria import Stood, stationary
 
 # Numbers of a configuration.
 CONFIGURATION = 4
@@ -197,6 +202,9 @@ def distances() -> Calls:
     yield turns_around, (0.0, 0.0, outline)
     yield is_inside, (0.0, 0.0, outline)
     yield are_concentric, (row, row)
+    points, whole = np.zeros((0, 2)), np.zeros(TREE_DEPTH, np.int64)
+    tree = SweptTree(outline, np.zeros(0), np.zeros((2, 5)))
+    yield nearest_swept, (points, points, tree, whole, np.zeros(0), np.zeros(0, np.int64))
 
 
 def seats_and_passes() -> Calls:

@@ -3,6 +3,9 @@
 A clamp slides along a line of the plate's own holes. With a travel it is bolted in the nearest hole behind
 its tip that will do. From there its body, a capsule from the hole to the tip, clears locators and part.
 Without a travel the clamp is its tip alone, which has no hole.
+
+The body from a hole lies in that from any hole farther back. So where a program's tool comes too near to the
+one from the nearest hole that the other rules leave, it does so to all.
 """
 
 from __future__ import annotations
@@ -134,8 +137,8 @@ class ClampPlacement:
         return index[order], numbers[order]
 
     def is_clear(self, index: IntArray, stroke: Array, problem: Problem) -> BoolArray:
-        """Which clamps of an index (M,), from their tips to holes a stroke (M,) behind them, clear locators
-        and part."""
+        """Which clamps of an index (M,), from their tips to holes a stroke (M,) behind them, clear locators,
+        part and what a program sweeps."""
         radius, behind = self.clamp.peg_radius, np.zeros((len(index), 2))
         behind[:, self.axis] = self.back * stroke
         one, other = self.tip[index], self.tip[index] + behind
@@ -151,4 +154,8 @@ class ClampPlacement:
             distances = np.empty(len(chosen))
             piece_distances(starts, ends, problem.outline, distances)
             clear[chosen] = distances >= radius - BODY_SLACK
+            if problem.swept is not None:
+                swept, clearance = problem.swept
+                reach, _ = swept.nearest(starts + problem.workpiece.center, ends + problem.workpiece.center)
+                clear[chosen] &= reach >= clearance + radius - GAP_SLACK
         return clear

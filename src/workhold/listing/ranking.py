@@ -17,7 +17,14 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import FIGURE_DECIMALS
-from workhold.model.quality import CLAMP_FREEDOM, CLOSURE_MARGIN, RANKED, ranked_number
+from workhold.model.quality import (
+    CLAMP_FREEDOM,
+    CLOSURE_MARGIN,
+    PROGRAM_CLEARANCE,
+    PROGRAM_FIGURE,
+    RANKED,
+    ranked_number,
+)
 from workhold.model.query import Query
 from workhold.model.requirements import Tolerance
 from workhold.model.result import FixtureTable
@@ -47,6 +54,7 @@ def measured_as(table: FixtureTable, query: Query, touched: Touched) -> FixtureT
         query.loads,
         touched=touched,
         jaw_force=query.jaw_force,
+        passed=query.passed,
     )
     quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = table.quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]]
     return evolve(table, quality=quality)
@@ -68,7 +76,8 @@ def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[ND
         number = ranked_number(key)
         assert number is not None
         # Rounding must not separate fixtures that are equal, so what is coarse is rounded finely first.
-        values = np.round(quality[:, number], FIGURE_DECIMALS)
+        column = PROGRAM_CLEARANCE if RANKED[number] is PROGRAM_FIGURE else number
+        values = np.round(quality[:, column], FIGURE_DECIMALS)
         if place < len(ranking) - 1:
             values = coarse(values)
         keys.append(-values if RANKED[number].more_is_better else values)

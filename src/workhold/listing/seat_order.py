@@ -85,8 +85,6 @@ SHARE, ANGLE = 1e-6, 1e-4
 MOST_SHARE = 0.01
 # mm. Contacts this near to an end may be at a joint, and be listed on the face beside it.
 NEAR_END = 1e-4
-# Locators nearer than this part of the smallest radius are off a tangent by less than their square over it.
-NEAR = 0.5
 # How often places of locators are found from what they were before.
 ROUNDS = 3
 # The best that figures can be which locators do not bound; of others infinity, or 0 where less is better.
@@ -270,9 +268,8 @@ def places_off(records: Array, problem: Problem) -> Array:
     # A movement in mm and mm turned over L moves no centre by four times its largest entry.
     most = 4.0 * np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)
     within = off[vague]
-    is_near = within * bent < NEAR
     for _ in range(ROUNDS):
-        within = np.where(is_near, np.fmin(within, most * (rest + within * within * bent)), within)
+        within = np.fmin(within, most * (rest + within * within * bent))
     off[vague] = np.minimum(off[vague], within + turn[vague])
     return off
 
@@ -340,4 +337,4 @@ def best_figures(records: Array, off: Array, problem: Problem, query: Query) -> 
     near = is_near_edge(edges + place[:, None]).sum(axis=1)
     out[:, WARNINGS] = near + is_astray(error, judging.off)
     out[:, PENALTY] = judging.penalty(out)
-    return out
+    return out if query.program is None else np.hstack([out, np.full((len(out), 1), inf)])

@@ -1,7 +1,7 @@
 """A fixture as bodies in space: part, pegs, clamps, walls and plates as prisms with names and kinds.
 
 STEP set-ups, GLB files and the view of the page are made from this one description. The frame is the
-toolkit's in mm, z up, 0 on top of the plates, where the part lies.
+toolkit's in mm, z up, 0 where the part lies: on top of the plates, or of supports that stand out of them.
 
 Glossary
 --------
@@ -21,6 +21,7 @@ from workhold.errors import InputError, plain, shortened
 from workhold.fixels.carrier import hole_name
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.loop import LoopShape, encloses, signed_area
 from workhold.geometry.segment import Arc, Box, Line, Point, Segment
 from workhold.model.fixture import Fixture
 from workhold.model.shown import MOST_HOLES, Shown, ShownCarrier, shown
@@ -103,10 +104,11 @@ class BodySizes:
     ----------
     thickness : of the part.
     plate_thickness : of all plates.
-    top : how far the pegs stand out of the plates.
+    top : how far the pegs reach above where the part lies.
     peg_length : of the pegs.
-    others : how far clamps and walls stand out of the plates.
+    others : how far clamps and walls reach above where the part lies.
     is_assumed : whether nobody said how thick the part is.
+    support_height : how far the part lies above the plates, on supports; 0 on the plates.
     """
 
     thickness: float
@@ -115,6 +117,7 @@ class BodySizes:
     peg_length: float
     others: float
     is_assumed: bool
+    support_height: float = 0.0
 
     @classmethod
     def of(
@@ -124,13 +127,14 @@ class BodySizes:
         plate_thickness: float | None = None,
         peg_length: float | None = None,
         peg_height: float | None = None,
+        support_height: float = 0.0,
     ) -> BodySizes:
         """Fills in what nobody says: heights of the part's solid, else the usual thickness.
 
         Raises
         ------
         InputError
-            For a length that is not positive.
+            For a length that is not positive, and supports of a negative height.
         """
         solid, assumed = workpiece.solid, False
         if thickness is None:
@@ -138,7 +142,7 @@ class BodySizes:
         plate_thickness = THICKNESS if plate_thickness is None else plate_thickness
         usual = thickness if solid is None else min(solid.peg_height, thickness)
         top = usual if peg_height is None else peg_height
-        length = top + plate_thickness if peg_length is None else peg_length
+        length = top + support_height + plate_thickness if peg_length is None else peg_length
         for name, value in (
             ("thickness", thickness),
             ("plate thickness", plate_thickness),
@@ -147,7 +151,14 @@ class BodySizes:
         ):
             if not (isfinite(value) and value > 0):
                 raise InputError(f"{name} {value} is not a positive length: give it in mm.")
-        return cls(thickness, plate_thickness, top, length, usual, assumed)
+        if not (isfinite(support_height) and support_height >= 0):
+            raise InputError(f"support height {support_height} is not a length: give 0 or more, in mm.")
+        return cls(thickness, plate_thickness, top, length, usual, assumed, support_height)
+
+    @property
+    def floor(self) -> float:
+        """The height of the plates' upper sides, 0 or below."""
+        return 0.0 - self.support_height
 
 
 def fixture_bodies(
@@ -176,24 +187,41 @@ def fixture_bodies(
         )
     sizes = BodySizes.of(workpiece) if sizes is None else sizes
     seen = shown(fixture, toolkit, workpiece)
-    outer, *holes = (tuple(loop) for loop in workpiece.placed(fixture.pose).loop_segments)
-    part = Slab(outer, tuple(holes), 0.0, sizes.thickness)
+    part = part_slabs(workpiece.placed(fixture.pose), sizes.thickness)
     name = plain(shortened(workpiece.name, LONGEST_NAME))
     return (
-        FixtureBody(name, BodyKind.PART, (part,)),
+        FixtureBody(name, BodyKind.PART, part),
         *pegs(seen, sizes),
         *clamps(seen, sizes),
         *(
-            FixtureBody(wall.carrier.noun, BodyKind.WALL, (Slab(rectangle(wall.bar), (), 0.0, sizes.others),))
+            FixtureBody(
+                wall.carrier.noun, BodyKind.WALL, (Slab(rectangle(wall.bar), (), sizes.floor, sizes.others),)
+            )
             for wall in seen.walls
         ),
         *(
             FixtureBody(
-                each.carrier.title, BodyKind.PLATE, (drilled(each, sizes.plate_thickness),), way_open(each)
+                each.carrier.title,
+                BodyKind.PLATE,
+                (drilled(each, sizes.plate_thickness, sizes.floor),),
+                way_open(each),
             )
             for each in seen.carriers
         ),
         *more,
+    )
+
+
+def part_slabs(part: Workpiece, thickness: float) -> tuple[Slab, ...]:
+    """A part as a prism over each of its outer loops, with the holes directly in it."""
+    outer = [LoopShape.of(loop) for loop in part.loop_segments[: part.pieces]]
+    holes: list[list[Loop]] = [[] for _ in outer]
+    for hole in part.hole_segments:
+        shape = LoopShape.of(hole)
+        around = [k for k, one in enumerate(outer) if encloses(one, shape)]
+        holes[min(around, key=lambda k: abs(signed_area(outer[k].segments)))].append(hole)
+    return tuple(
+        Slab(one.segments, tuple(inside), 0.0, thickness) for one, inside in zip(outer, holes, strict=True)
     )
 
 
@@ -216,21 +244,21 @@ def pegs(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
             outline = tuple(peg_outline(center, carrier.peg_radius, carrier.flat, peg.flat_deg))
             low = sizes.top - sizes.peg_length
             slabs = [Slab(outline, (), low, sizes.top)]
-            if len(outline) > 1 and low < 0.0:
+            if len(outline) > 1 and low < sizes.floor:
                 foot = tuple(peg_outline(center, carrier.peg_radius))
-                slabs = [Slab(foot, (), low, 0.0), Slab(outline, (), 0.0, sizes.top)]
+                slabs = [Slab(foot, (), low, sizes.floor), Slab(outline, (), sizes.floor, sizes.top)]
             yield FixtureBody(f"{carrier.peg} {peg.hole}", BodyKind.PEG, tuple(slabs), way_open(each))
 
 
 def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
     """The clamps that are bolted to a plate, each before its bolt."""
     for clamp in seen.clamps:
-        body = Slab(clamp.outline(), (), 0.0, sizes.others)
+        body = Slab(clamp.outline(), (), sizes.floor, sizes.others)
         yield FixtureBody(clamp.tip.hole, BodyKind.CLAMP, (body,), reverse(clamp.clamping))
         if clamp.hole is not None:
             round_part = tuple(peg_outline(clamp.hole, seen.carriers[0].carrier.peg_radius))
             place = hole_name(clamp.carrier.stands_on, clamp.tip.column, clamp.tip.row)
-            bolt = Slab(round_part, (), -sizes.plate_thickness, 0.0)
+            bolt = Slab(round_part, (), sizes.floor - sizes.plate_thickness, sizes.floor)
             yield FixtureBody(f"bolt {place}", BodyKind.CLAMP, (bolt,))
 
 
@@ -240,8 +268,8 @@ def rectangle(box: Box) -> Loop:
     return tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))
 
 
-def drilled(carrier: ShownCarrier, thickness: float) -> Slab:
-    """A plate with its holes, its upper side at z = 0.
+def drilled(carrier: ShownCarrier, thickness: float, top: float = 0.0) -> Slab:
+    """A plate with its holes, its upper side at z = ``top``.
 
     Plates that nearly meet leave no material around the holes of their last columns: these are notches.
     """
@@ -258,7 +286,7 @@ def drilled(carrier: ShownCarrier, thickness: float) -> Slab:
             holes.append((Arc((x, y), own, 0.0, pi, -1.0),))
         else:
             notches[side].append(((x, y), own))
-    return Slab(notched(box, notches), tuple(holes), -thickness, 0.0)
+    return Slab(notched(box, notches), tuple(holes), top - thickness, top)
 
 
 def notched(box: Box, notches: dict[int, list[tuple[Point, float]]]) -> Loop:

@@ -21,7 +21,7 @@ def outline_diameter(workpiece: Workpiece) -> float:
     Its ends are two joints, a joint and the far side of an arc, or the far sides of two arcs. Far sides lie
     on the line through the arcs' centres.
     """
-    outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
+    outer = [face.segment for face in workpiece.outer_faces]
     middle = np.array([segment.at(0.0) for segment in outer])
     reach = np.array([farthest_from_middle(segment) for segment in outer])
     apart = [np.hypot(*(middle[index:] - middle[index]).T) for index in range(len(outer))]

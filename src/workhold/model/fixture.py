@@ -191,6 +191,7 @@ class Fixture:
         makes no difference between fixtures.
     seating : what else its pegs can do with the part, a ``model.seating.Seating``; None where that was not
         asked.
+    passing : of a file that is verified, what it says of the program's tools; None of all others.
     """
 
     type: str
@@ -202,6 +203,7 @@ class Fixture:
     pair: Pair | None = None
     listed: Listed | None = field(default=None, eq=False)
     seating: Any = field(default=None, eq=False)
+    passing: Any = field(default=None, eq=False, repr=False)
 
     def __repr__(self) -> str:
         which = "Fixture" if self.listed is None else f"Fixture {self.listed.rank} of {self.listed.count}"
@@ -305,3 +307,65 @@ class Fixture:
             written.
         """
         delegate("save_sheet")(self, path, unit=unit, clearance=clearance, result_file=result_file, **asked)
+
+    def save_glb(
+        self, path: str | Path, *, thickness: float | None = None, supports: Any = None, best: int = 1
+    ) -> None:
+        """Writes the fixture in three dimensions as a GLB file, which browsers and phones show.
+
+        Parameters
+        ----------
+        thickness : of the part in mm; that of its solid, or 10, if None.
+        supports : also the pads under the part and the clamp on top, of what :meth:`supports` returns.
+        best : which of its sets of three, from 1.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result, a set that is not there, and when the file cannot be
+            written.
+        """
+        delegate("save_glb")(self, path, thickness=thickness, supports=supports, best=best)
+
+    def supports(
+        self,
+        thickness: float | None = None,
+        *,
+        best: int | None = 3,
+        loads: Any = None,
+        jaw_force: float | None = None,
+        **asked: Any,
+    ) -> Any:
+        """Where three supports hold the part up, and a clamp presses it down: the best sets of three.
+
+        Parameters
+        ----------
+        thickness : of the part in mm; that of its solid if None.
+        best : how many sets; None for all.
+        loads : planar ones, which act at the top of the part, or ``SpatialLoad``; those of the query if None.
+        jaw_force : in N; by default the one that keeps all pegs in contact.
+        asked : more of a ``SupportRequest``, such as ``pad_radius``, ``tip_radius``, ``band`` and
+            ``top_zones``.
+
+        Returns
+        -------
+        A ``Supports``, whose ``triples`` are the sets.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result, a part of which nobody says how thick it is, and values
+            that cannot be.
+
+        Examples
+        --------
+        >>> import workhold
+        >>> plate = workhold.Workpiece.from_loops("plate", [[[0, 0, 0], [80, 0, 0], [80, 60, 0], [0, 60, 0]]])
+        >>> result = workhold.design(plate, workhold.Vise(pitch=10, columns=6, peg_radius=3), best=1)
+        >>> found = result[0].supports(12, best=2, pad_radius=3)
+        >>> len(found.triples), found.triples[0].arm > 10
+        (2, True)
+        """
+        return delegate("fixture_supports")(
+            self, thickness, best=best, loads=loads, jaw_force=jaw_force, **asked
+        )

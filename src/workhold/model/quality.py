@@ -5,6 +5,9 @@ How they are computed is in ``statics.quality``.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import isnan
+
 from attrs import frozen
 
 __all__ = [
@@ -18,6 +21,8 @@ __all__ = [
     "LOAD_REACTION",
     "LOCATION_ERROR",
     "PENALTY",
+    "PROGRAM_CLEARANCE",
+    "PROGRAM_FIGURE",
     "RANKED",
     "SEATING_FIGURES",
     "SMALLEST_FACE",
@@ -26,6 +31,8 @@ __all__ = [
     "WRENCH_RADIUS",
     "Figure",
     "figure_number",
+    "figures_in",
+    "known_figures_of",
     "ranked_number",
 ]
 
@@ -139,8 +146,32 @@ SEATING_FIGURES = (
         "What a measurement of the opening, or of the clamp, must resolve to show a wrong seat.",
     ),
 )
+# Of fixtures that a program is asked to pass; it stands in the last column of their figures.
+PROGRAM_FIGURE = Figure(
+    "program_clearance", "mm", True, "The least distance of a tool from anything that holds the part."
+)
+PROGRAM_CLEARANCE = -1
 # All figures that fixtures can be ranked by.
-RANKED = FIGURES + SEATING_FIGURES
+RANKED = (*FIGURES, *SEATING_FIGURES, PROGRAM_FIGURE)
+
+
+def figures_in(columns: int) -> tuple[Figure, ...]:
+    """The figures of quality that stand in so many columns, without any seating.
+
+    >>> figures_in(len(FIGURES) + 1)[PROGRAM_CLEARANCE].words
+    'program clearance'
+    """
+    return FIGURES if columns == len(FIGURES) else (*FIGURES, PROGRAM_FIGURE)
+
+
+def known_figures_of(values: Sequence[float]) -> dict[str, float]:
+    """The figures of a fixture by their keys, without those that are not known, from a row of a table.
+
+    >>> known_figures_of([0.25, *[float("nan")] * 12, 4.5])
+    {'closure_margin': 0.25, 'program_clearance': 4.5}
+    """
+    named = zip(figures_in(len(values)), values, strict=True)
+    return {figure.key: float(value) for figure, value in named if not isnan(value)}
 
 
 def figure_number(name: str) -> int | None:

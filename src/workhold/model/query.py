@@ -13,6 +13,7 @@ from attrs import evolve, field, frozen
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import counting_number, real, refuse_long, refuse_strong
+from workhold.model.program import Program
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLAMP_FREEDOM,
@@ -20,7 +21,9 @@ from workhold.model.quality import (
     FIGURES,
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
+    PROGRAM_FIGURE,
     RANKED,
+    SEATING_FIGURES,
     ranked_number,
 )
 from workhold.model.requirements import Load, Restrictions, Tolerance
@@ -43,7 +46,7 @@ PAIR_RANKING = (
     "edge_distance",
 )
 LISTINGS = ("best", "all")
-SEATING_KEYS = {figure.key for figure in RANKED[len(FIGURES) :]}
+SEATING_KEYS = {figure.key for figure in SEATING_FIGURES}
 # Orders by what a user wants most.
 PREFERENCES = {
     "square": ("warnings", "tilt", "penalty", "clamp_amplification", "closure_margin", "edge_distance"),
@@ -144,12 +147,16 @@ class Query:
         back, by this length in mm from where they hold it. Wrong seats farther open do not count.
     foolproof : with seating, list only fixtures without a wrong seat that a caliper could take for the right
         one.
+    program : what the machine does while the part is held: list only fixtures that its tools do not come
+        near, see :class:`workhold.model.program.Program`; None where that is not known.
+    peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm, where there is a
+        program; the solid's where the part is read from one.
 
     Raises
     ------
     InputError
-        For an unknown arrangement or figure, one named twice, and numbers out of range; for a figure of loads
-        without loads, and what needs seating without it.
+        For an unknown arrangement or figure, one named twice, and numbers out of range. Also for a figure of
+        loads without loads, what needs seating without it, and a program without a peg height.
     """
 
     workpiece: Workpiece
@@ -166,6 +173,8 @@ class Query:
     seating: int | None = None
     opening: float | None = None
     foolproof: bool = False
+    program: Program | None = None
+    peg_height: float | None = None
 
     def __attrs_post_init__(self) -> None:
         refuse_other_kinds(self)
@@ -177,6 +186,10 @@ class Query:
         object.__setattr__(
             self, "ranking", chosen_ranking(self.ranking, self.loads, pairs, self.seating is not None)
         )
+        if PROGRAM_FIGURE.key in self.ranking and self.program is None:
+            raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
+        if self.program is not None:
+            object.__setattr__(self, "peg_height", height_of_pegs(self.peg_height, self.workpiece))
         if self.listing is not None and (not pairs or self.listing not in LISTINGS):
             remedy = f"choose {' or '.join(LISTINGS)}" if pairs else "only fixtures with two clamps have one"
             raise InputError(f"the listing cannot be {self.listing!r}: {remedy}.")
@@ -212,6 +225,19 @@ class Query:
         return self.foolproof or self.opening is not None
 
     @property
+    def passed(self) -> tuple[Program, float] | None:
+        """The program that fixtures are to let pass, and the height of pegs in mm; None without one."""
+        if self.program is None or self.peg_height is None:
+            return None
+        return self.program, self.peg_height
+
+    @property
+    def without_program(self) -> Query:
+        """The query of fixtures that no program has to pass."""
+        ranking = [key for key in self.ranking if key != PROGRAM_FIGURE.key]
+        return evolve(self, program=None, peg_height=None, ranking=ranking or None)
+
+    @property
     def without_seating(self) -> Query:
         """The query to answer before any seating is worked out.
 
@@ -236,6 +262,32 @@ class Query:
     def by_margin_alone(self) -> bool:
         """Whether fixtures are ranked by the closure margin and nothing else, which a search can bound."""
         return self.ranking == (FIGURES[CLOSURE_MARGIN].key,)
+
+
+def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:
+    """The height in mm up to which pegs, clamps and walls reach: that of a part's solid, else the one given.
+
+    Raises
+    ------
+    InputError
+        Where neither is known, for what is no height, and for one that is not the solid's.
+    """
+    solid = workpiece.solid
+    if given is None and solid is None:
+        raise InputError(
+            f"{workpiece.name} is an outline without heights, so nobody knows what of the program passes "
+            "over the pegs: give its thickness, and the peg height where pegs are not as high as the part."
+        )
+    height = real(given) if given is not None else solid.peg_height if solid is not None else 0.0
+    if not (isfinite(height) and height > 0):
+        raise InputError(f"peg height {height:g} is not a length: give more than 0, in mm.")
+    refuse_long("peg height", height)
+    if solid is not None and height != solid.peg_height:
+        raise InputError(
+            f"pegs of {height:g} mm are asked for, and the outline is what pegs of {solid.peg_height:g} mm "
+            "can meet: read the part with the peg height."
+        )
+    return height
 
 
 def chosen_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tuple[str, ...]:
@@ -271,11 +323,11 @@ def chosen_ranking(
     for name in names:
         number = ranked_number(name)
         if number is None:
-            known = RANKED if seated else FIGURES
+            known = (*FIGURES, *(SEATING_FIGURES if seated else ()))
             raise InputError(
                 f"{name!r} is no figure to rank by: choose among {', '.join(f.option for f in known)}."
             )
-        if number >= len(FIGURES) and not seated:
+        if RANKED[number] in SEATING_FIGURES and not seated:
             raise InputError(
                 f"the {RANKED[number].words} is known of fixtures whose seating is worked out: give of how "
                 "many, such as seating 100."
@@ -295,7 +347,10 @@ def chosen_ranking(
 
 
 def asked_ranking(
-    names: str | Sequence[str] | None, preference: str | None, loads: Sequence[Load]
+    names: str | Sequence[str] | None,
+    preference: str | None,
+    loads: Sequence[Load],
+    has_program: bool = False,
 ) -> tuple[str, ...] | None:
     """The names of figures given, or the keys for a preference; None, the default, where both are None.
 
@@ -308,7 +363,7 @@ def asked_ranking(
         return words(names)
     if names is not None:
         raise InputError("figures to rank by and a preference are two orders: give one of them.")
-    return preferred_ranking(preference, loads)
+    return preferred_ranking(preference, loads, has_program)
 
 
 def for_loads(ranking: tuple[str, ...], loads: Sequence[Load]) -> tuple[str, ...]:
@@ -319,8 +374,10 @@ def for_loads(ranking: tuple[str, ...], loads: Sequence[Load]) -> tuple[str, ...
     return tuple(loaded if key == bare else key for key in ranking)
 
 
-def preferred_ranking(preference: str, loads: Sequence[Load]) -> tuple[str, ...]:
+def preferred_ranking(preference: str, loads: Sequence[Load], has_program: bool = False) -> tuple[str, ...]:
     """Keys of the figures to rank by for what a user wants most: square, strong, precise or roomy.
+
+    With a program a roomy fixture is first of all one that its tools pass by far.
 
     Raises
     ------
@@ -330,4 +387,7 @@ def preferred_ranking(preference: str, loads: Sequence[Load]) -> tuple[str, ...]
     word = preference.strip().lower()
     if word not in PREFERENCES:
         raise InputError(f"{preference!r} is nothing to prefer: choose {', '.join(PREFERENCES)}.")
-    return for_loads(PREFERENCES[word], loads)
+    order = PREFERENCES[word]
+    if word == "roomy" and has_program:
+        order = (order[0], PROGRAM_FIGURE.key, *order[1:])
+    return for_loads(order, loads)

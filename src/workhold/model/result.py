@@ -16,7 +16,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
 from workhold.model.clamps import ratios, working_forces
 from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES
+from workhold.model.quality import CLOSURE_MARGIN, FIGURES, known_figures_of
 from workhold.model.query import Query
 from workhold.model.search_report import Proof, cut_note, fitted_note
 from workhold.model.seating import Seating
@@ -46,7 +46,8 @@ class FixtureTable:
     jaw_separation : (N,) in mm; of two clamps (N, 2), the travel of each.
     force : (N, P) contact force per unit of clamping force; of two clamps (N, P, 2), per unit of the force of
         each.
-    quality : (N, Q) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known.
+    quality : (N, Q) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known,
+        and in a column more the program clearance where there is a program.
     pairs : (N,) int32, how many pairs of clamps there are at the seat that a fixture stands for; 1 where each
         is listed.
     """
@@ -121,8 +122,18 @@ class FixtureTable:
 
     @classmethod
     def joined(cls, tables: Sequence[FixtureTable]) -> FixtureTable:
-        """Several tables, at least one, as one."""
-        return cls(*map(np.concatenate, zip(*(table.columns for table in tables), strict=True)))
+        """Several tables, at least one, as one; of figures that only some have the others know nothing."""
+        most = max(table.quality.shape[1] for table in tables)
+        return cls(
+            *map(np.concatenate, zip(*(table.with_figures(most).columns for table in tables), strict=True))
+        )
+
+    def with_figures(self, columns: int) -> FixtureTable:
+        """The table with so many columns of figures at least."""
+        missing = columns - self.quality.shape[1]
+        if missing <= 0:
+            return self
+        return evolve(self, quality=np.pad(self.quality, ((0, 0), (0, missing)), constant_values=np.nan))
 
     @classmethod
     def empty(cls, toolkit: Toolkit | None = None) -> FixtureTable:
@@ -306,6 +317,11 @@ class Result:
         """
         return delegate("to_arrow")(self)
 
+    def supports(self, thickness: float | None = None, **asked: Any) -> tuple[Any, ...]:
+        """What holds the best fixtures up, see ``workhold.supports.asking.result_supports``."""
+        found: tuple[Any, ...] = delegate("result_supports")(self, thickness, **asked)
+        return found
+
 
 def whole_turn_degrees(theta: float) -> float:
     """An angle in radians as degrees in [0, 360); what is within 1e-10 degrees below a whole turn is 0."""
@@ -328,6 +344,8 @@ def flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> 
     """The way the flats of all pegs of a table look, in degrees; None for pegs that touch with their round
     side.
     """
+    if not toolkit.has_flats:
+        return [[None] * table.face.shape[1] for _ in range(len(table))]
     straight = {
         face.number: np.degrees(np.arctan2(*face.segment.normal()[::-1])) + 180.0
         for face in workpiece.faces
@@ -373,11 +391,7 @@ def fixture_at(
         pegs=tuple(pegs),
         pose=Pose(whole_turn_degrees(float(table.theta[index])), x, y),
         jaw_separation=float(np.ravel(one.jaw_separation)[0]),
-        quality={
-            figure.key: float(value)
-            for figure, value in zip(FIGURES, table.quality[index], strict=True)
-            if not np.isnan(value)
-        },
+        quality=known_figures_of(table.quality[index].tolist()),
         direction=arrangement.direction,
         pair=pair_at(one) if one.force.ndim == 3 else None,
         listed=listed,

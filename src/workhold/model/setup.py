@@ -114,14 +114,14 @@ def hole_centers(workpiece: Workpiece) -> list[Point]:
 
     A round hole has the centre of its circle, any other the middle of its outside dimensions.
     """
-    outer = len(workpiece.loops[0])
+    outer = workpiece.outer_count
     round_ones = {
         face.number: face.segment.center
         for face in workpiece.faces
         if face.number >= outer and isinstance(face.segment, Arc) and face.segment.is_full
     }
     centers, number = [], outer
-    for loop in workpiece.loop_segments[1:]:
+    for loop in workpiece.hole_segments:
         boxes = [bounding_box(segment) for segment in loop]
         middle = [(min(box[k] for box in boxes) + max(box[k + 2] for box in boxes)) / 2 for k in (0, 1)]
         x, y = round_ones.get(number, middle)

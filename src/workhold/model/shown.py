@@ -235,7 +235,7 @@ def placed_boxes(
 
     The farthest point in a direction is the end of a segment or the point of an arc that faces that way.
     """
-    outer = workpiece.loop_segments[0]
+    outer = workpiece.segments[: workpiece.outer_count]
     corners = np.array([segment.start for segment in outer])
     arcs = [segment for segment in outer if isinstance(segment, Arc)]
     round_ones = np.array([(*a.center, a.radius, a.mid_angle, a.half_sweep) for a in arcs]).reshape(-1, 5)

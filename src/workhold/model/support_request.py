@@ -22,9 +22,15 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import checked_vertices
 from workhold.limits import real, refuse_long, refuse_strong
+from workhold.model.fixture import Fixture, Peg
 from workhold.model.requirements import ANY_DIRECTION, Load, Zone, all_zones, direction_range, point_pairs
+from workhold.model.solid import SolidOutline
+from workhold.model.workpiece import Workpiece
 
-__all__ = ["Loops", "SpatialLoad", "SupportRequest", "loops_of"]
+__all__ = ["PAD_RADIUS", "TIP_RADIUS", "Loops", "SpatialLoad", "SupportRequest", "loops_of"]
+
+# In mm, where nobody says; a pad that the holes leave less room for than the last is none.
+PAD_RADIUS, TIP_RADIUS, LEAST_PAD_RADIUS = 4.0, 5.0, 1.0
 
 Loops = tuple[NDArray[np.float64], ...]
 Span = tuple[float, float]
@@ -185,7 +191,8 @@ class SupportRequest:
     thickness : of the part, T.
     pad_radius : of the supports' round pads.
     tip_radius : of the clamp's round tip.
-    band : heights at which pegs may press; by default from 0 to T.
+    band : heights at which pegs may press; None is of each the band of its face on the part's solid, and from
+        0 to T where there is none.
     bands : the same for each peg of the fixture, in its order, None for those that have no band of their own.
     pad_margin : smallest distance from a pad to the border of the face it supports.
     bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first;
@@ -210,9 +217,7 @@ class SupportRequest:
     thickness: float = field(converter=real)
     pad_radius: float = field(converter=real)
     tip_radius: float = field(converter=real)
-    band: Span = field(
-        default=Factory(lambda self: (0.0, self.thickness), takes_self=True), converter=pair_of
-    )
+    band: Span | None = field(default=None, converter=optional_pair)
     bands: tuple[Span | None, ...] | None = None
     pad_margin: float = field(default=0.0, converter=real)
     bottom: Loops | None = field(default=None, converter=loops_of, eq=False)
@@ -236,7 +241,7 @@ class SupportRequest:
             if not (isfinite(value) and value >= 0):
                 raise InputError(f"{name} {value:g} cannot be used: give 0 or more.")
             refuse_long(name, value)
-        for low, high in (self.band, *(band for band in self.bands or () if band is not None)):
+        for low, high in (band for band in (self.band, *(self.bands or ())) if band is not None):
             if not 0 <= low <= high <= self.thickness:
                 raise InputError(
                     f"a peg cannot press at heights {low:g} to {high:g} of a part {self.thickness:g} thick: "
@@ -245,6 +250,58 @@ class SupportRequest:
                 )
         if self.point is not None and not all(map(isfinite, self.point)):
             raise InputError("the clamp's point is not a place: give finite coordinates in mm.")
+
+    @classmethod
+    def of(
+        cls,
+        workpiece: Workpiece,
+        thickness: float | None = None,
+        *,
+        pad_radius: float | None = None,
+        tip_radius: float | None = None,
+        toolkit: Toolkit | None = None,
+    ) -> SupportRequest:
+        """What is usual for a part: its solid says how thick it is, and which faces are level.
+
+        Parameters
+        ----------
+        thickness : in mm; that of the solid if None.
+        pad_radius, tip_radius : in mm; the usual ones if None.
+        toolkit : in which the part is held; the usual pad is then made as small as its holes ask for.
+
+        Raises
+        ------
+        InputError
+            When nobody says how thick the part is.
+
+        Examples
+        --------
+        >>> plate = Workpiece.from_loops("plate", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
+        >>> SupportRequest.of(plate, 12).pad_radius
+        4.0
+        """
+        solid = workpiece.solid
+        if thickness is None and solid is None:
+            raise InputError("how thick the part is, is not known: give its thickness in mm.")
+        if pad_radius is None:
+            room = PAD_RADIUS if toolkit is None else least_apart(toolkit) / 2
+            pad_radius = min(PAD_RADIUS, room) if room >= LEAST_PAD_RADIUS else PAD_RADIUS
+        return cls(
+            thickness=solid.height if thickness is None and solid is not None else thickness,
+            pad_radius=pad_radius,
+            tip_radius=TIP_RADIUS if tip_radius is None else tip_radius,
+            bottom=None if solid is None else solid.bottom or None,
+            top=None if solid is None else solid.top or None,
+        )
+
+    def for_fixture(self, fixture: Fixture, solid: SolidOutline | None) -> SupportRequest:
+        """The request with its bands written out: those given, or of each peg that of its face on a solid."""
+        whole = (0.0, self.thickness)
+        if self.band is not None or self.bands is not None or solid is None:
+            return self if self.band is not None else evolve(self, band=whole)
+        own = [band_of(peg, solid) for peg in fixture.pegs]
+        cut = (band and (min(band[0], self.thickness), min(band[1], self.thickness)) for band in own)
+        return evolve(self, band=whole, bands=tuple(cut))
 
     def peg_bands(self, pegs: int) -> NDArray[np.float64]:
         """The band (P, 2) of each of P pegs.
@@ -259,7 +316,8 @@ class SupportRequest:
             raise InputError(
                 f"there are {len(bands)} bands for {pegs} pegs: give one for each, or one for all."
             )
-        return np.array([self.band if band is None else band for band in bands], np.float64)
+        others = (0.0, self.thickness) if self.band is None else self.band
+        return np.array([others if band is None else band for band in bands], np.float64)
 
     def refuse_fat_pads(self, toolkit: Toolkit) -> None:
         """Refuses pads that could overlap in neighbouring holes of a toolkit.
@@ -269,11 +327,26 @@ class SupportRequest:
         InputError
             With the distance that there is.
         """
-        apart = [*(pitch for plate in toolkit.plates for pitch in plate.pitch)]
-        if toolkit.gap is not None and len(toolkit.plates) > 1:
-            apart.append(toolkit.gap)
-        if 2 * self.pad_radius > min(apart):
+        apart = least_apart(toolkit)
+        if 2 * self.pad_radius > apart:
             raise InputError(
-                f"pads of radius {self.pad_radius:g} would overlap {min(apart):g} mm apart: give a smaller "
+                f"pads of radius {self.pad_radius:g} would overlap {apart:g} mm apart: give a smaller "
                 "pad radius."
             )
+
+
+def least_apart(toolkit: Toolkit) -> float:
+    """How near two holes of a toolkit can come to each other, in mm."""
+    apart = [pitch for plate in toolkit.plates for pitch in plate.pitch]
+    if toolkit.gap is not None and len(toolkit.plates) > 1:
+        apart.append(toolkit.gap)
+    return min(apart)
+
+
+def band_of(peg: Peg, solid: SolidOutline) -> Span | None:
+    """The band of the face that a peg touches, of a corner on a wall that of both faces; None without one."""
+    faces = (peg.face,) if peg.beside is None else (peg.face, peg.beside)
+    bands = [band for face in faces if (band := solid.bands[face]) is not None]
+    if not bands:
+        return None
+    return min(low for low, _ in bands), max(high for _, high in bands)

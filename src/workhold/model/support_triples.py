@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from attrs import evolve, frozen
 
+from workhold.fixels.carrier import hole_name
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
@@ -52,6 +53,22 @@ class SupportPad:
     x: float
     y: float
 
+    @property
+    def hole(self) -> str:
+        """The hole's name; one before column A or row 1 by its numbers, where A1 is (1,1).
+
+        >>> SupportPad("left", 2, 3, 0.0, 0.0).hole, SupportPad("plate", -1, 3, 0.0, 0.0).hole
+        ('L-C4', '(0,4)')
+        """
+        if min(self.column, self.row) >= 0:
+            return hole_name(self.carrier, self.column, self.row)
+        letter = hole_name(self.carrier, 0, 0).partition("-")
+        return (
+            f"{letter[0]}-({self.column + 1},{self.row + 1})"
+            if letter[1]
+            else f"({self.column + 1},{self.row + 1})"
+        )
+
 
 @frozen
 class Triple:
@@ -80,6 +97,13 @@ class Triple:
     given: ClampFigures | None
 
     @property
+    def clamp_at(self) -> Point:
+        """Where the clamp stands: at the point asked for, else where it needs least."""
+        if self.given is not None:
+            return self.given.at
+        return self.best.at
+
+    @property
     def clamp(self) -> ClampFigures:
         """The clamp at the point asked for, where it may stand there, else at its best."""
         return self.given or self.best
@@ -99,6 +123,7 @@ class Supports:
     positions : how many holes may hold a support.
     count : how many triples are valid; None where not all were looked at.
     triples : those listed, the best first.
+    stopped : whether the search was stopped: then they are the best of those it had looked at.
     """
 
     query: Query
@@ -109,6 +134,7 @@ class Supports:
     positions: int
     count: int | None
     triples: tuple[Triple, ...]
+    stopped: bool = False
 
     @property
     def complete(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property, partial
+from itertools import accumulate
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,6 @@ from workhold.geometry.loop import (
     Face,
     LoopShape,
     checked_vertices,
-    encloses,
     faces_of_loop,
     loop_segments,
     near_pairs,
@@ -34,6 +34,7 @@ from workhold.geometry.merged_runs import merged_chords, on_one_circle
 from workhold.geometry.segment import Point, Segment, bounding_box
 from workhold.limits import real
 from workhold.model.fixture import Pose
+from workhold.model.nested_loops import outer_count, refuse_misplaced_holes
 from workhold.model.solid import SolidOutline
 from workhold.model.wall import Flush
 
@@ -55,7 +56,8 @@ class Workpiece:
     ----------
     name : what the user calls it.
     loops : (N, 3) read-only arrays of x, y (mm) and bulge; the outer loop first and counter-clockwise, then
-        the holes, clockwise.
+        the holes, clockwise. A solid that pegs meet in several pieces has an outer loop for each, before all
+        holes.
     remarks : what was changed of the loops given, one sentence each.
     departure : how far the outline may be from the one that was drawn, in mm, where curves were read as lines
         and arcs.
@@ -100,7 +102,8 @@ class Workpiece:
         Parameters
         ----------
         name : what the user calls the part.
-        loops : the outer loop first, then any holes; each (N, 3), run in either direction.
+        loops : the outer loop first, then any holes; each (N, 3), run in either direction. With a solid,
+            there may be several outer loops before the holes.
         labels : for every loop, what to call each of its segments in messages (such as ``LINE 2F``).
         departure : how far these loops may be from what was drawn, in mm; below ``READING`` it is none.
         solid : with a band for every segment, in the order of these loops; None for a prism.
@@ -110,6 +113,7 @@ class Workpiece:
         InputError
             For open or degenerate loops, numbers that are not finite, segments of zero length, loops that
             cross or touch, holes outside the outer loop or inside one another.
+            Where there are several outer loops also for holes that come before one.
         """
         try:
             loops = list(loops)
@@ -128,7 +132,6 @@ class Workpiece:
         straightened = rounded = 0
         used: list[NDArray[np.float64]] = []
         drawn: list[LoopShape] = []
-        order: list[int] = []
         for index, loop in enumerate(loops):
             place = partial(segment_place, index)
             vertices = checked_vertices(loop, f"{name}: loop {index}", place)
@@ -139,18 +142,25 @@ class Workpiece:
             shape = LoopShape.of(loop_segments(vertices) if changed else segments)
             refuse_self_crossing(shape, place)
             refuse_no_area(shape, f"{name}: loop {index}")
-            if (signed_area(shape.segments) > 0) != (index == 0):
-                vertices = reversed_vertices(vertices)
-                order += reversed_numbers(len(order), len(vertices))
-            else:
-                order += range(len(order), len(order) + len(vertices))
             used.append(vertices)
             drawn.append(shape)
         boxes = np.array([shape.box for shape in drawn])
         for a, b in near_pairs(boxes, boxes):
             if a < b:
                 refuse_meeting_loops(drawn[a], drawn[b], partial(segment_place, a), partial(segment_place, b))
-        refuse_misplaced_holes(name, drawn)
+        pieces = 1
+        if solid is None:
+            refuse_misplaced_holes(name, drawn)
+        else:
+            pieces = outer_count(name, drawn)
+        order: list[int] = []
+        for index, shape in enumerate(drawn):
+            first, count = len(order), len(used[index])
+            if (signed_area(shape.segments) > 0) != (index < pieces):
+                used[index] = reversed_vertices(used[index])
+                order += reversed_numbers(first, count)
+            else:
+                order += range(first, first + count)
         if solid is not None:
             solid = solid.for_segments(len(order)).reordered(order)
         return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure), solid)
@@ -196,7 +206,7 @@ class Workpiece:
         return cls.from_loops(name, loops, departure=away)
 
     def __repr__(self) -> str:
-        faces, holes, (x0, y0, x1, y1) = len(self.faces), len(self.loops) - 1, self.bounds
+        faces, holes, (x0, y0, x1, y1) = len(self.faces), len(self.loops) - self.pieces, self.bounds
         inside = f", {holes} hole{'s' * (holes != 1)}" if holes else ""
         size = f"{x1 - x0:.6g} x {y1 - y0:.6g} mm"
         return f"<Workpiece {self.name}: {faces} face{'s' * (faces != 1)}{inside}, {size}>"
@@ -251,11 +261,39 @@ class Workpiece:
         return frozenset(face.number for face in self.faces if not segments.isdisjoint(face.segments))
 
     @cached_property
+    def pieces(self) -> int:
+        """How many loops are outer ones, which come first: 1, but for a solid that pegs meet in pieces."""
+        areas = [signed_area(loop) for loop in self.loop_segments[1:]]
+        return 1 + next((k for k, area in enumerate(areas) if area <= 0), len(areas))
+
+    @cached_property
+    def outer_count(self) -> int:
+        """How many segments the outer loops have; they come first, and so do their faces' numbers."""
+        return sum(len(loop) for loop in self.loops[: self.pieces])
+
+    @property
+    def outer_faces(self) -> tuple[Face, ...]:
+        """The faces of the outer loops."""
+        return tuple(face for face in self.faces if face.number < self.outer_count)
+
+    @property
+    def outer_face_counts(self) -> list[int]:
+        """How many faces each outer loop has."""
+        ends = [0, *accumulate(len(loop) for loop in self.loops[: self.pieces])]
+        found = np.searchsorted([face.number for face in self.outer_faces], ends)
+        return [int(count) for count in np.diff(found)]
+
+    @property
+    def hole_segments(self) -> tuple[tuple[Segment, ...], ...]:
+        """Segments of each hole."""
+        return self.loop_segments[self.pieces :]
+
+    @cached_property
     def hull_edges(self) -> tuple[HullEdge, ...]:
         """The straight pieces of the convex hull's boundary, on which the part can lie flush, by index of
         face.
         """
-        return hull_edges([face.segment for face in self.faces if face.number < len(self.loops[0])])
+        return hull_edges([face.segment for face in self.outer_faces], self.outer_face_counts)
 
     @cached_property
     def flush(self) -> Flush:
@@ -265,7 +303,8 @@ class Workpiece:
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
         """(smallest x, smallest y, largest x, largest y) in mm."""
-        boxes = np.array([bounding_box(segment) for segment in self.loop_segments[0]])
+        outer = self.segments[: self.outer_count]
+        boxes = np.array([bounding_box(segment) for segment in outer])
         low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
@@ -340,27 +379,3 @@ def remarks_on(straightened: int, rounded: int) -> tuple[str, ...]:
         circle = f"{READING:g} mm from one circle with their neighbours"
         remarks.append(f"{rounded} arcs that are nowhere farther than {circle} put on it.")
     return tuple(remarks)
-
-
-def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
-    """Refuses holes outside the outer loop and holes inside one another (loops are known not to meet).
-
-    Raises
-    ------
-    InputError
-        Naming the hole.
-    """
-    boxes = np.array([shape.box for shape in shapes])
-    for index, hole in enumerate(shapes[1:], start=1):
-        x, y = hole.segments[0].start
-        if not encloses(shapes[0], hole):
-            raise InputError(
-                f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies outside the outer loop: the first loop "
-                "must be the outline that encloses all the others."
-            )
-        for _, other in near_pairs(boxes[index : index + 1], boxes):
-            if other not in (0, index) and encloses(shapes[other], hole):
-                raise InputError(
-                    f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: "
-                    "holes may not overlap; load the inner piece as a part of its own."
-                )

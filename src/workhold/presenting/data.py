@@ -72,7 +72,7 @@ def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, An
         "name": workpiece.name,
         "bounds": list(workpiece.bounds),
         "departure": workpiece.departure,
-        "holes": len(workpiece.loops) - 1,
+        "holes": len(workpiece.hole_segments),
         "faces": [
             {"number": face.number, "loop": loop_of[face.number], **face_data(face)}
             for face in workpiece.faces

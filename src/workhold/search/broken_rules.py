@@ -25,11 +25,13 @@ from workhold.kernels.contact import record
 from workhold.limits import thread_count
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import placeable, placed
+from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.result import fixture_at
 from workhold.model.search_report import NearestMiss, Removal
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks
+from workhold.search.in_the_way import program_rule, stroke_rule
 from workhold.search.toolkit_search import ToolkitSearch, contacts_of
 from workhold.statics.contact_matrix import outward_normals
 from workhold.units import Unit
@@ -189,27 +191,29 @@ def restriction_removals(problem: Problem, threads: int | None, left: int) -> tu
     holes = [limit for limit in toolkit.limits if limit.bounds == "holes"]
     bodies = [limit for limit in toolkit.limits if limit.bounds == "bodies"]
     free = toolkit.without([*holes, *bodies])
-    steps: list[tuple[str, Restrictions, Toolkit]] = []
+    steps: list[tuple[str, Restrictions, Toolkit, Query]] = []
+    whole, bare = problem.query, problem.query.without_program
     if asked.avoid:
-        steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free))
+        steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free, bare))
     if asked.zones:
         # What stands over a zone is a peg's body.
-        steps.append(
-            ("keep-out zones", Restrictions(avoid=asked.avoid, zones=asked.zones), toolkit.without(holes))
-        )
+        zones = Restrictions(avoid=asked.avoid, zones=asked.zones)
+        steps.append(("keep-out zones", zones, toolkit.without(holes), bare))
+    if whole.program is not None:
+        steps.append((program_rule(whole), evolve(asked, angles=()), toolkit.without(holes), whole))
     if holes or bodies:
-        steps.append((toolkit.wording.holes, evolve(asked, angles=()), toolkit))
+        steps.append((toolkit.wording.holes, evolve(asked, angles=()), toolkit, whole))
     if asked.angles:
-        steps.append(("angles of the part", asked, toolkit))
+        steps.append(("angles of the part", asked, toolkit, whole))
 
-    def count(restrictions: Restrictions, held_in: Toolkit) -> int:
-        asked = evolve(problem.query, toolkit=held_in, restrictions=restrictions, contact_margin=0.0)
+    def count(restrictions: Restrictions, held_in: Toolkit, query: Query) -> int:
+        asked = evolve(query, toolkit=held_in, restrictions=restrictions, contact_margin=0.0)
         return contacts_of(Problem.of(asked), threads)
 
-    first = before = max(count(Restrictions(), free), left) if steps else left
+    first = before = max(count(Restrictions(), free, bare), left) if steps else left
     removals = []
-    for rule, restrictions, held_in in steps:
-        after = left if rule == steps[-1][0] else min(max(count(restrictions, held_in), left), before)
+    for rule, restrictions, held_in, query in steps:
+        after = left if rule == steps[-1][0] else min(max(count(restrictions, held_in, query), left), before)
         removals.append(Removal(rule, before, after))
         before = after
     return first, removals
@@ -265,7 +269,8 @@ def placing_rules(problem: Problem) -> list[Rule]:
     for number, limit in enumerate(limits):
         if number == first and asked.angles:
             rule("angles of the part", first, asked)
-        rule(limit.rule, number + 1, asked if number >= first else Restrictions())
+        words = stroke_rule(problem.query, limit.rule) if limit.bounds == "travel" else limit.rule
+        rule(words, number + 1, asked if number >= first else Restrictions())
     if first == len(limits) and asked.angles:
         rule("angles of the part", first, asked)
     return out

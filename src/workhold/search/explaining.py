@@ -24,6 +24,7 @@ from workhold.model.result import FixtureTable, Result, fixture_at
 from workhold.model.search_report import Explanation, Help, NearestMiss, Removal
 from workhold.search.broken_rules import SECOND_CLAMP, Removals, removals_of
 from workhold.search.design import answer
+from workhold.search.in_the_way import line_in_the_way, program_rule, stroke_rule
 from workhold.search.wall_search import WallSearch
 from workhold.search.wall_shares import LatticePairSearch
 from workhold.units import MILLIMETRE, Unit
@@ -60,11 +61,13 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     toolkit, asked = query.toolkit, query.restrictions
     free = toolkit.without(toolkit.limits)
     holes = toolkit.without([limit for limit in toolkit.limits if limit.bounds != "holes"])
-    bare = evolve(query, toolkit=free, restrictions=Restrictions(), contact_margin=0.0)
+    bare = evolve(query.without_program, toolkit=free, restrictions=Restrictions(), contact_margin=0.0)
+    passed = {"program": query.program, "peg_height": query.peg_height}
     steps: list[tuple[bool, str, dict[str, Any]]] = [
         (True, "", {}),
         (bool(asked.avoid), "faces to avoid", {"restrictions": Restrictions(avoid=asked.avoid)}),
         (bool(asked.zones), "keep-out zones", {"restrictions": evolve(asked, angles=())}),
+        (query.program is not None, program_rule(query), passed),
         (bool(asked.angles), "angles of the part", {"restrictions": asked}),
         (bool(holes.limits), toolkit.wording.holes, {"toolkit": holes}),
         (query.contact_margin > 0.0, "contact margin", {"contact_margin": query.contact_margin}),
@@ -80,8 +83,9 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     yield "closure and clamping", 0 if search is None else search.verified
     yield toolkit.wording.clear, placed(bare)
     if toolkit.limits != holes.limits:
+        rule = next(limit.rule for limit in toolkit.limits if limit.bounds != "holes")
         yield (
-            next(limit.rule for limit in toolkit.limits if limit.bounds != "holes"),
+            stroke_rule(query, rule),
             placed(evolve(bare, toolkit=toolkit)),
         )
 
@@ -217,6 +221,10 @@ def changes(query: Query, unit: Unit) -> Iterator[tuple[str, Callable[[], Query]
             )
     if asked.zones:
         yield "without the keep-out zones", partial(evolve, query, restrictions=evolve(asked, zones=())), None
+    if query.program is not None:
+        line = line_in_the_way(query)
+        first = "" if line is None else f", of which line {line} is most in the way"
+        yield f"without the program{first}", partial(getattr, query, "without_program"), None
     if asked.angles:
         yield "at any angle", partial(evolve, query, restrictions=evolve(asked, angles=())), None
     if query.contact_margin > 0:

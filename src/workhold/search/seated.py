@@ -22,7 +22,7 @@ from workhold.contact.problem import Progress
 from workhold.errors import InputError
 from workhold.listing.ranking import rank
 from workhold.listing.results import stage
-from workhold.model.quality import SEATING_FIGURES, WARNINGS
+from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS
 from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import FixtureTable, Result
 from workhold.model.search_report import best_note, by_hand_note, cut_note, seated_note
@@ -226,7 +226,9 @@ def is_as_asked(seating: Seating, query: Query) -> bool:
 def order_of(table: FixtureTable, seatings: Sequence[Seating], query: Query) -> NDArray[np.intp]:
     """The order of fixtures with their seating, best first; equal ones as they are."""
     further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in seatings]
-    quality = np.hstack([table.quality, np.array(further).reshape(len(seatings), len(SEATING_FIGURES))])
+    seating = np.array(further).reshape(len(seatings), len(SEATING_FIGURES))
+    # What there is of a program stays the last column.
+    quality = np.hstack([table.quality[:, : len(FIGURES)], seating, table.quality[:, len(FIGURES) :]])
     quality[:, WARNINGS] += [one.warning_count for one in seatings]
     return rank(quality, query.ranking, query.tolerance)
 

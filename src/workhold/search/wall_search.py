@@ -307,13 +307,13 @@ def reaction_doubts(
 def allowed_edges(problem: Problem) -> list[int]:
     """The numbers of the hull edges on which a part may lie.
 
-    There it is at an angle that is allowed, on faces that may be touched, and no keep-out zone reaches into
-    the wall.
+    There it is at an angle that is allowed, on faces that may be touched. No keep-out zone reaches into the
+    wall, and the program's tools pass clear of it.
     """
     part, asked = problem.workpiece, problem.restrictions
     avoided = {face.number for face in part.faces if not set(face.segments).isdisjoint(asked.avoid)}
     avoided |= part.untouchable
-    out = []
+    swept, out = problem.swept, []
     for number, (theta, touching) in enumerate(
         zip(part.flush.theta.tolist(), part.flush.touching, strict=True)
     ):
@@ -327,6 +327,8 @@ def allowed_edges(problem: Problem) -> list[int]:
             continue
         x, y = part.flush.ends[number, 0].tolist()
         pose = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))
+        if swept is not None and swept[0].above(theta, -pose.y)[0] < swept[1] - GAP_SLACK:
+            continue
         zones = [pose.carry(segment) for zone in asked.zones for segment in zone.segments]
         if all(bounding_box(segment)[1] >= -CLEARANCE for segment in zones):
             out.append(number)

@@ -34,8 +34,7 @@ from workhold.kernels.seating.columns import (
     SelfMotions,
 )
 from workhold.kernels.seating.four_contacts import two_pairs
-from workhold.kernels.seating.freedom import first_of_each
-from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, gathered
+from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, first_of_each, gathered
 from workhold.kernels.seating.slides import slides_held
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH
 from workhold.seating.antipodal_contacts import antipodal_candidates

@@ -155,8 +155,8 @@ class Hull:
     @classmethod
     def of(cls, workpiece: Workpiece) -> Hull:
         """The hull of a part, about the centre of its box."""
-        outer = [face for face in workpiece.faces if face.number < len(workpiece.loops[0])]
-        pieces = HullPieces.of([face.segment for face in outer])
+        outer = workpiece.outer_faces
+        pieces = HullPieces.of([face.segment for face in outer], workpiece.outer_face_counts)
         rows = np.concatenate(
             [
                 pieces.center - np.array(workpiece.center),

@@ -5,7 +5,7 @@ follows from the orientation. The other follows from the locator on a piece, and
 on a piece. So a part that stands on one piece of its hull and touches all three has one freedom. It balances
 where the normals of locator, tip and wall go through one point, which is where S is stationary over the
 orientation. All such poses are isolated (``kernels.seating.wall_equilibria``). Four contacts are in closed
-form, or roots of polynomials (``kernels.seating.wall_equilibria``).
+form, or roots of polynomials (``kernels.seating.tip_in_pocket``).
 
 Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
 and Automation 14 (1998), where three frictionless contacts balance on concurrent normals.
@@ -38,8 +38,9 @@ from workhold.kernels.seating.columns import (
     THETA,
     Given,
 )
+from workhold.kernels.seating.tip_in_pocket import tip_in_pocket
 from workhold.kernels.seating.turning import SHAPE_LENGTH
-from workhold.kernels.seating.wall_equilibria import LOCATOR, TIP, Stood, stationary, tip_in_pocket
+from workhold.kernels.seating.wall_equilibria import LOCATOR, TIP, Stood, stationary
 from workhold.kernels.seating.wall_equilibria import ON_WALL as FIRST_ON_WALL
 from workhold.seating.closing import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary

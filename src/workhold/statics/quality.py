@@ -25,12 +25,14 @@ from workhold.geometry.segment import Arc, Line
 from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.model.fixture import Fixture
+from workhold.model.program import Program
 from workhold.model.quality import (
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
     FIGURES,
     JAW_FORCE_NEEDED,
     PENALTY,
+    PROGRAM_CLEARANCE,
     SMALLEST_FACE,
     TILT,
     WARNINGS,
@@ -42,6 +44,7 @@ from workhold.rowwise import smallest
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import Judging
 from workhold.statics.loads import jaw_forces_needed
+from workhold.statics.program_clearance import nearest_moves
 
 __all__ = ["face_sizes", "load_rows", "main_direction", "measured_fixture", "quality_of", "tilts"]
 
@@ -95,6 +98,7 @@ def quality_of(
     threads: int = 1,
     touched: Touched | None = None,
     jaw_force: float | None = None,
+    passed: tuple[Program, float] | None = None,
 ) -> Array:
     """Figures of quality of a table of fixtures, from their holes, poses and faces alone.
 
@@ -107,10 +111,11 @@ def quality_of(
     threads : how many threads share the work; the outcome does not depend on it.
     touched : the workpiece's contact features, where they are known already.
     jaw_force : in N, for the warning that a peg lets go under a load.
+    passed : a program and the height of pegs in mm, for the program clearance in a column more; None without.
 
     Returns
     -------
-    (N, 12) array, columns in the order of ``model.quality.FIGURES``; NaN for figures of loads without loads,
+    (N, 13) array, columns in the order of ``model.quality.FIGURES``; NaN for figures of loads without loads,
     and for pegs whose contact equations have no single solution.
     """
     tolerance = tolerance or Tolerance()
@@ -121,7 +126,7 @@ def quality_of(
     direction, sizes = main_direction(workpiece), face_sizes(workpiece)
     radius = max(carrier.peg_radius for carrier in toolkit.carriers)
     judging = Judging.of(2 * (known.length - radius), tolerance, jaw_force)
-    out = np.empty((len(table), len(FIGURES)))
+    out = np.empty((len(table), len(FIGURES) + (passed is not None)))
 
     def fill(start: int) -> None:
         block = table.take(slice(start, start + BLOCK))
@@ -157,6 +162,9 @@ def quality_of(
         filled[:, SMALLEST_FACE] = smallest(touched_sizes(block, toolkit, workpiece, sizes))
         filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
         filled[:, PENALTY] = judging.penalty(filled)
+        if passed is not None:
+            clearance = nearest_moves(block, workpiece, toolkit, *passed).clearance
+            filled[:, PROGRAM_CLEARANCE] = np.where(np.isfinite(clearance), clearance, np.nan)
 
     starts = range(0, len(table), BLOCK)
     if threads > 1 and len(starts) > 1:
@@ -205,7 +213,13 @@ def measured_fixture(
     asked = result.query.loads if loads is None else loads
     force = result.query.jaw_force if jaw_force is None else jaw_force
     quality = quality_of(
-        row, result.workpiece, result.toolkit, result.query.tolerance, asked, jaw_force=force
+        row,
+        result.workpiece,
+        result.toolkit,
+        result.query.tolerance,
+        asked,
+        jaw_force=force,
+        passed=result.query.passed,
     )
     return fixture_at(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)
 
@@ -218,7 +232,7 @@ def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
     (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as
         ``kernels.contact.quality`` takes them.
     """
-    outer = [face.segment for face in workpiece.faces if face.number < len(workpiece.loops[0])]
+    outer = [face.segment for face in workpiece.outer_faces]
     cx, cy = workpiece.center
     joints = [segment.start for segment in outer if not (isinstance(segment, Arc) and segment.is_full)]
     corners = np.array([(x - cx, y - cy) for x, y in convex_hull(joints)]).reshape(-1, 2)

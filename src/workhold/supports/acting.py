@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import isfinite
 
+import numpy as np
+
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.limits import real, refuse_strong
-from workhold.model.fixture import Fixture
-from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.model.support_request import SpatialLoad
-from workhold.statics.loads import load_cases
+from workhold.supports.forces import PegForces, largest_over
 
 __all__ = ["checked_force", "needed_jaw_force", "spatial"]
 
@@ -23,9 +23,7 @@ def spatial(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[Spat
     return tuple(load.at_height(thickness) for load in every)
 
 
-def needed_jaw_force(
-    fixture: Fixture, query: Query, loads: Sequence[SpatialLoad], jaw_force: float | None
-) -> float:
+def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: float | None) -> float:
     """The jaw force asked for, or the one that keeps all pegs in contact under every load.
 
     Raises
@@ -33,15 +31,10 @@ def needed_jaw_force(
     InputError
         When the one asked for is too small, naming the load.
     """
-    planar = [(load, load.planar) for load in loads]
-    acting = [(load, flat) for load, flat in planar if flat is not None]
-    cases = load_cases(
-        fixture, query.workpiece, query.toolkit, [flat for _, flat in acting], jaw_force, jaw="constant"
-    )
-    needs = [case.needed.value for case in cases]
+    needs = [needed_for(pegs, load) for load in loads]
     if jaw_force is None:
         return max(needs, default=0.0)
-    for (load, _), need in zip(acting, needs, strict=True):
+    for load, need in zip(loads, needs, strict=True):
         if need > jaw_force * (1 + AGREEMENT):
             name = f"the load '{load.name}'" if load.name else "a load"
             raise InputError(
@@ -49,6 +42,22 @@ def needed_jaw_force(
                 f"{need:.6g} N: give more, or leave it out."
             )
     return float(jaw_force)
+
+
+def needed_for(pegs: PegForces, load: SpatialLoad) -> float:
+    """The jaw force in N above which no peg lets go under a load, as ``statics.loads`` has it.
+
+    Peg i presses with a_i + F h_i, where a_i balances the load and h_i > 0.
+    """
+    if load.force == 0.0 and load.moment == 0.0:
+        return 0.0
+    _, _, moment, closing = pegs.answers.T
+    worst = 0.0
+    for point in (load.points if load.force else ()) or (tuple(pegs.center),):
+        x, y = pegs.at(np.array(point)).T
+        asked = load.force * largest_over(-x, -y, load.directions) - load.moment * moment
+        worst = max(worst, float((asked / closing).max()))
+    return worst
 
 
 def checked_force(jaw_force: float | None) -> float | None:

@@ -24,6 +24,8 @@ __all__ = ["ClampPlaces"]
 Array = NDArray[np.float64]
 # How many of the best candidates are held against the face at a time.
 AT_ONCE = 6
+# How many candidates, of several triangles, are looked at together.
+CANDIDATES = 1 << 18
 
 
 @define(frozen=True, eq=False)
@@ -95,8 +97,11 @@ class ClampPlaces:
         good[good] = self.allows(points[good])
         value = total.copy()
         rest = np.flatnonzero(~good)
-        if len(rest):
-            points[rest], value[rest] = self.on_border(triangles.take(rest), asked[rest], inside)
+        curves = len(self.lines) + 2 * len(self.circles)
+        step = max(1, CANDIDATES // (6 * curves + 6 * len(self.circles) + len(self.corners) + 15))
+        for first in range(0, len(rest), step):
+            some = rest[first : first + step]
+            points[some], value[some] = self.on_border(triangles.take(some), asked[some], inside)
         return points, value
 
     def on_border(self, triangles: Triangles, asked: Array, inside: float) -> tuple[Array, Array]:

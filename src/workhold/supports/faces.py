@@ -1,8 +1,8 @@
 """Faces that pads and a tip may touch, and how large a disc about a point lies wholly on them.
 
 A face is an outer loop less its openings; keep-out zones are taken off. The room at a point is the distance
-to the nearest border, negative off the face. Parity of crossings with the chords, changed once between each
-arc and its chord, says which side a point is on.
+to the nearest border of the face that it lies on, negative off all. Parity of crossings with the chords,
+changed once between each arc and its chord, says which side a point is on.
 """
 
 from __future__ import annotations
@@ -16,127 +16,176 @@ from numpy.typing import NDArray
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Segment
 
-__all__ = ["Border", "TouchableFace", "area_center"]
+__all__ = ["FaceBorders", "TouchableFace", "area_center"]
 
 Array = NDArray[np.float64]
+Loop = Sequence[Segment]
 # In mm: less than what decides, and more than rounding.
 HAIR = 1.3e-10
+# How far beside a loop a point is asked for that says what the loop borders, in mm.
+BESIDE = 1e-4
+# Points times segments that are looked at together.
+AT_ONCE = 1 << 20
 
 
 @define(frozen=True, eq=False)
-class Border:
-    """A closed loop as arrays; lengths in mm.
+class FaceBorders:
+    """B closed loops as arrays of all their S segments, of which A are arcs; lengths in mm.
 
     Parameters
     ----------
-    segments : of the loop.
-    is_hole : whether what is allowed lies outside it.
+    loops : their segments.
     """
 
-    segments: tuple[Segment, ...]
-    is_hole: bool
+    loops: tuple[tuple[Segment, ...], ...]
+    first: NDArray[np.int64] = field(init=False)
     starts: Array = field(init=False)
     ends: Array = field(init=False)
+    straight: NDArray[np.int64] = field(init=False)
+    curved: NDArray[np.int64] = field(init=False)
     arcs: Array = field(init=False)
-    arc_numbers: NDArray[np.int64] = field(init=False)
+    arcs_of: Array = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        arcs = [(k, one) for k, one in enumerate(self.segments) if isinstance(one, Arc)]
-        rows = [(*one.center, one.radius, one.mid_angle, one.half_sweep, one.sign) for _, one in arcs]
-        object.__setattr__(self, "starts", np.array([one.start for one in self.segments]))
-        object.__setattr__(self, "ends", np.array([one.end for one in self.segments]))
-        object.__setattr__(self, "arcs", np.array(rows).reshape(-1, 6))
-        object.__setattr__(self, "arc_numbers", np.array([k for k, _ in arcs], np.int64))
+        every = [one for loop in self.loops for one in loop]
+        first = np.cumsum([0, *(len(loop) for loop in self.loops)])
+        curved = np.array([k for k, one in enumerate(every) if isinstance(one, Arc)], np.int64)
+        rows = [
+            (*one.center, one.radius, one.mid_angle, one.half_sweep, one.sign)
+            for one in every
+            if isinstance(one, Arc)
+        ]
+        loop_of = np.searchsorted(first, curved, side="right") - 1
+        for name, value in (
+            ("first", first[:-1]),
+            ("starts", np.array([one.start for one in every]).reshape(-1, 2)),
+            ("ends", np.array([one.end for one in every]).reshape(-1, 2)),
+            ("straight", np.setdiff1d(np.arange(len(every)), curved)),
+            ("curved", curved),
+            ("arcs", np.array(rows).reshape(-1, 6)),
+            ("arcs_of", (loop_of[:, None] == np.arange(len(self.loops))).astype(np.float64)),
+        ):
+            object.__setattr__(self, name, value)
 
     def contains(self, points: Array) -> NDArray[np.bool_]:
-        """Whether points (N, 2) lie within the loop; moved a hair, because on a chord parity says nothing."""
+        """Whether points (N, 2) lie within each loop (N, B); moved a hair: on a chord parity says nothing."""
         x, y = points[:, :1] + HAIR, points[:, 1:] + 0.6 * HAIR
         (x0, y0), (x1, y1) = self.starts.T, self.ends.T
         crosses = (y0 > y) != (y1 > y)
         rise = np.where(y1 == y0, 1.0, y1 - y0)
-        odd = (crosses & (x < x0 + (y - y0) * (x1 - x0) / rise)).sum(axis=1)
+        odd = np.add.reduceat(crosses & (x < x0 + (y - y0) * (x1 - x0) / rise), self.first, axis=1, dtype=int)
         if len(self.arcs):
             cx, cy, radius, _, half, sign = self.arcs.T
-            (ax, ay), (bx, by) = self.starts[self.arc_numbers].T, self.ends[self.arc_numbers].T
+            (ax, ay), (bx, by) = self.starts[self.curved].T, self.ends[self.curved].T
             # The thin piece lies to the right of the chord of an arc that runs counter-clockwise.
             side = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
-            full = half >= np.pi
-            odd = odd + ((np.hypot(x - cx, y - cy) < radius) & (full | (side * sign < 0))).sum(axis=1)
+            thin = (np.hypot(x - cx, y - cy) < radius) & ((half >= np.pi) | (side * sign < 0))
+            odd = odd + (thin @ self.arcs_of).astype(np.int64)
         return np.asarray(odd % 2 == 1)
 
     def distance(self, points: Array) -> Array:
-        """Distances (N,) in mm from points (N, 2)."""
-        straight = np.ones(len(self.segments), np.bool_)
-        straight[self.arc_numbers] = False
-        best = np.full(len(points), np.inf)
+        """Distances (N, B) in mm of points (N, 2) from the loops."""
+        out = np.empty((len(points), len(self.starts)))
         x, y = points[:, :1], points[:, 1:]
-        if straight.any():
-            (ax, ay), (bx, by) = self.starts[straight].T, self.ends[straight].T
+        if len(self.straight):
+            (ax, ay), (bx, by) = self.starts[self.straight].T, self.ends[self.straight].T
             dx, dy = bx - ax, by - ay
             along = np.clip(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy), 0.0, 1.0)
-            best = np.hypot(x - ax - along * dx, y - ay - along * dy).min(axis=1)
+            out[:, self.straight] = np.hypot(x - ax - along * dx, y - ay - along * dy)
         if len(self.arcs):
             cx, cy, radius, middle, half, _ = self.arcs.T
-            (ax, ay), (bx, by) = self.starts[self.arc_numbers].T, self.ends[self.arc_numbers].T
+            (ax, ay), (bx, by) = self.starts[self.curved].T, self.ends[self.curved].T
             turned = np.abs((np.arctan2(y - cy, x - cx) - middle + np.pi) % (2 * np.pi) - np.pi)
             to_ends = np.minimum(np.hypot(x - ax, y - ay), np.hypot(x - bx, y - by))
-            on = np.where(turned <= half, np.abs(np.hypot(x - cx, y - cy) - radius), to_ends)
-            best = np.minimum(best, on.min(axis=1))
-        return np.asarray(best)
+            out[:, self.curved] = np.where(turned <= half, np.abs(np.hypot(x - cx, y - cy) - radius), to_ends)
+        return np.asarray(np.minimum.reduceat(out, self.first, axis=1))
 
-    def room(self, points: Array) -> Array:
-        """Distances (N,) to the loop, negative on its forbidden side."""
-        return np.where(self.contains(points) != self.is_hole, 1.0, -1.0) * self.distance(points)
+    def inside(self, points: Array) -> Array:
+        """Distances (N, B) of points (N, 2) from the loops, negative outside them."""
+        step = max(1, AT_ONCE // len(self.starts))
+        blocks = (points[k : k + step] for k in range(0, len(points), step))
+        signed = [np.where(self.contains(some), 1.0, -1.0) * self.distance(some) for some in blocks]
+        return np.concatenate([np.empty((0, len(self.loops))), *signed])
+
+
+def beside(loop: Loop) -> tuple[float, float]:
+    """A point just to the left of a loop."""
+    (x, y), (nx, ny) = loop[0].middle, loop[0].normal()
+    return x - BESIDE * nx, y - BESIDE * ny
+
+
+def grouped(loops: Sequence[Loop]) -> list[list[int]]:
+    """Numbers of the loops of each face, its border before its openings; the first loop is a border.
+
+    Of the others those that run clockwise are openings. So are those on a face, however they run; all that
+    remain are borders, such as that of the top of a boss within the opening that it leaves.
+    """
+    areas = [signed_area(loop) for loop in loops]
+    within = FaceBorders(tuple(map(tuple, loops))).contains(np.array([beside(loop) for loop in loops]))
+    faces: list[list[int]] = []
+    # From the largest; of two alike the opening before the face that lies in it.
+    for number in sorted(range(len(loops)), key=lambda k: (-abs(areas[k]), areas[k])):
+        inside = within[number]
+        # The last face is the smallest.
+        under = [face for face in reversed(faces) if inside[face[0]] and not inside[face[1:]].any()]
+        if number and under:
+            under[0].append(number)
+        elif number == 0 or areas[number] > 0.0:
+            faces.append([number])
+    return faces
 
 
 @define(frozen=True, eq=False)
 class TouchableFace:
-    """A face less its keep-out zones.
+    """Faces side by side or above one another, less their keep-out zones; a disc lies on one of them.
 
     Parameters
     ----------
-    borders : the outer loop, then openings and zones.
+    borders : of each face its own before those of its openings, then those of the zones.
+    faces : number of the border that each face begins with.
+    zones : how many of the borders are those of zones.
     """
 
-    borders: tuple[Border, ...]
+    borders: FaceBorders
+    faces: tuple[int, ...]
+    zones: int
 
     @classmethod
     def of(cls, loops: Sequence[Array], zones: Iterable[Array] = ()) -> TouchableFace:
-        """A face from loops of (x, y, bulge) vertices, the outer one first, and zones as loops."""
-        borders: list[Border] = []
-        for loop in loops:
-            # A loop within another is an opening; one beside it belongs to a further face.
-            segments = loop_segments(np.asarray(loop))
-            start = np.array([segments[0].start])
-            borders.append(
-                Border(segments, any(one.contains(start)[0] for one in borders if not one.is_hole))
-            )
-        return cls((*borders, *(Border(loop_segments(np.asarray(zone)), True) for zone in zones)))
+        """Faces from loops of (x, y, bulge) vertices, the outer one first, and zones as loops."""
+        rows = [tuple(loop_segments(np.asarray(loop))) for loop in loops]
+        kept_out = [tuple(loop_segments(np.asarray(zone))) for zone in zones]
+        faces = grouped(rows)
+        first = np.cumsum([0, *(len(face) for face in faces)])[:-1]
+        ordered = (rows[number] for face in faces for number in face)
+        return cls(FaceBorders((*ordered, *kept_out)), tuple(first.tolist()), len(kept_out))
 
     def room(self, points: Array) -> Array:
         """Radii (N,) of the largest discs about points (N, 2) that lie on a face, negative off all."""
-        within = [border.room(points) for border in self.borders if not border.is_hole]
-        off = [border.room(points) for border in self.borders if border.is_hole]
-        out: Array = np.min([np.max(within, axis=0), *off], axis=0)
-        return out
+        signed = -self.borders.inside(points)
+        signed[:, list(self.faces)] *= -1.0
+        count = signed.shape[1] - self.zones
+        on: Array = np.minimum.reduceat(signed[:, :count], self.faces, axis=1).max(axis=1)
+        return np.asarray(np.minimum(on, signed[:, count:].min(axis=1, initial=np.inf)))
 
     @property
     def box(self) -> tuple[Array, Array]:
-        """The least and the greatest x and y that the outer loop may have."""
-        points: list[Array] = []
-        for outer in self.borders:
-            if not outer.is_hole:
-                points += [outer.starts, outer.arcs[:, :2] - outer.arcs[:, 2:3]]
-                points += [outer.arcs[:, :2] + outer.arcs[:, 2:3]]
-        every = np.concatenate(points)
+        """The least and the greatest x and y that the faces may have."""
+        points = []
+        for one in (one for number in self.faces for one in self.borders.loops[number]):
+            points.append(one.start)
+            if isinstance(one, Arc):
+                (x, y), radius = one.center, one.radius
+                points += [(x - radius, y - radius), (x + radius, y + radius)]
+        every = np.array(points)
         return every.min(axis=0), every.max(axis=0)
 
     def offset_curves(self, radius: float) -> tuple[Array, Array]:
         """Lines (L, 3), unit normal and distance, and circles (M, 3) on which a disc touches the border."""
         lines, circles = [], []
-        for border in self.borders:
-            left = (signed_area(border.segments) > 0) != border.is_hole
-            for one in border.segments:
+        for number, loop in enumerate(self.borders.loops):
+            left = (signed_area(loop) > 0) == (number in self.faces)
+            for one in loop:
                 circles.append((*one.start, radius))
                 if isinstance(one, Arc):
                     grown = one.radius - radius if (one.sign > 0) == left else one.radius + radius

@@ -25,7 +25,7 @@ from workhold.model.support_request import SpatialLoad
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 
-__all__ = ["PegForces", "Triangles", "lifted_by_jaws", "support_forces"]
+__all__ = ["Lines", "PegForces", "Triangles", "largest_over", "lifted_by_jaws", "support_forces"]
 
 Array = NDArray[np.float64]
 
@@ -66,8 +66,34 @@ class PegForces:
 
 
 @define(frozen=True, eq=False)
+class Lines:
+    """Affine functions n . q + c of points q: distances from lines, or barycentric coordinates.
+
+    Parameters
+    ----------
+    normals : (..., 2) n.
+    constants : (...) c.
+    """
+
+    normals: Array
+    constants: Array
+
+    def at(self, points: Array) -> Array:
+        """The values (...) at points (..., 2)."""
+        return np.asarray(
+            self.normals[..., 0] * points[..., 0] + self.normals[..., 1] * points[..., 1] + self.constants
+        )
+
+    def leverage(self, pegs: PegForces, bands: Array, highest: bool) -> Array:
+        """h_i n . (-n_i) as (..., P) at the heights of bands (P, 2) that make it least, or greatest."""
+        along = self.normals[..., :1] * pegs.pushes[:, 0] + self.normals[..., 1:] * pegs.pushes[:, 1]
+        ends = along * bands[:, 0], along * bands[:, 1]
+        return np.maximum(*ends) if highest else np.minimum(*ends)
+
+
+@define(frozen=True, eq=False)
 class Triangles:
-    """N triangles of supports, and the worst heights of the pegs for each support.
+    """N triangles of supports.
 
     Parameters
     ----------
@@ -102,13 +128,9 @@ class Triangles:
 
     def shares(self, points: Array) -> Array:
         """Barycentric coordinates (N, ..., 3) of points (N, ..., 2), or of points (2,) for all."""
-        extra = points.ndim - 2
-        if points.ndim == 1:
-            return np.asarray(self.slopes @ points + self.constants)
-        shape = (len(self.slopes), *[1] * extra, 3)
-        x, y = (self.slopes[..., k].reshape(shape) for k in (0, 1))
-        c = self.constants.reshape(shape)
-        return np.asarray(points[..., :1] * x + points[..., 1:] * y + c)
+        shape = (len(self.slopes), *[1] * max(points.ndim - 2, 0))
+        lines = Lines(self.slopes.reshape(*shape, 3, 2), self.constants.reshape(*shape, 3))
+        return lines.at(points[..., None, :])
 
     def sides(self, points: Array) -> Array:
         """Distances (N, ..., 3) of points from the three sides, positive inside."""
@@ -116,15 +138,11 @@ class Triangles:
         extra = shares.ndim - 2
         return np.asarray(shares / self.steepness.reshape(len(self.slopes), *[1] * extra, 3))
 
-    def leverage(self, pegs: PegForces, bands: Array, highest: bool) -> Array:
-        """h_i b_j . (-n_i) as (N, 3, P) at the heights of bands (P, 2) that make it least, or greatest."""
-        along = self.slopes @ pegs.pushes.T
-        ends = along * bands[:, 0], along * bands[:, 1]
-        return np.maximum(*ends) if highest else np.minimum(*ends)
-
 
 def largest_over(x: Array, y: Array, directions: tuple[float, float]) -> Array:
     """Largest x cos + y sin over a range of directions in degrees."""
+    if directions[1] - directions[0] >= 360.0:
+        return np.hypot(x, y)
     low, high = (radians(angle) for angle in directions)
     ends = np.maximum(x * np.cos(low) + y * np.sin(low), x * np.cos(high) + y * np.sin(high))
     peak = (np.arctan2(y, x) - low) % (2 * np.pi)
@@ -132,20 +150,22 @@ def largest_over(x: Array, y: Array, directions: tuple[float, float]) -> Array:
 
 
 def support_forces(
-    triangles: Triangles, pegs: PegForces, bands: Array, loads: tuple[SpatialLoad, ...], jaw_force: float
+    lines: Lines, pegs: PegForces, bands: Array, loads: tuple[SpatialLoad, ...], jaw_force: float
 ) -> tuple[Array, Array]:
-    """Least and largest forces (N, 3) of the supports without the clamp, over all loads and heights.
+    """Least and largest forces (N,) of supports without the clamp, over all loads and heights.
 
     Parameters
     ----------
+    lines : beta_j of N supports; or distances from the sides that face them, which makes all forces larger by
+        the heights of the supports over these.
     bands : (P, 2) of the pegs.
     loads : with their heights written out.
     jaw_force : on what moves, F.
     """
-    x, y = triangles.slopes[..., 0], triangles.slopes[..., 1]
+    x, y = lines.normals[..., 0], lines.normals[..., 1]
     out = []
     for sign in (1.0, -1.0):
-        levers = triangles.leverage(pegs, bands, highest=sign < 0)
+        levers = lines.leverage(pegs, bands, highest=sign < 0)
         jaws = levers @ pegs.answers[:, 3] * jaw_force
         worst = np.full(x.shape, np.inf)
         for load in loads:
@@ -154,19 +174,21 @@ def support_forces(
             assert load.heights is not None
             for point in load.points or (tuple(pegs.center),):
                 where = np.array(point)
-                moved = levers @ pegs.at(where)
-                shares = triangles.shares(where)
+                moved = levers @ pegs.at(where) if load.force else np.zeros((*x.shape, 2))
+                shares = lines.at(where)
                 for height, axial in product(set(load.heights), set(load.axial)):
-                    side = load.force * largest_over(
-                        -sign * (moved[..., 0] + height * x),
-                        -sign * (moved[..., 1] + height * y),
-                        load.directions,
-                    )
-                    worst = np.minimum(worst, sign * (still + axial * shares) - side)
+                    value = sign * (still + axial * shares)
+                    if load.force:
+                        value -= load.force * largest_over(
+                            -sign * (moved[..., 0] + height * x),
+                            -sign * (moved[..., 1] + height * y),
+                            load.directions,
+                        )
+                    worst = np.minimum(worst, value)
         out.append(sign * worst)
     return out[0], out[1]
 
 
-def lifted_by_jaws(triangles: Triangles, pegs: PegForces, bands: Array) -> Array:
-    """e_j (N, 3): by how much each N of jaw force lifts each support at the worst heights."""
-    return np.asarray(-(triangles.leverage(pegs, bands, highest=False) @ pegs.answers[:, 3]))
+def lifted_by_jaws(lines: Lines, pegs: PegForces, bands: Array) -> Array:
+    """Lifts (...) of supports per N of jaw force at the worst heights, as the forces above."""
+    return np.asarray(-(lines.leverage(pegs, bands, highest=False) @ pegs.answers[:, 3]))

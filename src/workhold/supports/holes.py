@@ -20,7 +20,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.support_request import SupportRequest
 from workhold.supports.faces import TouchableFace
 
-__all__ = ["HolesUnderPart", "Standing", "holes_under", "pegs_in_part", "standing_of"]
+__all__ = ["CarrierRoom", "HolesUnderPart", "Standing", "holes_under", "pegs_in_part"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -62,9 +62,11 @@ def holes_under(
     x, y = fixture.pose.apply(corners[:, 0], corners[:, 1])
     pegs = pegs_in_part(fixture)
     placed = [k for k, peg in enumerate(fixture.pegs) if peg in fixture.placed]
-    bodies = np.array([toolkit.carrier(fixture.pegs[k].carrier).body_radius for k in placed])
+    carriers = toolkit.carriers
+    radii = {one.name: one.body_radius for one in carriers}
+    bodies = np.array([radii[fixture.pegs[k].carrier] for k in placed])
     found: list[tuple[Array, ...]] = []
-    for number, carrier in enumerate(toolkit.carriers):
+    for number, carrier in enumerate(carriers):
         if not carrier.has_lattice:
             continue
         x0, y0 = carrier.place(0, 0, fixture.jaw_separation)
@@ -104,18 +106,8 @@ class Standing:
     spare: Array
 
 
-def counted_pegs(fixture: Fixture, toolkit: Toolkit, plate: Carrier, axis: int) -> IntArray:
-    """Columns (axis 0) or rows (axis 1) that pegs and clamps take up on a plate."""
-    taken = []
-    for peg in fixture.pegs:
-        carrier = toolkit.carrier(peg.carrier)
-        if carrier.stands_on == plate.name and carrier.counted[axis]:
-            taken.append((peg.column, peg.row)[axis])
-    return np.array(taken, np.int64)
-
-
 def ends_of(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[IntArray, IntArray]:
-    """The first and last (N,) of columns or rows (N, 3) on a carrier, together with those taken by pegs."""
+    """The first and last (N,) of columns or rows (N, S) on a carrier, together with those taken by pegs."""
     first = np.where(on, numbers, UNBOUNDED).min(axis=1)
     last = np.where(on, numbers, -UNBOUNDED).max(axis=1)
     if len(taken):
@@ -123,62 +115,126 @@ def ends_of(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[
     return first, last
 
 
-def standing_of(fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart, triples: IntArray) -> Standing:
-    """How triples (N, 3) of holes stand in the carriers of a toolkit.
+@define(frozen=True, eq=False)
+class CarrierRoom:
+    """What room the carriers of a fixture leave for supports beside its pegs.
 
     Pegs and supports of a carrier span its columns, all rows fit, and the gap is kept. Written out, they
     stand nearest the opening, and move outward only as far as the largest travel demands.
+
+    Parameters
+    ----------
+    fixture, toolkit, holes : the fixture, and the holes that may hold a support.
+    plates : the carriers with holes, by their numbers.
+    taken : columns and rows that pegs and clamps take up on each of them.
+    has_blocked : whether there are two of them, and a hole that holds no peg.
     """
-    carrier, column, row = holes.carrier[triples], holes.column[triples], holes.row[triples]
-    count = len(triples)
-    fits = np.ones(count, np.bool_)
-    plates = [(k, one) for k, one in enumerate(toolkit.carriers) if one.has_lattice]
-    spans = {}
-    for number, plate in plates:
-        ends = []
-        for axis, holes_of, most in ((0, column, plate.columns), (1, row, plate.rows)):
-            # Rows of two jaws lie side by side and are shifted together.
-            together = axis == 1 and len(plates) > 1
-            on = np.ones(carrier.shape, np.bool_) if together else carrier == number
-            taken = [
-                counted_pegs(fixture, toolkit, one, axis) for k, one in plates if together or k == number
-            ]
-            first, last = ends_of(holes_of, on, np.concatenate(taken))
-            if most is not None:
-                fits &= last - first < most
-            if axis == 1 and toolkit.wall is not None and plate.travel is None:
+
+    fixture: Fixture
+    toolkit: Toolkit
+    holes: HolesUnderPart
+    plates: dict[int, Carrier]
+    taken: dict[int, tuple[IntArray, IntArray]]
+    has_blocked: bool
+
+    @classmethod
+    def of(cls, fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart) -> CarrierRoom:
+        """The room beside the pegs of a fixture."""
+        carriers = toolkit.carriers
+        plates = {number: one for number, one in enumerate(carriers) if one.has_lattice}
+        by_name = {one.name: one for one in carriers}
+        own = [(peg, by_name[peg.carrier]) for peg in fixture.pegs]
+
+        def taken(plate: Carrier, axis: int) -> IntArray:
+            on = (one for one in own if one[1].stands_on == plate.name and one[1].counted[axis])
+            return np.array([(peg.column, peg.row)[axis] for peg, _ in on], np.int64)
+
+        return cls(
+            fixture,
+            toolkit,
+            holes,
+            plates,
+            {number: (taken(plate, 0), taken(plate, 1)) for number, plate in plates.items()},
+            len(plates) > 1 and any(one.blocked for one in plates.values()),
+        )
+
+    def standing(self, sets: IntArray) -> Standing:
+        """How sets (N, S) of holes stand beside the pegs, blocked holes included."""
+        found, at_rest = self.spanned(sets)
+        if not self.has_blocked:
+            return found
+        return clear_of_blocked(found, self.fixture, self.toolkit, self.holes, sets, at_rest)
+
+    def pairs(self) -> NDArray[np.bool_]:
+        """Which two of H holes (H, H) may both hold a support; all three pairs of a set have to."""
+        count = len(self.holes.row)
+        out = np.zeros((count, count), np.bool_)
+        first, second = np.triu_indices(count, 1)
+        step = 1 << 18
+        for k in range(0, len(first), step):
+            one, other = first[k : k + step], second[k : k + step]
+            out[one, other] = self.spanned(np.stack([one, other], axis=1))[0].fits
+        return out | out.T
+
+    def spanned(self, sets: IntArray) -> tuple[Standing, Array]:
+        """How sets (N, S) stand but for blocked holes, and their travel (N,) nearest the opening.
+
+        A set that does not fit fits with no support more either.
+        """
+        holes = self.holes
+        carrier, column, row = holes.carrier[sets], holes.column[sets], holes.row[sets]
+        count, together = len(sets), len(self.plates) > 1
+        fits = np.ones(count, np.bool_)
+        spans: dict[int, list[tuple[IntArray, IntArray]]] = {}
+        # Rows of two jaws lie side by side and are shifted together.
+        every_row = np.concatenate([rows for _, rows in self.taken.values()])
+        for number, plate in self.plates.items():
+            on = carrier == number
+            columns = ends_of(column, on, self.taken[number][0])
+            rows = ends_of(row, np.ones_like(on) if together else on, every_row)
+            spans[number] = [columns, rows]
+            for (first, last), most in ((columns, plate.columns), (rows, plate.rows)):
+                if most is not None:
+                    fits &= last - first < most
+            if self.toolkit.wall is not None and plate.travel is None:
                 # Rows are counted from the wall, and cannot be shifted.
-                fits &= (first >= 0) & (last < (UNBOUNDED if most is None else most))
-            ends.append((first, last))
-        spans[number] = ends
-    moving = [(k, one) for k, one in plates if one.travel is not None]
-    if not moving:
-        return Standing(fits, np.full(count, np.nan), np.full(count, np.inf))
-    number, plate = moving[0]
-    travel = plate.travel
-    assert travel is not None
-    axis = 0 if plate.is_along_x else 1
-    pitch = plate.pitch[axis]
-    first, last = spans[number][axis]
-    size = (plate.columns, plate.rows)[axis]
-    room = np.full(count, UNBOUNDED) if size is None else size - 1 - (last - first)
-    at_rest = fixture.jaw_separation + first * pitch
-    for other, standing in plates:
-        if other == number:
-            continue
-        low, high = spans[other][axis]
-        size = (standing.columns, standing.rows)[axis]
-        assert size is not None
-        room = room + size - 1 - (high - low)
-        at_rest = at_rest + (size - 1 - high) * pitch
-    outward = np.zeros(count)
-    if travel.most is not None:
-        outward = np.maximum(np.ceil((at_rest - travel.most - GAP_SLACK) / pitch), 0.0)
-    opened = at_rest - outward * pitch
-    spare = opened - travel.least
-    fits &= (outward <= room) & (spare >= -GAP_SLACK)
-    standing_now = Standing(fits, opened, spare)
-    return clear_of_blocked(standing_now, fixture, toolkit, holes, triples, np.asarray(at_rest, np.float64))
+                fits &= (rows[0] >= 0) & (rows[1] < (UNBOUNDED if plate.rows is None else plate.rows))
+        moving = [(number, one) for number, one in self.plates.items() if one.travel is not None]
+        if not moving:
+            nowhere = np.full(count, np.nan)
+            return Standing(fits, nowhere, np.full(count, np.inf)), nowhere
+        return self.opened(fits, spans, *moving[0])
+
+    def opened(
+        self,
+        fits: NDArray[np.bool_],
+        spans: dict[int, list[tuple[IntArray, IntArray]]],
+        number: int,
+        plate: Carrier,
+    ) -> tuple[Standing, Array]:
+        """How far a carrier that moves is opened for sets of which the carriers' spans are known."""
+        travel = plate.travel
+        assert travel is not None
+        axis = 0 if plate.is_along_x else 1
+        pitch, size = plate.pitch[axis], (plate.columns, plate.rows)[axis]
+        first, last = spans[number][axis]
+        room = np.full(len(first), UNBOUNDED) if size is None else size - 1 - (last - first)
+        at_rest = self.fixture.jaw_separation + first * pitch
+        for other, standing in self.plates.items():
+            if other == number:
+                continue
+            low, high = spans[other][axis]
+            size = (standing.columns, standing.rows)[axis]
+            assert size is not None
+            room = room + size - 1 - (high - low)
+            at_rest = at_rest + (size - 1 - high) * pitch
+        outward = np.zeros(len(first))
+        if travel.most is not None:
+            outward = np.maximum(np.ceil((at_rest - travel.most - GAP_SLACK) / pitch), 0.0)
+        opened = at_rest - outward * pitch
+        spare = opened - travel.least
+        fits = fits & (outward <= room) & (spare >= -GAP_SLACK)
+        return Standing(fits, opened, spare), np.asarray(at_rest, np.float64)
 
 
 def clear_of_blocked(

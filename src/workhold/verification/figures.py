@@ -142,7 +142,7 @@ class Measure:
     @classmethod
     def of(cls, wrench_length: float, diameter: float, query: Query) -> Measure:
         """The measure at the precision in force."""
-        outline, outer = BallOutline.of(query.workpiece), len(query.workpiece.loops[0])
+        outline, outer = BallOutline.of(query.workpiece), query.workpiece.outer_count
         silhouette = [side for face, side in outline.faces.items() if face < outer]
         arcs = tuple(side for side in silhouette if isinstance(side, ArcSide) and side.sign > 0)
         joints = [side.start for side in outline.segments[:outer]]

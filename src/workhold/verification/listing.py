@@ -26,7 +26,7 @@ from workhold.files.text import json_value
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
-from workhold.model.quality import FIGURES
+from workhold.model.quality import figures_in
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.search_report import Proof
@@ -183,7 +183,7 @@ class FixturesInColumns(Sequence[Fixture]):
                 Peg(one.name, column, row, x, y, face, 0.0 if pairs else force, called, flat_deg=looks)
             )
         pose = Pose(round(degrees(numbers["theta"]), DECIMALS), *numbers["position"])
-        figures = zip(FIGURES, numbers["quality"], strict=True)
+        figures = zip(figures_in(len(numbers["quality"])), numbers["quality"], strict=True)
         known = {figure.key: value for figure, value in figures if value == value}
         if not pairs:
             return Fixture(arrangement.name, tuple(pegs), pose, travelled, known, arrangement.direction)
@@ -340,6 +340,8 @@ def keys_missing(head: Head) -> list[str]:
     )
     if head.seating is None:
         spared |= {"seating", "opening", "foolproof"}
+    if head.program is None:
+        spared |= {"program", "peg_height"}
     if getattr(head.toolkit, "clamps", 1) == 1:
         spared |= {"listing", "toolkit.clamps"}
     return [f"the key {key} is missing" for key in head.not_given() if key not in spared]

@@ -20,7 +20,7 @@ from attrs import evolve
 from workhold.errors import InputError
 from workhold.fixels.carrier import WALL
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
-from workhold.model.quality import FIGURES
+from workhold.model.quality import FIGURES, PROGRAM_FIGURE
 from workhold.verification.rules.travel import WAYS, clamp_place
 
 __all__ = ["fixtures_of", "with_working_forces"]
@@ -76,6 +76,7 @@ def fixture_from(item: Any) -> Fixture:
         0.0 if directions else real(item, "jaw_separation"),
         quality_from(item),
         " ".join(directions) or None,
+        passing=item.get(PROGRAM_FIGURE.key),
     )
     if is_pair:
         low, high = two_numbers(item, "ratio", least=1)
@@ -136,7 +137,8 @@ def quality_from(item: Mapping[str, Any]) -> dict[str, float]:
     quality = item.get("quality")
     if not isinstance(quality, dict):
         raise UnusableError("it has no quality")
-    return {figure.key: real(quality, figure.key) for figure in FIGURES if figure.key in quality}
+    known = (*FIGURES, PROGRAM_FIGURE)
+    return {figure.key: real(quality, figure.key) for figure in known if figure.key in quality}
 
 
 def two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[float, float]:

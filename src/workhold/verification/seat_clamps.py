@@ -45,10 +45,13 @@ from workhold.verification.tolerances import (
     number,
     rule,
 )
+from workhold.verification.tool_walk import Element, walk_of
 from workhold.verification.touching import on_line, touching_findings
 
 __all__ = ["SeatClamp", "SeatOnPlate", "pairs_at"]
 
+# mm. A program's clearance that is met or missed by no more is in doubt.
+IN_DOUBT = 2e-7
 # mm. Lines of holes this near beside the part are looked at as well.
 BESIDE = 1e-3
 
@@ -248,8 +251,27 @@ class SeatOnPlate:
             if off < 0:
                 return None
             sure.append(bool(off > 0))
+        passed = self.is_passed(contact, contact)
+        if passed is False:
+            return None
+        sure.append(passed is True)
         holes = list(self.holes(contact, line, direction))
         return SeatClamp(direction, line, face, contact.hole, push, holes, all(sure)) if holes else None
+
+    def is_passed(self, tip: BallContact, hole: BallContact) -> bool | None:
+        """Whether the program's tools pass clear of a clamp from its tip to a hole; None where that is in
+        doubt."""
+        if self.query.passed is None:
+            return True
+        program, height = self.query.passed
+        (x, y), (from_x, from_y) = (
+            (float(u.mid()), float(v.mid())) for u, v in (one.in_part(self.pose) for one in (tip, hole))
+        )
+        radius = float(tip.clear_radius.mid())
+        near = walk_of(program).nearest(Element("a clamp", "", (x, y), (from_x, from_y), radius, height))
+        if near.high < program.clearance - IN_DOUBT:
+            return False
+        return True if near.low > program.clearance + IN_DOUBT else None
 
     def holes(self, contact: BallContact, line: int, direction: str) -> Iterator[BoltHole]:
         """Where a clamp may be bolted whose tip is where a contact is, whatever the other clamp does."""
@@ -270,8 +292,9 @@ class SeatOnPlate:
             place = x + arb(pitch_x) * column, y + arb(pitch_y) * row
             bolted, pose = evolve(contact, hole=place), evolve(self.pose, travels=(-stroke,))
             stands = verdict(rules.findings("a clamp", self.locators, bolted, pose, self.outline))
-            if stands is not False:
-                yield BoltHole(column, row, place, stroke, stands is True)
+            passed = self.is_passed(contact, evolve(bolted, way=exact_point(0.0, 0.0)))
+            if stands is not False and passed is not False:
+                yield BoltHole(column, row, place, stroke, stands is True and passed is True)
 
     def choices(self, one: SeatClamp, other: SeatClamp) -> Iterator[tuple[BoltHole, BoltHole, bool]]:
         """The holes in which two clamps may be bolted together, and whether they certainly may."""

@@ -9,15 +9,18 @@ from math import atan2, ceil, hypot, inf, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.geometry.loop import loop_segments
+from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Segment, distance_to_segment
 
 __all__ = ["area_center", "room_on"]
 
 Array = NDArray[np.float64]
+Loop = tuple[Segment, ...]
+# How far beside a segment a point is looked at, in mm.
+PROBE = 1e-4
 
 
-def turns_about(segments: Sequence[Segment], point: tuple[float, float]) -> int:
+def turns_about(segments: Loop, point: tuple[float, float]) -> int:
     """How often a loop runs around a point off it."""
     turned = 0.0
     for one in segments:
@@ -35,19 +38,36 @@ def turns_about(segments: Sequence[Segment], point: tuple[float, float]) -> int:
 
 def room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
     """How large a disc about a point lies on a face and over no zone, in mm; negative off it."""
-    outer: list[tuple[Segment, ...]] = []
-    best, room = -inf, inf
-    for number, loop in enumerate([*loops, *zones]):
-        segments = tuple(loop_segments(np.asarray(loop)))
-        near = min(distance_to_segment(point, one) for one in segments)
-        is_in = turns_about(segments, point) != 0
-        # A loop within another is an opening, one beside it a further face.
-        if number < len(loops) and all(turns_about(one, segments[0].start) == 0 for one in outer):
-            outer.append(segments)
-            best = max(best, near if is_in else -near)
-        else:
-            room = min(room, -near if is_in else near)
-    return min(best, room)
+    faces = faces_by_size([tuple(loop_segments(np.asarray(loop))) for loop in loops])
+    room = max(min(side * reach(one, point) for one, side in face) for face in faces)
+    off = (reach(tuple(loop_segments(np.asarray(zone))), point) for zone in zones)
+    return min(room, *(-one for one in off), inf)
+
+
+def reach(loop: Loop, point: tuple[float, float]) -> float:
+    """Distance of a point from a loop in mm, negative outside it."""
+    near = min(distance_to_segment(point, one) for one in loop)
+    return near if turns_about(loop, point) else -near
+
+
+def faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
+    """Loops of each face with 1 for its border, which comes first, and -1 for its openings.
+
+    The first loop is a border. Of the others a loop is an opening where there is a face on its left. That is
+    within a loop that runs counter-clockwise; one that runs the other way is never a border.
+    """
+    faces: list[list[tuple[Loop, int]]] = []
+    sizes = [signed_area(loop) for loop in loops]
+    for number in sorted(range(len(loops)), key=lambda k: (-abs(sizes[k]), sizes[k])):
+        loop = loops[number]
+        (x, y), (nx, ny) = loop[0].middle, loop[0].normal()
+        probe = (x - PROBE * nx, y - PROBE * ny)
+        under = [face for face in faces if all(side * reach(one, probe) > 0 for one, side in face)]
+        if number and under:
+            under[-1].append((loop, -1))
+        elif number == 0 or sizes[number] > 0:
+            faces.append([(loop, 1)])
+    return faces
 
 
 def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:

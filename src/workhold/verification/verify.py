@@ -29,6 +29,7 @@ from workhold.verification.seat import SeatBalance
 from workhold.verification.seat_clamps import SeatOnPlate
 from workhold.verification.seating import SeatingJudge
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
+from workhold.verification.tool_walk import program_fault
 from workhold.verification.touching import touching_findings
 
 __all__ = [
@@ -331,6 +332,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         if verdict != "refuted":
             broken = broken_restriction(fixture, query, judge.hardware)
             broken = broken or figure_missing(fixture, query.loads) or seating.fault(fixture)
+            broken = broken or program_fault(fixture, query, judge.hardware)
             verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:

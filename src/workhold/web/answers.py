@@ -28,8 +28,6 @@ from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite, helps_data
 
 if TYPE_CHECKING:
-    from workhold.files.outline.chain import Chain
-    from workhold.files.part.survey import Survey
     from workhold.files.toolkit_file import LoadedToolkit
 
 __all__ = [
@@ -42,14 +40,11 @@ __all__ = [
     "place_in",
     "proof_answer",
     "rows_answer",
-    "survey_answer",
     "toolkit_answer",
 ]
 
 # Undecided candidates of a proof that are listed; the result file has them all.
 MOST_UNDECIDED = 50
-# Segments of a drawing or a layer, parts, gaps and layers of a file that are sent to be shown.
-MOST_STROKES, MOST_PARTS, MOST_GAPS, MOST_LAYERS = 20_000, 200, 500, 60
 PLACE = re.compile(r"\((-?\d[\d.eE+-]*), (-?\d[\d.eE+-]*)\)")
 
 
@@ -105,45 +100,6 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
     if isinstance(segment, Arc):
         return {"number": number, "kind": "arc", "size": segment.radius, "concave": segment.sign < 0}
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
-
-
-def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
-    """Describes chains as lists of x, y in mm and bulge, as many as are shown."""
-    strokes, room = [], MOST_STROKES
-    for chain in chains:
-        room -= len(chain.bulges)
-        if room < 0:
-            break
-        strokes.append(
-            [[*point, bulge] for point, bulge in zip(chain.points, (*chain.bulges, 0.0), strict=True)]
-        )
-    return strokes
-
-
-def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
-    """Describes what a file holds and leaves open; strokes and outlines are chains of x, y in mm, bulge."""
-    return {
-        "part": part,
-        "error": refusal or None,
-        "place": place_in(refusal) if refusal else None,
-        "asked": list(seen.asked),
-        "size": None if seen.size is None else list(seen.size),
-        "strokes": strokes_answer(seen.chains),
-        "layers": [
-            {"name": one.name, "hidden": one.hidden, "strokes": strokes_answer(one.chains)}
-            for one in seen.layers[:MOST_LAYERS]
-        ],
-        "parts": [
-            {
-                "number": one.number,
-                "loops": [loop.vertices.tolist() for loop in one.loops],
-                "bounds": list(one.bounds),
-                "holes": len(one.loops) - 1,
-            }
-            for one in seen.parts[:MOST_PARTS]
-        ],
-        "gaps": list(seen.gaps[:MOST_GAPS]),
-    }
 
 
 def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from datetime import date
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from attrs import evolve
 from fastapi import APIRouter, Path, Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
@@ -19,6 +20,7 @@ from workhold.web.answers import contact_answer, rows_answer
 from workhold.web.fixture_tasks import (
     AT_ONCE,
     KINDS,
+    Before,
     ClosingForm,
     ClosingOrder,
     Held,
@@ -28,6 +30,8 @@ from workhold.web.fixture_tasks import (
 from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
 from workhold.web.state import at_desk, at_desk_while_heard, state_of
+from workhold.web.support_forms import ChosenSupportsForm, FirstSideForm, SupportsForm, asked_of
+from workhold.web.support_tasks import SupportsOrder
 
 __all__ = ["router"]
 
@@ -41,6 +45,14 @@ Jaw = Annotated[
 ]
 Loads = Annotated[
     str | None, Query(max_length=20_000, description="instead of the search's, JSON as in a search")
+]
+InJson = Annotated[
+    str | None,
+    Query(
+        max_length=20_000,
+        description="JSON: supports as in a request for them with the set ``chosen``, and the first side as "
+        "its ``job``, ``rank`` and ``cut`` faces",
+    ),
 ]
 Words = Annotated[str | None, Query(max_length=100)]
 Size = Annotated[float | None, Query(gt=0, le=1e6)]
@@ -129,6 +141,19 @@ async def loads(
     return {"rank": rank, "cases": cases}
 
 
+@router.post("/supports", summary="Three supports under the part, and a clamp from above")
+async def supports(
+    request: Request, name: str, rank: Rank, form: SupportsForm, revision: Revision = None
+) -> dict[str, Any]:
+    """The best sets of three supports, with the clamp's best point, its force in N and the tipping arm in mm.
+
+    The search for them stops when the client hangs up.
+    """
+    result = result_of_job(found_job(request, name), revision)
+    asked = SupportsOrder(result[ranked(result, rank)], result.query, form)
+    return {"rank": rank, **await at_desk_while_heard(request, "supports", asked)}
+
+
 @router.get("/warnings", summary="What to beware of")
 async def warnings(
     request: Request,
@@ -153,6 +178,16 @@ async def warnings(
         "others": others,
     }
     return {"rank": rank, "warnings": await at_desk(request, "warnings", (small, asked))}
+
+
+def before_of(request: Request, form: FirstSideForm | None) -> Before | None:
+    """The set-up of the other side before a paper's, and what it cuts; None where there is none."""
+    if form is None:
+        return None
+    result = result_of_job(found_job(request, form.job))
+    fixture = result[ranked(result, form.rank)]
+    ruled_out = evolve(result.query.restrictions, avoid=tuple(form.cut))
+    return evolve(result.query, restrictions=ruled_out), fixture
 
 
 @router.get("/{kind}", summary="A setup sheet, a drawing or a picture", response_class=Response)
@@ -182,6 +217,8 @@ async def paper(
         bool | None, Query(description="whether the sheet states where else the part can rest")
     ] = None,
     day: Annotated[date | None, Query(alias="date")] = None,
+    supports: InJson = None,
+    first_side: InJson = None,
     revision: Revision = None,
 ) -> Response:
     """A paper of a fixture; all but pictures and bodies wait for the search to be over.
@@ -213,7 +250,20 @@ async def paper(
         "seating": seating,
         **{name: None if size is None else given.length(size) for name, size in sizes.items()},
     }
-    order = PaperOrder.of(kind, result, rank, paper, unit, day or date.today(), wishes, job.result_hash)
+    chosen = asked_of(ChosenSupportsForm, "supports", supports)
+    before = before_of(request, asked_of(FirstSideForm, "first_side", first_side))
+    order = PaperOrder.of(
+        kind,
+        result,
+        rank,
+        paper,
+        unit,
+        day or date.today(),
+        wishes,
+        job.result_hash,
+        chosen,
+        before,
+    )
     content, result_hash = await at_desk(request, "paper", order)
     if result_hash is not None and job.result is result:
         job.result_hash = result_hash

@@ -22,6 +22,8 @@ from workhold.drawing.seats import caption
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Pose
+from workhold.model.query import Query
+from workhold.model.recounted import ChosenSupports
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.workpiece import Workpiece
@@ -30,11 +32,15 @@ from workhold.seating.clamping import ByHand, by_hand
 from workhold.seating.pattern import Pattern
 from workhold.units import unit_named
 from workhold.web.forms import LARGEST, Form, Number
+from workhold.web.support_bodies import sizes_with
+from workhold.web.support_forms import ChosenSupportsForm
+from workhold.web.support_tasks import SupportsOrder, chosen_bodies, chosen_supports
 from workhold.web.worker import Order
 
 __all__ = [
     "AT_ONCE",
     "KINDS",
+    "Before",
     "ClosingForm",
     "ClosingOrder",
     "PaperOrder",
@@ -55,6 +61,8 @@ KINDS = {
     "pins.csv": "text/csv; charset=utf-8",
     "assembly.glb": "model/gltf-binary",
 }
+# What another set-up was asked for, and its fixture.
+Before = tuple[Query, Fixture]
 # What is made while a search goes on, too.
 AT_ONCE = ("picture.svg", "assembly.glb")
 
@@ -75,6 +83,8 @@ class PaperOrder:
         :func:`workhold.drawing.result_sheet.result_details` and :func:`workhold.files.dxf.writer.setup_dxf`;
         lengths in mm.
     result_hash : of the result's file, or None where it is not known yet.
+    supports : what supports and clamp from above are asked for, and which set of them; None for none.
+    before : the set-up of the other side before; None for none.
     """
 
     kind: str
@@ -86,6 +96,8 @@ class PaperOrder:
     day: date
     wishes: dict[str, Any]
     result_hash: str | None
+    supports: ChosenSupportsForm | None = None
+    before: Before | None = None
 
     @classmethod
     def of(cls, kind: str, result: Result, rank: int, *options: Any) -> PaperOrder:
@@ -99,6 +111,20 @@ class PaperOrder:
     def fixture(self) -> Fixture:
         """The fixture."""
         return self.result[self.rank - 1 if len(self.result) == self.count else 0]
+
+    def chosen_supports(self) -> ChosenSupports | None:
+        """Finds the supports asked for and chooses a set of them; None where none are asked for,
+        or none hold the part.
+
+        Raises
+        ------
+        InputError
+            When there is no such set.
+        """
+        if self.supports is None:
+            return None
+        asked = SupportsOrder(self.fixture, self.result.query, self.supports)
+        return chosen_supports(asked, self.supports.chosen)
 
 
 def has_step() -> bool:
@@ -114,9 +140,16 @@ def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
 def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
     """Draws the setup sheet."""
     from workhold.drawing.result_sheet import result_sheet
+    from workhold.model.first_side import first_side
     from workhold.presenting.papers import pages_bytes
 
     digest = order.result_hash or hash_of(order.result)
+    wishes = {name: wish for name, wish in order.wishes.items() if name != "clearance"}
+    chosen = order.chosen_supports()
+    if chosen is not None:
+        wishes |= {"supports": chosen, "thickness": chosen.supports.request.thickness}
+    if order.before is not None:
+        wishes["first_side"] = first_side(order.fixture, order.result.query, *order.before)
     pages = result_sheet(
         order.result,
         order.rank,
@@ -124,7 +157,7 @@ def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
         day=order.day,
         paper=order.paper,
         unit=unit_named(order.unit),
-        **{name: wish for name, wish in order.wishes.items() if name != "clearance"},
+        **wishes,
     )
     return pages_bytes(pages, Path(order.kind).suffix, order.day), digest
 
@@ -167,10 +200,16 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
 
 def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
     """Writes the fixture in three dimensions."""
-    from workhold.files.glb.writer import fixture_glb
+    from workhold.files.glb.writer import bodies_glb, fixture_glb
     from workhold.model.bodies import BodySizes
 
     result, wishes = order.result, order.wishes
+    chosen = order.chosen_supports()
+    if chosen is not None:
+        lengths = {name: wishes[name] for name in ("peg_length", "peg_height")}
+        sizes = sizes_with(result.query, chosen.supports.request, **lengths)
+        made = chosen_bodies(chosen, sizes)
+        return bodies_glb(made, f"{made[0].name} set-up"), None
     heights = {name: wishes[name] for name in ("thickness", "peg_length", "peg_height")}
     sizes = BodySizes.of(result.workpiece, **heights)
     return fixture_glb(order.fixture, result.workpiece, result.toolkit, sizes), None

@@ -25,6 +25,7 @@ from workhold.model.search_report import Explanation
 from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
 from workhold.web.fixture_tasks import close, find_seating, make_paper
+from workhold.web.support_tasks import find_supports
 from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
@@ -203,7 +204,7 @@ def read_part(upload: Upload, order: Order) -> dict[str, Any]:
 def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
     """Describes what a file that was sent holds and leaves open, with the part if it can be read."""
     from workhold.files.part.survey import survey
-    from workhold.web.answers import survey_answer
+    from workhold.web.survey_answers import survey_answer
 
     with sent_file(upload) as path:
         seen = survey(path, **upload.options, called=CALLED)
@@ -315,6 +316,7 @@ TASKS: Tasks = {
     "paper": make_paper,
     "seating": find_seating,
     "closing": close,
+    "supports": find_supports,
     "family": find_family,
     "family_paper": make_family_paper,
 }

@@ -12,8 +12,9 @@ import pytest
 pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 
 from damaged_step import damaged
-from step_shapes import box, cut, cylinder, filleted, upright, write_step
+from step_shapes import at_height, box, cut, cylinder, filleted, upright, write_step
 
+from solid_examples import bridge
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 
@@ -27,21 +28,21 @@ def plate(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return write_step(tmp_path_factory.mktemp("step") / "plate.step", shape).read_bytes()
 
 
-def outcome(folder: Path, content: bytes, seed: int) -> str:
+def outcome(folder: Path, content: bytes, seed: int, peg_height: float | None = None) -> str:
     """What becomes of a damaged file: "read", or the sentence by which it is refused."""
     path = folder / f"damaged-{seed}.step"
     path.write_bytes(damaged(content, seed))
     try:
-        read_workpiece(path)
+        read_workpiece(path, peg_height=peg_height)
     except InputError as error:
         return str(error)
     return "read"
 
 
-def check(folder: Path, content: bytes, seeds: range) -> None:
+def check(folder: Path, content: bytes, seeds: range, peg_height: float | None = None) -> None:
     """Every damage is survived, and whatever is said is one sentence."""
     with ThreadPoolExecutor(2) as pool:
-        said = list(pool.map(lambda seed: outcome(folder, content, seed), seeds))
+        said = list(pool.map(lambda seed: outcome(folder, content, seed, peg_height), seeds))
     for sentence in set(said) - {"read"}:
         assert sentence.startswith("damaged-") and sentence.endswith((".", ")")) and "\n" not in sentence
     # The damage is neither harmless nor so great that nothing of the reader is tried.
@@ -57,6 +58,14 @@ def test_eight_damaged_files_are_read_or_refused(tmp_path: Path, plate: bytes) -
 def test_two_thousand_damaged_files_are_read_or_refused(tmp_path: Path, plate: bytes) -> None:
     """Also those that keep the library busy until its time is over."""
     check(tmp_path, plate, range(8, 2030))
+
+
+@pytest.mark.prove
+def test_two_hundred_damaged_files_are_read_or_refused_by_height(tmp_path: Path) -> None:
+    """Of a part with fillets, steps and two feet, seen below its deck."""
+    shape = filleted(bridge(), 2.0, at_height(22.0))
+    content = write_step(tmp_path / "bridge.step", shape).read_bytes()
+    check(tmp_path, content, range(200), peg_height=13.0)
 
 
 def test_the_command_line_outlives_a_file_that_brings_the_library_down(tmp_path: Path, plate: bytes) -> None:

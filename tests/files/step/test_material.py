@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,8 @@ from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fuse
 
 from workhold.files.step.edge_curves import edge_curves
 from workhold.files.step.faces import solid_faces
-from workhold.files.step.material import LevelBorder, Material
-from workhold.geometry.segment import Arc, Line
+from workhold.files.step.material import Material
+from workhold.files.step.plane_faces import PlaneFaces
 
 CONE = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(20, 12, 8), gp_Dir(0, 0, 1)), 9.0, 4.0, 14.0).Shape()
 DRILLED = cut(
@@ -43,14 +44,25 @@ def test_intervals_are_where_the_library_finds_material(name: str) -> None:
         assert inside == material.is_inside((x, y), z), (x, y, z)
 
 
+@pytest.mark.parametrize("passed", [[0.0, 0.0, 14.0], [0.0, 0.0, 14.0, 14.0], [0.0, 6.0, 14.0]])
+def test_faces_met_twice_or_not_at_all(monkeypatch: pytest.MonkeyPatch, passed: list[float]) -> None:
+    """Where a line meets two neighbours on their edge, or a face too much, each range is asked for by itself."""
+    shape: Any = box(60, 40, 14)
+    faces = solid_faces(shape)
+    monkeypatch.setattr(Material, "heights", lambda self, point: passed)
+    intervals = Material(shape, faces, edge_curves(faces)).intervals((30.0, 20.0))
+    assert (intervals[0][0], intervals[-1][1]) == (0.0, 14.0)
+    assert all(a[1] == b[0] for a, b in pairwise(intervals))
+
+
 def test_inside_of_a_border_is_found_at_the_heights_of_its_corners() -> None:
     """Points level with corners, and with the ends of arcs, are on the right side; so are those in holes."""
     corners = [(0.0, 0.0), (30.0, 0.0), (30.0, 20.0), (0.0, 20.0)]
-    sides = [Line(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
-    border = LevelBorder.of([*sides, Arc((20.0, 10.0), 5.0, 0.0, np.pi, -1.0)])
-    assert all(
-        border.has(point) for point in [(5.0, 10.0), (14.9, 10.0), (25.1, 10.0), (20.0, 4.9), (1e-3, 1e-3)]
-    )
-    assert not any(
-        border.has(point) for point in [(20.0, 10.0), (24.9, 10.0), (-1.0, 0.0), (31.0, 20.0), (31.0, 10.0)]
-    )
+    lines = [(*a, b[0] - a[0], b[1] - a[1]) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    one = np.zeros(4, np.int64)
+    arcs = np.array([(20.0, 10.0, 5.0, 0.0, np.pi)])
+    border = PlaneFaces(np.array([(7.0, 0.5, 0.0)]), np.array(lines), one, arcs, one[:1])
+    for x, y in [(5.0, 10.0), (14.9, 10.0), (25.1, 10.0), (20.0, 4.9), (1e-3, 1e-3)]:
+        assert border.heights((x, y)) == [7.0 + 0.5 * x]
+    for point in [(20.0, 10.0), (24.9, 10.0), (-1.0, 0.0), (31.0, 20.0), (31.0, 10.0)]:
+        assert border.heights(point) == []

@@ -42,9 +42,9 @@ def library(tmp_path_factory) -> built.Library:
     return built.Library(path)
 
 
-def door(library: built.Library, kernel: Any) -> built.Door:
+def checked(library: built.Library, kernel: Any) -> built.CheckedKernel:
     """The library's answer to a kernel of numba."""
-    return library.door(kernel.py_func)
+    return library.checked(kernel.py_func)
 
 
 def test_the_library_tells_of_which_sources_it_is(library):
@@ -86,21 +86,21 @@ def test_every_kernel_takes_what_a_library_can_be_handed(builder):
 
 def test_answers_are_the_same_to_the_last_bit(library):
     """Numbers, truths and arrays that the library makes."""
-    ours, theirs = door(library, distance.outline_distances), distance.outline_distances
+    ours, theirs = checked(library, distance.outline_distances), distance.outline_distances
     assert ours(POINTS, SQUARE).tobytes() == theirs(POINTS, SQUARE).tobytes()
     assert ours(POINTS[:0], SQUARE).shape == (0,)
     for x, y in POINTS:
         for kernel in (distance.turns_around, distance.is_inside):
-            answer = door(library, kernel)(x, y, SQUARE)
+            answer = checked(library, kernel)(x, y, SQUARE)
             assert answer == kernel(x, y, SQUARE) and type(answer) is type(kernel(x, y, SQUARE))
     circle = np.array([1.0, 0, 0, 1, 0, np.pi, 5, 1, 0, 0])
-    assert door(library, are_concentric)(circle, circle) is True
-    assert door(library, are_concentric)(circle, SQUARE[0]) is False
+    assert checked(library, are_concentric)(circle, circle) is True
+    assert checked(library, are_concentric)(circle, SQUARE[0]) is False
 
 
 def test_arrays_that_nobody_looks_at_are_given_back(library):
     """A view keeps an array of the library alive; thousands of large ones do not add up."""
-    distances = door(library, distance.outline_distances)
+    distances = checked(library, distance.outline_distances)
     last = distances(POINTS, SQUARE)[-1:]
     kept = last.copy()
     many, released = np.zeros((20_000, 2)), []
@@ -136,7 +136,7 @@ def test_arrays_that_nobody_looks_at_are_given_back(library):
 )
 def test_what_a_kernel_was_not_compiled_for_is_refused(library, arguments, words):
     with pytest.raises(TypeError, match="is_inside") as caught:
-        door(library, distance.is_inside)(*arguments)
+        checked(library, distance.is_inside)(*arguments)
     assert words in str(caught.value)
 
 
@@ -187,7 +187,7 @@ def read_only(array: Any) -> Any:
 )
 def test_arrays_are_taken_however_they_were_made(library, make):
     """Where they are looked at, they are what they are."""
-    ours = door(library, distance.outline_distances)
+    ours = checked(library, distance.outline_distances)
     for points, square in (
         (POINTS, make(SQUARE)),
         (make(np.tile(POINTS, 5))[:, :2].copy(), SQUARE),
@@ -203,7 +203,7 @@ def test_an_array_that_is_not_aligned_is_refused(library):
     """Its numbers are between those that a kernel would read."""
     beside = np.frombuffer(b"0" + SQUARE.tobytes(), np.float64, offset=1).reshape(SQUARE.shape)
     with pytest.raises(TypeError, match="rows must be a C-contiguous array"):
-        door(library, distance.is_inside)(0.0, 0.0, beside)
+        checked(library, distance.is_inside)(0.0, 0.0, beside)
 
 
 def test_whole_numbers_and_bytes_are_other_elements(library):
@@ -302,7 +302,7 @@ def test_truths_and_numbers_are_words():
 
 def test_the_interpreter_goes_on_while_a_kernel_runs(library):
     """A thread that is never asked to let others run lets them run while it is inside of a kernel."""
-    distances, many = door(library, distance.outline_distances), np.zeros((1_000_000, 2))
+    distances, many = checked(library, distance.outline_distances), np.zeros((1_000_000, 2))
     before = sys.getswitchinterval()
     sys.setswitchinterval(4.0)
     try:

@@ -54,8 +54,8 @@ def kernels() -> dict[str, Any]:
 
 
 def counting_functions(kernel: Any) -> dict[str, int]:
-    """Compile a kernel anew; how often its machine code counts a reference, by the function that does, Python's door left
-    out."""
+    """Compile a kernel anew; how often its machine code counts a reference, by the function that does; what Python calls
+    is left out."""
     for _ in (done for part in preparing.PARTS for done in preparing.prepared(part)):
         pass
     (signature,) = kernel.signatures

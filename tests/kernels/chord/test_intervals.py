@@ -17,10 +17,11 @@ from chord_examples import (
     random_chord,
     random_ranges,
     solutions,
+    touching,
     turn_at,
 )
 from workhold.kernels.chord.evaluation import chord
-from workhold.kernels.chord.intervals import NARROW, chord_intervals
+from workhold.kernels.chord.intervals import NARROW, chord_intervals, share_one_line
 
 
 def covering(ranges: np.ndarray, alphas: np.ndarray) -> np.ndarray:
@@ -80,6 +81,17 @@ def test_inside_its_range_a_branch_lies_on_both_features(kinds):
                 assert on_both or not low + NARROW < alpha < high - NARROW
                 looked, free = looked + 1, free + (not on_both)
     assert free < 0.005 * looked
+
+
+def test_arcs_that_touch_leave_out_only_a_sliver():
+    """On either side of the coincidence there are as many chords as solutions, and so up to the other tangency."""
+    random = Random(15)
+    for _ in range(40):
+        a, b, d, middle = touching(random)
+        ranges = chord_intervals(a, b, d)
+        far = np.arange(80) * tau / 80 + random.random()
+        assert covering(ranges, far).tolist() == counts(a, b, d, far, 0.0).tolist()
+        assert covering(ranges, middle + np.array([1e-11, -1e-11])).tolist() == [2, 2]
 
 
 def is_mere_cut(ranges, branch, alpha):
@@ -176,3 +188,39 @@ def test_the_known_range_of_a_ladder():
     wall, floor = line_row(0, 4, pi / 2, 4), line_row(4.5, 0, 0, 4.5)
     ((low, high, *_),) = chord_intervals(wall, floor, 10.0)
     assert low == pytest.approx(tau - np.arcsin(0.8)) and high == pytest.approx(tau - np.arccos(0.9))
+
+
+SQUARE_PAIRS = [
+    (
+        line_row(0.0, 0.0, 0.3, 20.0),
+        line_row(-8.0 * sin(0.3) + 3.0 * cos(0.3), 8.0 * cos(0.3) + 3.0 * sin(0.3), 0.3 + pi, 9.0),
+        8.0,
+    ),
+    (arc_row(1.0, 2.0, 5.0), arc_row(1.0, 2.0, 3.0, 0.4, 1.0, -1.0), 8.0),
+    (arc_row(1.0, 2.0, 5.0), arc_row(1.0, 2.0, 3.0, 0.4, 1.0, -1.0), 2.0),
+    (arc_row(1.0, 2.0, 5.0), arc_row(1.0, 2.0, 5.0), 10.0),
+    (arc_row(0.0, 0.0, 5.0), arc_row(20.0, 0.0, 3.0), 12.0),
+    (line_row(0.0, 0.0, 0.0, 20.0), arc_row(2.0, 9.0, 3.0), 6.0),
+]
+
+
+@pytest.mark.parametrize("pair", SQUARE_PAIRS)
+def test_pegs_share_one_line_where_they_always_stand_square(pair):
+    """They do at their distance, either way round, and not at one that differs by a hair."""
+    a, b, d = pair
+    assert share_one_line(a, b, d) and share_one_line(b, a, d)
+    for hair in (1e-8, -1e-8):
+        off = share_one_line(a, b, d + hair)
+        # With too short a chord carriers do not even touch.
+        assert not off or (hair < 0 and len(chord_intervals(a, b, d + hair)) == 0)
+    assert len(chord_intervals(a, b, d)) == 0
+
+
+def test_pegs_on_other_features_share_no_line():
+    """Nor do those nearer to parallel lines than these are apart, which touch one of them at most."""
+    low, high = line_row(0.0, 0.0, 0.0, 20.0), line_row(0.0, 8.0, 0.0, 20.0)
+    assert share_one_line(low, high, 7.0)
+    assert not share_one_line(low, high, 9.0)
+    assert not share_one_line(low, line_row(0.0, 8.0, 1e-6, 20.0), 8.0)
+    assert not share_one_line(arc_row(0.0, 0.0, 5.0), arc_row(1e-6, 0.0, 5.0), 10.0 - 1e-7)
+    assert not share_one_line(low, arc_row(0.0, 8.0, 3.0), 8.0)

@@ -337,6 +337,7 @@ ROUNDED_MOTION = changed(
     coincidences.motion,
     from_coincidence=coincidences.from_coincidence.py_func,
     is_regular=changed(coincidences.is_regular, **ROUNDED),
+    regular_radius=changed(coincidences.regular_radius, **ROUNDED),
     **ROUNDED,
 )
 

@@ -9,8 +9,8 @@ import pytest
 
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import DEPTH
+from workhold.kernels.seating.tip_in_pocket import value_of, zeros
 from workhold.kernels.seating.turning import HALVES, NONE, ROOT, SHAPE_LENGTH, contact, judged, write_shape
-from workhold.kernels.seating.wall_equilibria import value_of, zeros
 
 
 def random_shape(random):

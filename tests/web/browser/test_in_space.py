@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
@@ -33,20 +34,110 @@ PICTURE = """async () => {
 }"""
 BODIES = """async () => {
   const { view } = await import("/static/space-dialog.js");
-  return view.shown.map(({ mesh }) => [mesh.name, mesh.position.toArray()]);
+  const moved = ({ opens }) => (opens ?? [0, 0, 0]).map((part) => part * view.opened);
+  return view.shown.map((one) => (one.mesh ? [one.mesh.name, one.mesh.position.toArray()] : [one.name, moved(one)]));
+}"""
+HAS_WEBGL = "() => Boolean(document.createElement('canvas').getContext('webgl2'))"
+OPEN_WIDE = """() => {
+  const slider = document.querySelector("#space-opening");
+  slider.value = slider.max;
+  slider.dispatchEvent(new Event("input"));
+}"""
+# The share of pixels that one way of drawing covers and the other does not, and how far colours are apart where most do.
+BOTH = """async () => {
+  const { view } = await import("/static/space-dialog.js");
+  const { PlainView } = await import("/static/space/plain-view.js");
+  const { bodiesOf } = await import("/static/space/glb-reading.js");
+  const answer = await fetch(document.querySelector("#space-save").href);
+  const plain = document.createElement("canvas");
+  view.canvas.after(plain);
+  plain.style.cssText = `display: block; width: ${view.canvas.clientWidth}px; height: ${view.canvas.clientHeight}px`;
+  const other = new PlainView(plain, plain.getContext("2d"));
+  other.show(bodiesOf(await answer.arrayBuffer()));
+  view.look(0.4, 0.5);
+  other.look(0.4, 0.5);
+  const pixels = [view, other].map((one) => {
+    one.render();
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [400, 240];
+    copy.getContext("2d").drawImage(one.canvas, 0, 0, 400, 240);
+    return copy.getContext("2d").getImageData(0, 0, 400, 240).data;
+  });
+  plain.remove();
+  let [either, uncovered, both] = [0, 0, 0];
+  const apart = [];
+  for (let k = 0; k < pixels[0].length; k += 4) {
+    const seen = pixels.map((data) => data[k + 3] > 128);
+    either += seen[0] || seen[1];
+    uncovered += seen[0] !== seen[1];
+    if (!seen[0] || !seen[1]) continue;
+    both += 1;
+    apart.push([0, 1, 2].reduce((sum, c) => sum + Math.abs(pixels[0][k + c] - pixels[1][k + c]), 0) / 765);
+  }
+  apart.sort((a, b) => a - b);
+  return { covered: uncovered / either, colour: apart[Math.floor(0.9 * both)] };
 }"""
 
 
-@pytest.fixture
-def opened(walk: Walk) -> Walk:
+# With a graphics card, as far as the browser tells; and a browser without WebGL.
+WITH_CARD = """const given = WebGL2RenderingContext.prototype.getExtension;
+WebGL2RenderingContext.prototype.getExtension = function (name) {
+  return name === "WEBGL_debug_renderer_info" ? null : given.call(this, name);
+};"""
+WITHOUT_WEBGL = """const given = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+  return kind.startsWith("webgl") ? null : given.call(this, kind, ...more);
+};"""
+
+
+@contextmanager
+def walking(browser: Any, server: RunningServer, script: str) -> Iterator[Walk]:
+    """The page in a browser that runs a script before it."""
+    context = browser.new_context(
+        viewport={"width": 1440, "height": 900}, reduced_motion="reduce", accept_downloads=True
+    )
+    context.add_init_script(script)
+    walk = Walk(context.new_page(), server)
+    walk.open()
+    yield walk
+    context.close()
+    assert walk.troubles == []
+
+
+def in_space(walk: Walk) -> Walk:
     """The best fixture of the widget in three dimensions."""
-    if not walk.page.evaluate("() => Boolean(document.createElement('canvas').getContext('webgl2'))"):
-        pytest.skip("this chromium draws no WebGL")
     walk.take()
     walk.search()
     walk.page.click("#in-space")
     walk.seen("#space-kinds li")
     return walk
+
+
+@pytest.fixture(params=["card", "slow"])
+def opened(browser: Any, server: RunningServer, request: Any) -> Iterator[Walk]:
+    """The best fixture of the widget in three dimensions, drawn by WebGL, and where that would be slow."""
+    with walking(browser, server, WITH_CARD if request.param == "card" else "") as walk:
+        if request.param == "card" and not walk.page.evaluate(HAS_WEBGL):
+            pytest.skip("this chromium draws no WebGL")
+        in_space(walk)
+        assert ("without WebGL" in walk.page.inner_text("#space-words")) == (request.param == "slow")
+        yield walk
+
+
+@pytest.fixture
+def carded(browser: Any, server: RunningServer) -> Iterator[Walk]:
+    """The same drawn by WebGL only."""
+    with walking(browser, server, WITH_CARD) as walk:
+        if not walk.page.evaluate(HAS_WEBGL):
+            pytest.skip("this chromium draws no WebGL")
+        yield in_space(walk)
+
+
+@pytest.fixture
+def without(browser: Any, server: RunningServer) -> Iterator[Walk]:
+    """The page in a browser that gives no WebGL."""
+    with walking(browser, server, WITHOUT_WEBGL) as walk:
+        yield walk
 
 
 def told(walk: Walk) -> list[Any]:
@@ -93,13 +184,7 @@ def test_it_is_turned_by_mouse_and_keys(opened: Walk) -> None:
 def test_the_slider_opens_what_moves(opened: Walk) -> None:
     """The right jaw and its pegs move along its opening by what is said, all else stays; closed again all is as before."""
     page = opened.page
-    page.evaluate(
-        """() => {
-          const slider = document.querySelector("#space-opening");
-          slider.value = slider.max;
-          slider.dispatchEvent(new Event("input"));
-        }"""
-    )
+    page.evaluate(OPEN_WIDE)
     by = float(page.inner_text("#space-opened").split()[0])
     assert by > 5
     moved = dict(page.evaluate(BODIES))
@@ -122,33 +207,31 @@ def test_the_view_fits_the_next_fixture_too(opened: Walk) -> None:
     assert [name for name, _ in page.evaluate(BODIES)] == [body.name for body in told(opened)]
 
 
-@pytest.fixture
-def without(browser: Any, server: RunningServer) -> Iterator[Walk]:
-    """The page in a browser that gives no WebGL."""
-    context = browser.new_context(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
-    context.add_init_script(
-        """const given = HTMLCanvasElement.prototype.getContext;
-        HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
-          return kind.startsWith("webgl") ? null : given.call(this, kind, ...more);
-        };"""
-    )
-    walk = Walk(context.new_page(), server)
-    walk.open()
-    yield walk
-    context.close()
-    assert walk.troubles == []
-
-
-def test_without_webgl_one_sentence_says_so(without: Walk) -> None:
-    """Nothing to turn, but the bodies by kind and the file; and the page goes on."""
+def test_without_webgl_a_plainer_picture_is_drawn(without: Walk) -> None:
+    """One sentence says so; the bodies are there, turned by keys and opened by the slider; and the page goes on."""
     page = without.page
-    without.take()
-    without.search()
-    page.click("#in-space")
-    without.seen("#space-kinds li")
-    assert page.inner_text("#space-words").count(".") == 1 and "no WebGL" in page.inner_text("#space-words")
-    assert not page.is_visible("#space-canvas")
+    in_space(without)
+    assert page.inner_text("#space-words").count(".") == 1 and "without WebGL" in page.inner_text(
+        "#space-words"
+    )
+    first = page.evaluate(PICTURE)
+    assert first["share"] > 0.1 and first["colours"] > 20
+    sums = [first["sum"]]
+    for key in ("ArrowLeft", "ArrowUp", "+", "Shift+ArrowRight"):
+        page.press("#space-canvas", key)
+        sums.append(page.evaluate(PICTURE)["sum"])
+    page.press("#space-canvas", "0")
+    assert page.evaluate(PICTURE)["sum"] == first["sum"]
+    page.evaluate(OPEN_WIDE)
+    sums.append(page.evaluate(PICTURE)["sum"])
+    assert len(set(sums)) == len(sums)
     assert read_glb(without.saved("#space-save"))[1]
     page.click("#space .primary")
     page.click("#next")
     without.until("state.selected.rank === 2")
+
+
+def test_both_ways_of_drawing_show_the_same(carded: Walk) -> None:
+    """With and without WebGL the bodies cover the same pixels, but for their rims, in nearly the same colours."""
+    differ = carded.page.evaluate(BOTH)
+    assert differ["covered"] < 0.01 and differ["colour"] < 0.12, differ

@@ -21,9 +21,11 @@ from workhold.files.glb.meshes import Mesh, body_mesh
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.fixture import Fixture
+from workhold.model.support_bodies import SUPPORT_HEIGHT, bodies_with_supports, triple_of_rank
+from workhold.model.support_triples import Supports, Triple
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["bodies_glb", "fixture_glb", "write_fixture_glb"]
+__all__ = ["bodies_glb", "fixture_glb", "save_glb", "supports_glb", "write_fixture_glb"]
 
 # Numbers of the specification: its name, kinds of chunks, component types, targets of buffer views.
 MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
@@ -64,6 +66,41 @@ def fixture_glb(
     """
     bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
     return bodies_glb(bodies, f"{bodies[0].name} set-up")
+
+
+def supports_glb(supports: Supports, triple: Triple, sizes: BodySizes | None = None) -> bytes:
+    """The bytes of the GLB file of a fixture on a set of three supports, with the clamp on top.
+
+    Parameters
+    ----------
+    sizes : as of :func:`workhold.model.support_bodies.bodies_with_supports`.
+
+    Raises
+    ------
+    InputError
+        For pegs and pads of radius 0, which have no body.
+    """
+    bodies = bodies_with_supports(supports, triple, sizes)
+    return bodies_glb(bodies, f"{bodies[0].name} set-up")
+
+
+def save_glb(
+    fixture: Fixture,
+    path: str | Path,
+    *,
+    thickness: float | None = None,
+    supports: Supports | None = None,
+    best: int = 1,
+) -> None:
+    """Writes a GLB file, see :meth:`workhold.Fixture.save_glb`."""
+    result = fixture.listing.result
+    if supports is None:
+        sizes = BodySizes.of(result.workpiece, thickness)
+        write_fixture_glb(fixture, result.workpiece, result.toolkit, path, sizes)
+        return
+    high = supports.request.thickness if thickness is None else thickness
+    sizes = BodySizes.of(result.workpiece, high, support_height=SUPPORT_HEIGHT)
+    write_bytes(path, supports_glb(supports, triple_of_rank(supports, best), sizes))
 
 
 def bodies_glb(bodies: Sequence[FixtureBody], name: str) -> bytes:

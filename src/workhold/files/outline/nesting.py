@@ -26,7 +26,7 @@ from workhold.geometry.loop import (
 from workhold.geometry.segment import Segment, bounding_box, segment_rows
 from workhold.kernels.base.distance import is_inside
 
-__all__ = ["DrawnPart", "nest", "refuse_loops_across"]
+__all__ = ["DrawnPart", "as_one", "nest", "refuse_loops_across"]
 
 
 @frozen
@@ -111,6 +111,16 @@ def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
         DrawnPart(number, tuple(rings[k].loop for k in (outline, *inside)), area, rings[outline].box)
         for number, (area, outline, inside) in enumerate(parts, start=1)
     )
+
+
+def as_one(loops: Sequence[Loop]) -> DrawnPart:
+    """Loops of one workpiece as one part, also where it has several outer ones."""
+    parts = nest(loops)
+    boxes = np.array([part.bounds for part in parts])
+    x0, y0 = boxes[:, :2].min(axis=0).tolist()
+    x1, y1 = boxes[:, 2:].max(axis=0).tolist()
+    inside = tuple(loop for part in parts for loop in part.loops)
+    return DrawnPart(1, inside, sum(part.area for part in parts), (x0, y0, x1, y1))
 
 
 def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart]) -> None:

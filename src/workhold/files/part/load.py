@@ -17,7 +17,7 @@ from workhold.files.outline.curves import (
     checked_fit,
 )
 from workhold.files.outline.joining import Loop
-from workhold.files.outline.nesting import chosen_part, nest
+from workhold.files.outline.nesting import as_one, chosen_part
 from workhold.files.part.data import drawing_of_object
 from workhold.files.part.finding import builtin_parts, builtin_path, found, kind_of, read_bytes
 from workhold.files.part.loaded import Loaded, built, from_drawing, from_heights, refuse_large
@@ -251,7 +251,7 @@ def from_json(
     refuse_large(sum(len(loop) for loop in rows))
     loops = [Loop(loop, ()) for loop in rows]
     workpiece = built(name, loops, with_labels=False, departure=read.departure, solid=read.solid)
-    part = nest([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops])[:1]
+    part = (as_one([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
     chosen_part(part, part_number)
     return Loaded(workpiece, workpiece.remarks, part)
 

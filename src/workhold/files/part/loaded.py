@@ -24,7 +24,7 @@ from workhold.files.outline.diagnostics import (
     with_layers_named,
 )
 from workhold.files.outline.joining import Loop, join
-from workhold.files.outline.nesting import DrawnPart, chosen_part, nest, refuse_loops_across
+from workhold.files.outline.nesting import DrawnPart, as_one, chosen_part, nest, refuse_loops_across
 from workhold.files.questions import PART_NUMBER
 from workhold.model.solid import HeightRow, SolidOutline
 from workhold.model.workpiece import Workpiece
@@ -71,7 +71,7 @@ def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
     loops = [Loop(loop, ("",) * len(loop)) for loop in drawing.loops]
     workpiece = built(name, loops, with_labels=False, solid=drawing.solid)
     remarks = (*drawing.remarks, *workpiece.remarks)
-    return Loaded(workpiece, remarks, nest(loops)[:1], heights=drawing.heights)
+    return Loaded(workpiece, remarks, (as_one(loops),), heights=drawing.heights)
 
 
 def from_drawing(

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.files.dxf.reader import opened, refuse_other_formats, scale_of, unit_code
@@ -176,9 +176,7 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
         sentence = str(error)
     asked = tuple(dict.fromkeys(mark[1:-1] for mark in MARK.findall(sentence)))
     if loaded is not None:
-        loaded = Loaded(
-            loaded.workpiece, tuple(worded(remark, called) for remark in loaded.remarks), loaded.parts
-        )
+        loaded = evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
     unit = ANY_UNIT if UNIT in sentence else None
     drawing = drawing_of(path, content, options if unit is None else {**options, "unit": unit})
     chains = cleaned(drawing.chains).chains

@@ -23,7 +23,7 @@ from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees, significant
-from workhold.files.result.forms import COLUMNS_OF, HEAD, columns_said
+from workhold.files.result.forms import HEAD, columns_of, columns_said
 from workhold.files.result.parts import (
     checked_head,
     checked_query,
@@ -63,10 +63,12 @@ class ColumnsSink:
             When the file cannot be written.
         """
         counts = Counter[str]()
+        columns = columns_of(result.toolkit.travels, result.query.program is not None)
         with binary_file(self.path) as stream:
-            archive = ArchiveWriter(stream, COLUMNS_OF[result.toolkit.travels], listed)
+            archive = ArchiveWriter(stream, columns, listed)
             for table in tables:
                 counts.update(result.toolkit.arrangements_counted(table.arrangement))
+                table = table.with_figures(columns["quality"].shape[0])
                 for start in range(0, len(table), BLOCK):
                     archive.add(as_written(table.take(slice(start, start + BLOCK))))
             if archive.done < listed:

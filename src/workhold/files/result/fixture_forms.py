@@ -213,6 +213,15 @@ class PosePart(FormPart):
     y: float
 
 
+class NearestMovePart(FormPart):
+    """Where the tools of the program come nearest to what holds the part."""
+
+    distance: float
+    line: Whole
+    tool: Whole
+    element: str
+
+
 class FixturePart(FormPart):
     """One fixture; best first."""
 
@@ -230,6 +239,7 @@ class FixturePart(FormPart):
     pairs: Whole | None = None
     quality: dict[str, float] = Field(default_factory=dict)
     seating: SeatingPart | None = None
+    program_clearance: NearestMovePart | None = None
 
 
 class ResultFile(Head):

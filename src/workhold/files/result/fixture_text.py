@@ -33,7 +33,7 @@ from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture
-from workhold.model.quality import FIGURES, SEATING_FIGURES, Figure
+from workhold.model.quality import SEATING_FIGURES, Figure, figures_in
 from workhold.model.result import FixtureTable, Result, flat_angles, peg_places
 from workhold.model.seating import DECIMALS
 from workhold.model.workpiece import Workpiece
@@ -67,7 +67,8 @@ DIGITS, DOUBTFUL = 12, 1e-3
 
 def known_figures(table: FixtureTable) -> list[Figure]:
     """The figures of quality that all fixtures of a table have."""
-    return [figure for number, figure in enumerate(FIGURES) if np.isfinite(table.quality[:, number]).all()]
+    figures = figures_in(table.quality.shape[1])
+    return [figure for number, figure in enumerate(figures) if np.isfinite(table.quality[:, number]).all()]
 
 
 def rounded(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:
@@ -185,7 +186,8 @@ def fixture_rows(
 
 def blocks(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[WrittenBlock]:
     """The fixtures of a table, rounded as they are written, block by block."""
-    known = [FIGURES.index(figure) for figure in known_figures(table)]
+    figures = figures_in(table.quality.shape[1])
+    known = [figures.index(figure) for figure in known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
         theta, table_read = as_written(block)

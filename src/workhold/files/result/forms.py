@@ -19,6 +19,7 @@ from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import Fit
+from workhold.model.program import Program
 from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
@@ -29,6 +30,7 @@ from workhold.model.workpiece import Workpiece
 __all__ = [
     "COLUMNS",
     "COLUMNS_OF",
+    "columns_of",
     "HEAD",
     "Head",
     "LoadPart",
@@ -270,6 +272,8 @@ class Head(FormPart):
     seating: Annotated[int, Field(ge=1)] | None = None
     opening: float | None = None
     foolproof: bool = False
+    program: dict[str, Any] | None = None
+    peg_height: float | None = None
     pairs: Annotated[int, Field(ge=0)] | None = None
     seats: Annotated[int, Field(ge=0)] | None = None
 
@@ -317,7 +321,24 @@ class Head(FormPart):
             seating=self.seating,
             opening=self.opening,
             foolproof=self.foolproof,
+            program=self.asked_program(),
+            peg_height=self.peg_height,
         )
+
+    def asked_program(self) -> Program | None:
+        """The program that fixtures are to let pass.
+
+        Raises
+        ------
+        InputError
+            When it lacks something, or holds what cannot be.
+        """
+        if self.program is None:
+            return None
+        try:
+            return Program.of_entries(self.program)
+        except (LookupError, TypeError, ValueError, AttributeError) as error:
+            raise InputError(f"its program cannot be used: {error}.") from error
 
 
 HEAD = "result.json"
@@ -346,10 +367,18 @@ PAIR_COLUMNS = COLUMNS | {
 COLUMNS_OF = {1: COLUMNS, 2: PAIR_COLUMNS}
 
 
+def columns_of(travels: int, has_program: bool) -> Columns:
+    """What the columns hold, by how many things move in a fixture; with a program its clearance, too."""
+    columns = COLUMNS_OF[travels]
+    return columns | {"quality": Column("<f8", (len(FIGURES) + 1,))} if has_program else columns
+
+
 def columns_said(head: str) -> Columns:
     """What the columns hold beside a head, which may be of any kind of file."""
     try:
-        toolkit = json.loads(head).get("toolkit")
-        return PAIR_COLUMNS if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else COLUMNS
+        said = json.loads(head)
+        toolkit = said.get("toolkit")
+        travels = 2 if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else 1
+        return columns_of(travels, said.get("program") is not None)
     except (ValueError, AttributeError, RecursionError):
         return COLUMNS

@@ -34,7 +34,7 @@ from workhold.files.result.parts import (
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Pose
-from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
+from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION, PROGRAM_FIGURE
 from workhold.model.query import Query
 from workhold.model.result import FixtureTable, Result, peg_places
 from workhold.model.seating import Seating
@@ -55,7 +55,7 @@ class Columns:
     holes : (N, P, 3) holes and faces.
     contacts : (N, P, 4) x, y and forces per unit of each of two clamps' forces (0 for a missing second one).
     placing : (N, 5) pose in degrees and mm, jaw separation and number of pairs.
-    quality : (N, Q) figures of quality, NaN where the file gives none.
+    quality : (N, Q) figures of quality, that of a program last, NaN where the file gives none.
     seating : of the first fixtures.
     """
 
@@ -123,7 +123,7 @@ def collected(fixtures: Iterable[Any], path: Path) -> Columns:
             raise InputError(
                 f"{path}: fixture {wrong} cannot be used: it does not have as many pegs as the first."
             )
-        shapes = ((), (pegs,), (pegs, 3), (pegs, 4), (5,), (len(FIGURES),))
+        shapes = ((), (pegs,), (pegs, 3), (pegs, 4), (5,), (len(FIGURES) + 1,))
         for k, (kind, shape) in enumerate(zip(kinds, shapes, strict=True)):
             blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
         if len(rows) < BLOCK:
@@ -156,7 +156,8 @@ def fixture_row(
         raise ValueError("a peg does not have a force for each clamp")
     contacts = [[peg["x"], peg["y"], *force] for peg, force in zip(pegs, forces, strict=True)]
     figures = fixture.get("quality", {})
-    known = [figures[figure.key] for figure in FIGURES if figure.key in figures]
+    every = (*FIGURES, PROGRAM_FIGURE)
+    known = [figures[figure.key] for figure in every if figure.key in figures]
     # The travel of a clamp follows from its place.
     travel = 0.0 if directions else fixture["jaw_separation"]
     placing = [pose["theta_deg"], pose["x"], pose["y"], travel, fixture.get("pairs", 1) if several else 1]
@@ -169,7 +170,7 @@ def fixture_row(
         abs(value) > LARGEST_LENGTH for value in numbers
     ):
         raise ValueError("a length, an angle or a force is not a finite number")
-    return name, jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in FIGURES]
+    return name, jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in every]
 
 
 def directions_of(fixture: Any) -> list[str]:
@@ -263,7 +264,7 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         position=np.stack([x, y], axis=1),
         jaw_separation=np.stack(travels, axis=1)[:, alone].copy(),
         force=np.ascontiguousarray(force[:, :, alone]),
-        quality=columns.quality,
+        quality=columns.quality[:, : len(FIGURES) + (query.program is not None)],
         pairs=pairs.astype(np.int32),
     )
 
@@ -319,5 +320,7 @@ def measured(table: FixtureTable, query: Query) -> FixtureTable:
     from workhold.statics.quality import quality_of
 
     asked = query.tolerance, query.loads
-    figures = quality_of(table, query.workpiece, query.toolkit, *asked, jaw_force=query.jaw_force)
+    figures = quality_of(
+        table, query.workpiece, query.toolkit, *asked, jaw_force=query.jaw_force, passed=query.passed
+    )
     return evolve(table, quality=np.where(wanted, figures, table.quality))

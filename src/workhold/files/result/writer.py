@@ -18,12 +18,13 @@ from typing import IO, Any
 from attrs import asdict
 
 from workhold.files.atomic import text_file
-from workhold.files.result.fixture_text import fixture_lines, rounded_degrees
+from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
 from workhold.fixels.carrier import Holes
 from workhold.fixels.fields import FLAT
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.quality import PROGRAM_CLEARANCE
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
@@ -78,6 +79,8 @@ def result_text(result: Result) -> Iterator[str]:
     for lines in fixture_lines(result.table, result.toolkit, result.workpiece):
         seatings = result.seating[count : count + len(lines)]
         lines[: len(seatings)] = map(with_seating, lines, seatings)
+        if result.query.passed is not None:
+            lines = with_clearances(lines, result, slice(count, count + len(lines)))
         yield separator + ",\n".join(lines)
         separator, count = ",\n", count + len(lines)
     yield "\n]}\n"
@@ -86,6 +89,31 @@ def result_text(result: Result) -> Iterator[str]:
 def with_seating(line: str, seating: Seating) -> str:
     """The line of a fixture with its seating."""
     return f'{line[:-1]}, "seating": {json.dumps(seating.as_fields())}}}'
+
+
+def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
+    """The lines of some fixtures, each with what the program's tools come nearest to.
+
+    Nothing is said where no tool comes down to the pegs.
+    """
+    # Other files are written without what measures.
+    from workhold.statics.program_clearance import element_name, nearest_moves
+
+    assert result.query.passed is not None
+    toolkit, (_, table) = result.toolkit, as_written(result.table.take(rows))
+    near = nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
+    out = []
+    for number, line in enumerate(lines):
+        if near.line[number] >= 0:
+            said = {
+                "distance": float(f"{table.quality[number, PROGRAM_CLEARANCE]:.12g}"),
+                "line": int(near.line[number]),
+                "tool": int(near.tool[number]),
+                "element": element_name(table, toolkit, number, int(near.contact[number])),
+            }
+            line = f'{line[:-1]}, "program_clearance": {json.dumps(said)}}}'
+        out.append(line)
+    return out
 
 
 def head(result: Result) -> dict[str, Any]:
@@ -161,6 +189,11 @@ def asked_entry(query: Query) -> dict[str, Any]:
             {}
             if query.seating is None
             else {"seating": query.seating, "opening": query.opening, "foolproof": query.foolproof}
+        ),
+        **(
+            {}
+            if query.program is None
+            else {"peg_height": query.peg_height, "program": query.program.to_dict()}
         ),
     }
 

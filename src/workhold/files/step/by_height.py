@@ -89,7 +89,7 @@ class HeightDrawing:
 
     Parameters
     ----------
-    loops : vertices (N, 3) in mm of every loop; the outer one first.
+    loops : vertices (N, 3) in mm of every loop; outer ones first, the largest of them before all.
     solid : how the solid stands, with the bands of the segments.
     remarks : sentences for the user.
     heights : what other heights of the pegs offer.
@@ -180,8 +180,12 @@ def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing 
     chosen = chosen_solid(solids, view.part_number)
     try:
         drawing = guarded(lambda: drawn(chosen.shape, view), ValueError)
-    except InputError:
-        return read_solid(solids, view.axis, None, view.part_number, None)
+    except InputError as error:
+        silhouette = read_solid(solids, view.axis, None, view.part_number, None)
+        if guarded(lambda: is_prism(standing(along(chosen.shape, axis_named(view.axis))))):
+            return silhouette
+        unknown = f"At which heights its faces are touched is not known: {error}"
+        return evolve(silhouette, remarks=(*silhouette.remarks, unknown))
     return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
 
 
@@ -263,12 +267,6 @@ def drawn(shape: Any, view: HeightView) -> HeightDrawing:
         raise InputError(f"along {axis}: {error}; {advice(solid, room, least)}.") from error
     loops = [vertices_of(loop) for loop in outline.loops]
     areas = [signed_area(loop_segments(loop)) for loop in loops]
-    feet = sum(area > 0 for area in areas)
-    if feet > 1:
-        raise InputError(
-            f"along {axis} pegs of {outline.peg_height:g} mm meet the part in {feet} separate pieces: "
-            f"{advice(solid, room, least, one_piece=True)}."
-        )
     order = sorted(range(len(loops)), key=lambda k: -areas[k])
     bands = [strip.band for k in order for strip in outline.loops[k]]
     faces = [strip.faces for k in order for strip in outline.loops[k]]
@@ -278,10 +276,11 @@ def drawn(shape: Any, view: HeightView) -> HeightDrawing:
             f"{outline.peg_height:g} mm: {advice(solid, room, least)}."
         )
     level = [[loop.tolist() for loop in found] for found in (bottom_loops(solid), top_loops(solid))]
+    feet = sum(area > 0 for area in areas)
     found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces, *level)
     plain_prism = view.peg_height is None and is_prism(solid)
     rows = [] if plain_prism else height_table(solid, room, least)
-    remarks = [] if plain_prism else height_remarks(outline, found, rows)
+    remarks = [] if plain_prism else height_remarks(outline, found, rows, feet)
     if any(band is None for band in bands):
         remarks += other_axis_remarks(shape, axis)
     return HeightDrawing(tuple(loops[k] for k in order), found, tuple(remarks), tuple(rows))
@@ -344,23 +343,17 @@ def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
     )
 
 
-def advice(solid: StandingSolid, room: float, least: float, one_piece: bool = False) -> str:
+def advice(solid: StandingSolid, room: float, least: float) -> str:
     """What to give instead, in words."""
-    rows = height_table(solid, room, least)
-    if one_piece:
-        rows = [row for row in rows if is_one_piece(solid.outline(row.high, room, least))]
-    best = longest(rows)
+    best = longest(height_table(solid, room, least))
     if best is None:
         return f"give another axis, or {SECTION}"
     return f"give {PEG_HEIGHT} {best.high:.6g}, or another axis"
 
 
-def is_one_piece(outline: HeightOutline) -> bool:
-    """Whether an outline has one outer loop."""
-    return sum(signed_area(loop_segments(vertices_of(loop))) > 0 for loop in outline.loops) == 1
-
-
-def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]) -> list[str]:
+def height_remarks(
+    outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow], feet: int
+) -> list[str]:
     """What an outline by height is, what may be touched of it, and a height at which more may be."""
     _, border, touchable, band = measures(outline)
     reach = (
@@ -370,6 +363,8 @@ def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[H
         "above, can meet"
     )
     remarks = [f"The part is {found.height:.6g} mm high along {found.axis}; {reach}."]
+    if feet > 1:
+        remarks.append(f"It has {feet} separate pieces, between which pegs may stand.")
     if touchable < border * (1 - 1e-9):
         remarks.append(
             f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of the outline, and only these are "

@@ -7,11 +7,11 @@ from math import atan2, hypot, pi, sqrt
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import ALIGNED, SHORTEST
-from workhold.files.step.faces import SolidFace
+from workhold.conventions import ALIGNED, DISGUISE, SHORTEST
+from workhold.files.step.faces import SolidFace, surface_of
 from workhold.files.step.solids import sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
@@ -19,6 +19,10 @@ __all__ = ["EdgeCurve", "curve_of", "edge_curves", "height"]
 
 # Points along a curve that is neither a line nor an arc in the plane, at which its two sides are looked at.
 SAMPLES = 33
+# Heights that differ by less in mm are one.
+ONE_HEIGHT = 1e-9
+# mm. An edge nearer to its wall is on it as it is. Radians. Arcs that lack less are circles.
+EXACT_ON, WHOLE_TURN = 1e-7, 1e-9
 GOLDEN = (sqrt(5.0) - 1.0) / 2.0
 Point3 = tuple[float, float, float]
 
@@ -70,10 +74,18 @@ class EdgeCurve:
                 b = middle
         return curve_point(self.curve, (a + b) / 2)
 
+    def crossings(self, z: float) -> list[Point]:
+        """Points (x, y) at which the edge passes a height."""
+        heights = self.points[:, 2] - z
+        passes = np.flatnonzero(heights[:-1] * heights[1:] < 0)
+        return [self.point_at(int(k), height, z)[:2] for k in passes]
+
     def turning_points(self) -> list[Point]:
         """Points (x, y) within the edge at which it is highest or lowest around."""
-        z = self.points[:, 2]
-        turns = np.flatnonzero((z[1:-1] - z[:-2]) * (z[2:] - z[1:-1]) < 0) + 1
+        rises = np.diff(self.points[:, 2])
+        # An extreme found beside a point of its own makes a step that neither rises nor falls.
+        steps = np.flatnonzero(np.abs(rises) > ONE_HEIGHT)
+        turns = steps[1:][rises[steps[1:]] * rises[steps[:-1]] < 0]
         return [(float(self.points[k, 0]), float(self.points[k, 1])) for k in turns]
 
 
@@ -81,14 +93,70 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     """The edges of all faces, each as often as a face has it."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Curve
+    from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher
 
-    found = []
-    for index, face in enumerate(faces):
-        for edge in sub_shapes(face.shape, "EDGE"):
-            if BRep_Tool.Degenerated_s(edge):
-                continue
-            found.append(curve_of(index, BRepAdaptor_Curve(edge)))
-    return found
+    numbers = IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
+    edges = [
+        (index, edge, numbers.Add(edge))
+        for index, face in enumerate(faces)
+        for edge in sub_shapes(face.shape, "EDGE")
+        if not BRep_Tool.Degenerated_s(edge)
+    ]
+    carriers = {index: wall_carrier(face) for index, face in enumerate(faces) if face.lie == "upright"}
+    walls = {number: carriers[index] for index, _, number in edges if carriers.get(index) is not None}
+    return [
+        on_wall(curve_of(index, BRepAdaptor_Curve(edge)), walls.get(number)) for index, edge, number in edges
+    ]
+
+
+def wall_carrier(face: SolidFace) -> Segment | None:
+    """A piece of the line or the circle over which an upright face stands; None for a free-form one."""
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+
+    surface = surface_of(face.shape)
+    if surface.GetType() == Type.GeomAbs_Plane:
+        place, normal = surface.Plane().Location(), surface.Plane().Axis().Direction()
+        return Line((place.X(), place.Y()), (place.X() - normal.Y(), place.Y() + normal.X()))
+    if surface.GetType() == Type.GeomAbs_Cylinder:
+        place = surface.Cylinder().Location()
+        return Arc((place.X(), place.Y()), surface.Cylinder().Radius(), 0.0, pi, 1.0)
+    return None
+
+
+def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
+    """An edge of a wall put on the wall, where it is off by no more than a disguise.
+
+    Where a leaning face meets a wall, programs write a spline near both, off by 0.001 mm and less.
+
+    Parameters
+    ----------
+    carrier : see :func:`wall_carrier`; None for an edge of no wall.
+    """
+    if carrier is None or (edge.segment is None and not edge.is_other):
+        return edge
+    x, y = edge.points[:, 0], edge.points[:, 1]
+    if isinstance(carrier, Line):
+        (px, py), (tx, ty) = carrier.start, carrier.tangent
+        along, off = (x - px) * tx + (y - py) * ty, (x - px) * ty - (y - py) * tx
+    else:
+        cx, cy = carrier.center
+        along, off = np.unwrap(np.arctan2(y - cy, x - cx)), np.hypot(x - cx, y - cy) - carrier.radius
+    if not EXACT_ON < np.abs(off).max() <= DISGUISE:
+        return edge
+    low, high = float(along.min()), float(along.max())
+    if isinstance(carrier, Line):
+        segment: Segment = Line((px + low * tx, py + low * ty), (px + high * tx, py + high * ty))
+    else:
+        half = (high - low) / 2
+        half = pi if half > pi - WHOLE_TURN else half
+        segment = Arc(carrier.center, carrier.radius, (low + high) / 2, half, 1.0)
+    if segment.length < SHORTEST:
+        return evolve(edge, segment=None, is_other=False)
+    values = [(position_along(segment), along.tolist()), (height, edge.points[:, 2].tolist())]
+    more = [one for value, known in values for one in extremes(edge.curve, edge.parameters, known, value)]
+    parameters = np.unique(np.concatenate([edge.parameters, more]))
+    points = points_along(edge.curve, parameters)
+    return evolve(edge, segment=segment, is_other=False, parameters=parameters, points=points)
 
 
 def curve_of(face: int, curve: Any) -> EdgeCurve:

@@ -14,8 +14,8 @@ layer : a range of heights without a level face and without a leaning one inside
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
-from math import hypot
+from itertools import pairwise, product
+from math import hypot, tau
 from typing import Any, Literal
 
 import numpy as np
@@ -25,12 +25,26 @@ from numpy.typing import NDArray
 from workhold.conventions import ALIGNED, SAME_HEIGHT
 from workhold.files.step.solids import bounding_box, sub_shapes
 
-__all__ = ["Layer", "SolidFace", "layers_of", "lie_of", "solid_faces", "surface_points"]
+__all__ = [
+    "SLOPING",
+    "Layer",
+    "SolidFace",
+    "layers_of",
+    "lie_of",
+    "plane_height",
+    "solid_faces",
+    "surface_of",
+    "surface_points",
+]
 
 # Points along an edge, and along each direction of a curved face, by which a departure is measured.
 EDGE_POINTS, GRID_POINTS = 17, 15
 
+# A spline nowhere farther from a plane or a quadric, in mm, is one.
+AS_QUADRIC = 1e-6
 Lie = Literal["level", "upright", "leaning"]
+# What a flat face that leans is called.
+SLOPING = "sloping plane"
 
 
 @frozen
@@ -46,6 +60,7 @@ class SolidFace:
     fold : z at which a leaning face turns over, where it may reach farthest out; None without one.
     upward : whether a level face looks up.
     box : (x0, y0, x1, y1) around it, seen from above, in mm.
+    is_spline : whether its surface is written as a spline, also where that is a plane or a quadric.
     """
 
     shape: Any
@@ -56,6 +71,7 @@ class SolidFace:
     fold: float | None = None
     upward: bool = False
     box: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    is_spline: bool = False
 
 
 @frozen
@@ -80,19 +96,85 @@ def solid_faces(shape: Any) -> list[SolidFace]:
 def solid_face(face: Any) -> SolidFace:
     """Look at one face."""
     from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
     from OCP.TopAbs import TopAbs_Orientation
 
     low, high = bounding_box(face)
-    surface = BRepAdaptor_Surface(face)
+    written, surface = BRepAdaptor_Surface(face), surface_of(face)
     lie = lie_of(surface, 2)
+    bottom, top = low[2], high[2]
+    if (z := plane_height(surface)) is not None:
+        bottom = top = z
     fold = fold_of(surface) if lie == "leaning" else None
     upward = False
     if lie == "level":
         turned = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
-        upward = (sampled_normals(surface)[0].Z() > 0) != turned
+        upward = (sampled_normals(written)[0].Z() > 0) != turned
     return SolidFace(
-        face, lie, kind_of(surface, lie), low[2], high[2], fold, upward, (low[0], low[1], high[0], high[1])
+        face,
+        lie,
+        kind_of(surface, lie),
+        bottom,
+        top,
+        fold,
+        upward,
+        (low[0], low[1], high[0], high[1]),
+        written.GetType() in (Type.GeomAbs_BSplineSurface, Type.GeomAbs_BezierSurface),
     )
+
+
+def surface_of(face: Any) -> Any:
+    """The surface of a face as the library's adaptor; a spline that is a plane or a quadric as that.
+
+    Some programs write every surface as a spline. Of what is found the bounds are those of the face's box, at
+    least: more of it does no harm where folds and cuts are looked for.
+    """
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+    from OCP.GeomAdaptor import GeomAdaptor_Surface
+    from OCP.GeomConvert import GeomConvert_SurfToAnaSurf
+
+    surface = BRepAdaptor_Surface(face)
+    if surface.GetType() not in (Type.GeomAbs_BSplineSurface, Type.GeomAbs_BezierSurface):
+        return surface
+    converter = GeomConvert_SurfToAnaSurf(BRep_Tool.Surface_s(face))
+    found = converter.ConvertToAnalytical(AS_QUADRIC)
+    if found is None or converter.Gap() > AS_QUADRIC:
+        return surface
+    quadric = GeomAdaptor_Surface(found)
+    if quadric.GetType() == Type.GeomAbs_Plane:
+        return GeomAdaptor_Surface(found, *plane_bounds(quadric.Plane().Position(), face))
+    if quadric.GetType() not in (Type.GeomAbs_Cylinder, Type.GeomAbs_Cone):
+        return quadric
+    place = (quadric.Cylinder() if quadric.GetType() == Type.GeomAbs_Cylinder else quadric.Cone()).Position()
+    return GeomAdaptor_Surface(found, 0.0, tau, *span_along(place, place.Direction(), face))
+
+
+def plane_bounds(place: Any, face: Any) -> tuple[float, float, float, float]:
+    """The parameters over which a plane holds a face's box."""
+    return *span_along(place, place.XDirection(), face), *span_along(place, place.YDirection(), face)
+
+
+def span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
+    """How far a face's box reaches along a direction from a place, at least and at most."""
+    start, step = place.Location(), direction
+    along = [
+        (x - start.X()) * step.X() + (y - start.Y()) * step.Y() + (z - start.Z()) * step.Z()
+        for x, y, z in product(*zip(*bounding_box(face), strict=True))
+    ]
+    return min(along), max(along)
+
+
+def plane_height(surface: Any) -> float | None:
+    """The z in mm of a level plane, without what the library adds to a box; None for any other surface."""
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+
+    if surface.GetType() != Type.GeomAbs_Plane or lie_of(surface, 2) != "level":
+        return None
+    # The middle of the face, because a plane that is level but for rounding is higher far from it.
+    u, v = (surface.FirstUParameter() + surface.LastUParameter()) / 2, surface.FirstVParameter()
+    return float(surface.Value(u, (v + surface.LastVParameter()) / 2).Z())
 
 
 def lie_of(surface: Any, axis: int) -> Lie:
@@ -143,7 +225,7 @@ def kind_of(surface: Any, lie: Lie) -> str:
 
     kind = surface.GetType()
     if kind == Type.GeomAbs_Plane:
-        return {"level": "level plane", "upright": "wall", "leaning": "sloping plane"}[lie]
+        return {"level": "level plane", "upright": "wall", "leaning": SLOPING}[lie]
     if lie == "upright":
         round_wall = kind == Type.GeomAbs_Cylinder
         return (

@@ -18,14 +18,17 @@ from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
+from numpy.typing import NDArray
 
+from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
-from workhold.files.step.bands import Strip, Walls, strips_of_loop
+from workhold.files.step.bands import Walls
 from workhold.files.step.edge_curves import EdgeCurve, edge_curves
-from workhold.files.step.faces import SolidFace, solid_faces
+from workhold.files.step.faces import SLOPING, SolidFace, plane_height, solid_faces
 from workhold.files.step.material import Material
 from workhold.files.step.projected import ProjectedCurves, projected_curves
 from workhold.files.step.solids import bounding_box, sub_shapes
+from workhold.files.step.strips import Strip, strips_of_loop
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
 
 __all__ = ["HEAD_ROOM", "LEAST_BAND", "HeightOutline", "StandingSolid"]
@@ -34,6 +37,8 @@ __all__ = ["HEAD_ROOM", "LEAST_BAND", "HeightOutline", "StandingSolid"]
 HEAD_ROOM, LEAST_BAND = 0.5, 1.0
 # How far beside a curve its two sides are looked at, in mm.
 BESIDE = 4e-4
+# What flat faces are called.
+FLAT = ("level plane", "wall", SLOPING)
 
 
 @frozen
@@ -59,22 +64,28 @@ class StandingSolid:
     Parameters
     ----------
     shape : Open CASCADE's solid in mm, its axis along z.
+    edge_boxes : (E, 5) of every edge the least x and y, the greatest x and y, and the greatest z, in mm.
     """
 
     shape: Any
     faces: list[SolidFace] = field(init=False)
     edges: list[EdgeCurve] = field(init=False)
+    edge_boxes: NDArray[np.float64] = field(init=False)
     material: Material = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         self.faces = solid_faces(self.shape)
         self.edges = edge_curves(self.faces)
+        ends = [(edge.points.min(axis=0), edge.points.max(axis=0)) for edge in self.edges]
+        self.edge_boxes = np.array([(*low[:2], *high[:2], high[2]) for low, high in ends]).reshape(-1, 5)
         self.material = Material(self.shape, self.faces, self.edges)
 
     @property
     def height(self) -> float:
-        """Height of its highest point in mm."""
-        return max(face.high for face in self.faces)
+        """Height of its highest point in mm; of a level face there, if there is one."""
+        top = max(face.high for face in self.faces)
+        level = [face.high for face in self.faces if face.lie == "level" and top - face.high <= SAME_HEIGHT]
+        return max(level, default=top)
 
     def outline(
         self, peg_height: float | None = None, head_room: float = HEAD_ROOM, least_band: float = LEAST_BAND
@@ -130,7 +141,8 @@ class StandingSolid:
         InputError
             Naming the face.
         """
-        for index, points in curves.others:
+        # The face that makes the curve rather than the flat one that it cuts.
+        for index, points in sorted(curves.others, key=lambda one: self.faces[one[0]].kind in FLAT):
             for before, (x, y), after in zip(points[:-2], points[1:-1], points[2:], strict=True):
                 dx, dy = after - before
                 size = float(np.hypot(dx, dy))
@@ -153,7 +165,8 @@ class StandingSolid:
             return border_loops(pieces)
         except InputError as error:
             if curves.others:
-                raise other_curve(self.faces[curves.others[0][0]]) from error
+                kinds = [self.faces[index] for index, _ in curves.others]
+                raise other_curve(min(kinds, key=lambda face: face.kind in FLAT)) from error
             raise
 
 
@@ -161,19 +174,22 @@ def other_curve(face: SolidFace) -> InputError:
     """The refusal of a face whose border in the outline is neither line nor arc."""
     return InputError(
         f"the outline has a curve that is neither line nor arc: a {face.kind} at heights "
-        f"{max(face.low, 0):.6g} to {face.high:.6g} mm"
+        f"{max(round(face.low, 6), 0):.6g} to {face.high:.6g} mm"
     )
 
 
 def standing(shape: Any) -> StandingSolid:
     """A solid moved so that its lowest point is at height 0, and turned right side out."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.BRepLib import BRepLib
     from OCP.gp import gp_Trsf, gp_Vec
     from OCP.TopLoc import TopLoc_Location
 
     shape = sub_shapes(shape, "SOLID")[0]
     BRepLib.OrientClosedSolid_s(shape)
-    low, _ = bounding_box(shape)
+    low = bounding_box(shape)[0][2]
+    level = [plane_height(BRepAdaptor_Surface(face)) for face in sub_shapes(shape, "FACE")]
+    low = min((z for z in level if z is not None and z - low <= SAME_HEIGHT), default=low)
     move = gp_Trsf()
-    move.SetTranslation(gp_Vec(0.0, 0.0, -low[2]))
+    move.SetTranslation(gp_Vec(0.0, 0.0, -low))
     return StandingSolid(shape.Moved(TopLoc_Location(move)))

@@ -21,8 +21,8 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT, SHORTEST
-from workhold.files.step.edge_curves import EdgeCurve, curve_of, height
-from workhold.files.step.faces import SolidFace
+from workhold.files.step.edge_curves import EdgeCurve, curve_of
+from workhold.files.step.faces import SolidFace, surface_of
 from workhold.files.step.solids import sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
@@ -57,7 +57,7 @@ def projected_curves(
             continue
         if edge.segment is not None:
             segments.append(edge.segment)
-            cuts += [(edge.segment, point) for z in (low, high) for point in crossings(edge, z)]
+            cuts += [(edge.segment, point) for z in (low, high) for point in edge.crossings(z)]
         elif edge.is_other:
             others.append((edge.face, edge.points[:, :2]))
     for index, face in enumerate(faces):
@@ -72,22 +72,14 @@ def projected_curves(
     return ProjectedCurves(tuple(segments), tuple(cuts), tuple(others))
 
 
-def crossings(edge: EdgeCurve, z: float) -> list[Point]:
-    """Points (x, y) at which an edge passes a height."""
-    heights = edge.points[:, 2] - z
-    passes = np.flatnonzero(heights[:-1] * heights[1:] < 0)
-    return [edge.point_at(int(k), height, z)[:2] for k in passes]
-
-
 Found = Segment | NDArray[np.float64]
 
 
 def folds(face: SolidFace) -> list[Found]:
     """Where a leaning face stands upright, seen from above; more of it than the face has does no harm."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_SurfaceType as Type
 
-    surface = BRepAdaptor_Surface(face.shape)
+    surface = surface_of(face.shape)
     kind = surface.GetType()
     if kind == Type.GeomAbs_Plane:
         return []
@@ -162,10 +154,9 @@ def normal_height(surface: Any, u: float, v: float) -> float:
 
 def level_cuts(face: SolidFace, z: float) -> list[Found]:
     """The curves in which a level plane meets a leaning face's surface, seen from above."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_SurfaceType as Type
 
-    surface = BRepAdaptor_Surface(face.shape)
+    surface = surface_of(face.shape)
     kind = surface.GetType()
     if kind == Type.GeomAbs_Plane:
         return plane_cut(surface.Plane(), face, z)

@@ -21,15 +21,18 @@ from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.step.colours import Colour, coloured
 from workhold.files.step.library import load_step_library
+from workhold.files.step.solids import sub_shapes
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.dowels import JawPlate, plate_places
 from workhold.model.fixture import Fixture, Pose
 from workhold.model.setup import PartZero, part_zero
+from workhold.model.support_bodies import bodies_with_supports, written_out
+from workhold.model.support_triples import Supports, Triple
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["plates_step", "setup_step", "write_plates_step", "write_setup_step"]
+__all__ = ["plates_step", "setup_step", "supports_step", "write_plates_step", "write_setup_step"]
 
 # The header's time stamp, so that the same set-up gives the same bytes.
 TIME_STAMP = "1970-01-01T00:00:00"
@@ -95,10 +98,39 @@ def setup_step(
     """
     sizes = BodySizes.of(workpiece, thickness, plate_thickness, peg_length, peg_height)
     bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
+    return bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
+
+
+def supports_step(
+    supports: Supports, triple: Triple, sizes: BodySizes | None = None, zero: PartZero | None = None
+) -> bytes:
+    """The bytes of the STEP assembly of a fixture on a set of three supports, with the clamp on top.
+
+    Parameters
+    ----------
+    sizes : as of :func:`workhold.model.support_bodies.bodies_with_supports`.
+    zero : part zero; that of :func:`part_zero` without a wish if None.
+
+    Raises
+    ------
+    InputError
+        For pegs and pads of radius 0, which have no body, and when the extra ``step`` is not installed.
+    """
+    query, (fixture, _) = supports.query, written_out(supports, triple)
+    bodies = bodies_with_supports(supports, triple, sizes)
+    return bodies_step(bodies, query.toolkit, (zero or part_zero(query.workpiece)).point, fixture.pose)
+
+
+def bodies_step(bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose) -> bytes:
+    """The assembly of bodies of a set-up, with the axes at part zero."""
     load_step_library()
-    named = [(body.name, solid_of(body), COLOURS[body.kind]) for body in bodies]
+    named = [
+        (body.name if number == 0 else f"{body.name} piece {number + 1}", solid, COLOURS[body.kind])
+        for body in bodies
+        for number, solid in enumerate(solids_of(body))
+    ]
     pitch = min(min(carrier.pitch) for carrier in toolkit.plates)
-    axes = axes_at((zero or part_zero(workpiece)).point, fixture.pose, pitch)
+    axes = axes_at(zero, pose, pitch)
     return assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])
 
 
@@ -119,8 +151,8 @@ def axes_at(point: Point, pose: Pose, length: float) -> Any:
     return axes
 
 
-def solid_of(body: FixtureBody) -> Any:
-    """A body as one solid."""
+def solids_of(body: FixtureBody) -> list[Any]:
+    """A body as one solid, or as one for each of its pieces."""
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
 
     first, *others = (
@@ -129,7 +161,7 @@ def solid_of(body: FixtureBody) -> Any:
     )
     for other in others:
         first = BRepAlgoAPI_Fuse(first, other).Shape()
-    return first
+    return sub_shapes(first, "SOLID")
 
 
 def wire(segments: Iterable[Segment]) -> Any:

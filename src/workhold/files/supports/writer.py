@@ -46,12 +46,13 @@ def supports_entry(supports: Supports) -> dict[str, Any]:
         When the fixture is not one of a result.
     """
     query, request = supports.query, supports.request
+    band = (0.0, request.thickness) if request.band is None else request.band
     return {
         "format": FORMAT,
         "workpiece": workpiece_entry(query.workpiece),
         **toolkit_entry(query.toolkit),
         "fixture": fixture_entry(supports),
-        "heights": {"thickness": request.thickness, "band": list(request.band)},
+        "heights": {"thickness": request.thickness, "band": list(band)},
         "supports": {
             "pad_radius": request.pad_radius,
             "pad_margin": request.pad_margin,

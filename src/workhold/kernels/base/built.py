@@ -11,7 +11,7 @@ The library belongs to the sources of which it holds the hash: code compiled fro
 
 Glossary
 --------
-door : what Python calls: a kernel of the library behind its checks.
+checked kernel : what Python calls: a kernel of the library behind its checks.
 argument : a number, as "int64", "float64" or "bool"; an array, as its element type and how many dimensions it
     has; or a record, as the list of its fields.
 header : NumPy's record of an array in memory, of which its C interface fixes the layout
@@ -41,7 +41,7 @@ __all__ = [
     "LIBRARY_NAME",
     "REFUSED",
     "RELEASE",
-    "Door",
+    "CheckedKernel",
     "Library",
     "library_name",
     "source_hash",
@@ -96,18 +96,18 @@ class Library:
         self.release = getattr(self.code, RELEASE)
         self.release.argtypes, self.release.restype = [ctypes.c_void_p], None
 
-    def door(self, function: Callable[..., Any]) -> Door:
-        """The door to the kernel of a function.
+    def checked(self, function: Callable[..., Any]) -> CheckedKernel:
+        """The kernel of a function, behind its checks.
 
         Raises
         ------
         KeyError
             When there is none of its name.
         """
-        return Door(self, function, **self.kernels[function.__name__])
+        return CheckedKernel(self, function, **self.kernels[function.__name__])
 
 
-class Door:
+class CheckedKernel:
     """A kernel that checks what it is called with: places, element types, dimensions and layout of all
     arguments.
 
@@ -164,8 +164,8 @@ class Door:
         TypeError
             When one of the values is none that the kernel was compiled for.
         """
-        told = zip(self.arguments, values, strict=True)
-        refused = (refusal(name, kind, value) for (name, kind), value in told)
+        given = zip(self.arguments, values, strict=True)
+        refused = (refusal(name, kind, value) for (name, kind), value in given)
         words = next((words for words in refused if words is not None), None)
         if words is not None:
             raise TypeError(f"{self.__name__}: {words}.")
@@ -219,8 +219,8 @@ def are_headers_known() -> bool:
     def word(name: str, letter: str = "q") -> int:
         return int(Struct(f"={letter}").unpack_from(header, HEADER[name])[0])
 
-    told = word("type"), word("data"), word("dimensions", "i"), word("element"), word("flags", "i") & ORDERED
-    if told != (id(np.ndarray), array.ctypes.data, 2, id(array.dtype), ORDERED):
+    found = word("type"), word("data"), word("dimensions", "i"), word("element"), word("flags", "i") & ORDERED
+    if found != (id(np.ndarray), array.ctypes.data, 2, id(array.dtype), ORDERED):
         return False
     pair = ctypes.c_int64 * 2
     return all(
@@ -285,7 +285,7 @@ def refusal(name: str, argument: Any, value: Any) -> str | None:
         return (
             None
             if isinstance(value, SCALARS[argument][1])
-            else f"{name} must be {argument}, not {told(value)}"
+            else f"{name} must be {argument}, not {described(value)}"
         )
     if isinstance(argument, dict):
         element, dimensions = np.dtype(argument["array"]), argument["dimensions"]
@@ -293,9 +293,9 @@ def refusal(name: str, argument: Any, value: Any) -> str | None:
         if is_such and value.flags.c_contiguous and value.flags.aligned:
             return None
         wanted = f"{element} with {dimensions} dimension{'s' * (dimensions > 1)}"
-        return f"{name} must be a C-contiguous array of {wanted}, not {told(value)}"
+        return f"{name} must be a C-contiguous array of {wanted}, not {described(value)}"
     if not isinstance(value, tuple) or len(value) != len(argument):
-        return f"{name} must be a record of {len(argument)}, not {told(value)}"
+        return f"{name} must be a record of {len(argument)}, not {described(value)}"
     fields = zip(getattr(value, "_fields", range(len(argument))), argument, value, strict=True)
     words = (refusal(f"{name}.{field}", part, item) for field, part, item in fields)
     return next((one for one in words if one is not None), None)
@@ -315,7 +315,7 @@ def words_of(result: Any) -> int:
     return sum(map(words_of, result)) if isinstance(result, list) else 1
 
 
-def told(value: Any) -> str:
+def described(value: Any) -> str:
     """What a value is, for a message."""
     if isinstance(value, np.ndarray):
         layout = "" if value.flags.c_contiguous else ", not contiguous"

@@ -188,7 +188,7 @@ def inner_making_arrays(function: Function) -> Function:
 def called_by_python(function: Function, options: dict[str, Any]) -> Function:
     """The kernel of the library, or one of numba whose machine code is kept on disk if possible."""
     if LIBRARY is not None:
-        return cast(Function, LIBRARY.door(function))
+        return cast(Function, LIBRARY.checked(function))
     import numba
 
     kernel: Any = numba.njit(**options, **NO_CALLBACK, **lean_compiler("OuterCompiler"))(function)

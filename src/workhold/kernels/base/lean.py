@@ -101,9 +101,11 @@ class InnerLowering(typed.NativeLowering):
         super().run_pass(state)
         library._ensure_finalized()
         lowered = state["cr"]
-        told = lowered.fndesc
-        name = _dynfunc.make_function(told.lookup_module(), told.qualname, "", 0, lowered.env, (library,))
-        state.targetctx.insert_user_function(name, told, [library])
+        description = lowered.fndesc
+        name = _dynfunc.make_function(
+            description.lookup_module(), description.qualname, "", 0, lowered.env, (library,)
+        )
+        state.targetctx.insert_user_function(name, description, [library])
         state.reload_init.extend(library._reload_init)
         state["cr"] = lowered._replace(cfunc=name)
         return True
@@ -133,14 +135,14 @@ def steady_contexts(typing: Any, target: Any) -> tuple[Any, Any]:
     typing.refresh()
     target.refresh()
     steady, machine = copy(typing), copy(target)
-    told: dict[Any, Any] = {}
+    answers: dict[Any, Any] = {}
 
     def resolve_function_type(function: Any, arguments: Any, keywords: Any) -> Any:
         if keywords or not isinstance(function, (types.Function, BuiltinFunctionType)):
             return typing.resolve_function_type(function, arguments, keywords)
-        if (function, arguments) not in told:
-            told[function, arguments] = typing.resolve_function_type(function, arguments, keywords)
-        return told[function, arguments]
+        if (function, arguments) not in answers:
+            answers[function, arguments] = typing.resolve_function_type(function, arguments, keywords)
+        return answers[function, arguments]
 
     steady.resolve_function_type = resolve_function_type
     steady.refresh = machine.refresh = lambda: None

@@ -1,11 +1,13 @@
 """Chords that run smoothly through a coincidence, where the general formulas divide zero by zero.
 
-Two coincidences are common in drawings whose sizes are whole multiples of the pitch:
+Three coincidences are common in drawings whose sizes are whole multiples of the pitch:
 
 - two arcs of equal radius R whose centres are exactly one chord length d apart. At the direction of the
   centres' line the two circles that the tail must lie on coincide;
 - a line and an arc of radius R whose centre is d - R beyond the line (or R - d before it). Where the chord is
-  square to the line, both tangencies fall together.
+  square to the line, both tangencies fall together;
+- two arcs of radii R_a and R_b whose centres are c apart, as of a boss and a bore of a rod. Here c and d
+  differ by as much as the radii, or add up to as much; both tangencies are where the chord is along c.
 
 At the coincidence both contacts share one line of action, so it is never part of a fixture itself; but curves
 run through it with finite slopes. Let gamma be the angle from the coincidence, and q = d (1 - cos gamma). For
@@ -14,7 +16,19 @@ the arcs let m be the direction half way between the chord and the centres' line
 - arcs:       u = c_a + (c - w) / 2 +- sqrt(R^2 - d^2 sin(gamma / 2)^2) m, c from centre to centre;
 - line, arc:  u = c_b + eta n + S t - w, eta = +-(R - q), S = +- sin(gamma / 2) sqrt(2 d (2 R - q)),
 
-n the line's normal, t its tangent. Derivatives over alpha follow by differentiating twice.
+n the line's normal, t its tangent. Derivatives over alpha follow by differentiating twice. Of arcs that touch
+let g be the vector c - w of length sqrt(G). Let D = R_a^2 - R_b^2 and k = 4 c d sin(gamma / 2)^2. Then
+
+- arcs that touch:  u = c_a + (G + D) / (2 G) g +- sin(gamma / 2) sqrt(c d S) / G J g.
+
+Here S is 4 R_a R_b - k. G is (R_a - R_b)^2 + k where the chord runs along c, and (R_a + R_b)^2 - k where it
+runs against it. The formulas are used up to k = 2 R_a R_b, so that S is no less than that. The tail turns
+about c_a at a rate omega alone. So u' = omega J (u - c_a), and u'' = omega' J (u - c_a) - omega^2 (u - c_a).
+With s = 1 in the first case and -1 in the second,
+
+    omega = (1 + (d^2 - c^2) / G) / 2 -+ s sqrt(c d / S) cos(gamma / 2) (1 - D / G).
+
+What these lengths miss each other by, m, moves the tail of the part itself by m / abs(X), see :func:`misfit`.
 """
 
 from __future__ import annotations
@@ -41,6 +55,7 @@ from workhold.kernels.base.interval import (
     isqrt,
     isquare,
     isub,
+    outward,
 )
 from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 
@@ -52,7 +67,13 @@ MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 SHARED = 1e-10
 # Kinds of coincidence a curve may have; chords between concentric arcs turn about the centre without changing
 # shape.
-NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC = 0.0, 1.0, 2.0, 3.0, 4.0
+NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC, TOUCHING = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
+# Circles that touch inside one another count only if their radii differ by this part of the smaller one.
+# Lengths of circles that touch agree to this part of EXACT, for what they are off by grows with the radius
+# over their difference.
+UNEQUAL, CLOSER = 0.25, 0.04
+# Rounding of such lengths, relative to them.
+EPSILON = 4e-16
 
 
 @inner
@@ -79,6 +100,18 @@ def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
     return abs(hypot(b[X] - a[X], b[Y] - a[Y]) - d) <= EXACT
 
 
+@inner
+def touching_side(a: Array, b: Array, d: float) -> float:
+    """+1 or -1 when two arcs touch where the chord runs along or against the centres' line, else 0."""
+    if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0 or is_shallow(a) or is_shallow(b):
+        return 0.0
+    apart, difference = hypot(b[X] - a[X], b[Y] - a[Y]), abs(a[RADIUS] - b[RADIUS])
+    is_unequal = difference > UNEQUAL * min(a[RADIUS], b[RADIUS])
+    if is_unequal and abs(abs(apart - d) - difference) <= CLOSER * EXACT:
+        return 1.0
+    return -1.0 if abs(apart + d - a[RADIUS] - b[RADIUS]) <= CLOSER * EXACT else 0.0
+
+
 @compiled
 def are_concentric(a: Array, b: Array) -> bool:
     """Whether two features are arcs of one centre."""
@@ -91,6 +124,9 @@ def coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
     ``beyond_line``)."""
     if are_one_chord_apart(a, b, d):
         return (ARCS, atan2(b[Y] - a[Y], b[X] - a[X]), 0.0)
+    side = touching_side(a, b, d)
+    if side != 0.0:
+        return (TOUCHING, atan2(side * (b[Y] - a[Y]), side * (b[X] - a[X])), side)
     if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
         side = beyond_line(a, b, d)
         if side != 0.0:
@@ -106,6 +142,45 @@ def coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
 def from_coincidence(alpha: float, middle: float) -> float:
     """Angle in [-pi, pi) from the coincidence."""
     return (alpha - middle + pi) % TURN - pi
+
+
+@inner
+def regular_radius(a: Array, b: Array, kind: float) -> float:
+    """The radius in mm by which ``is_regular`` judges a coincidence."""
+    if kind == TOUCHING:
+        return a[RADIUS] * b[RADIUS] / hypot(b[X] - a[X], b[Y] - a[Y])
+    return a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
+
+
+@inner
+def touching_speed(a: Array, b: Array, side: float, d: float) -> float:
+    """Bound in mm per radian of how fast a tail moves where the regular formulas of touching arcs apply.
+
+    It is R_a times the bounds of both rates: g is no shorter than at the coincidence, or than
+    sqrt(R_a^2 + R_b^2), and S no less than 2 R_a R_b.
+    """
+    one, other = a[RADIUS], b[RADIUS]
+    apart, difference = hypot(b[X] - a[X], b[Y] - a[Y]), abs(one - other)
+    least = difference * difference if side > 0.0 else one * one + other * other
+    ratio = 1.0 + difference * (one + other) / least
+    return 1.01 * one * (d / sqrt(least) + sqrt(apart * d / (2.0 * one * other)) * ratio)
+
+
+@inner
+def misfit(a: Array, b: Array, curve: Array, turn: float) -> float:
+    """Bound in mm of how far a tail on arcs that nearly touch is from that on arcs that do; X is a turn.
+
+    The part of the tail along J g is the root of a square that is off by 2 m R_a R_b / g, so it is off by
+    m / abs(X). Nearer to the coincidence than that says anything, chords are those of arcs that touch.
+    """
+    if curve[COINCIDENCE] != TOUCHING:
+        return 0.0
+    apart, d = hypot(b[X] - a[X], b[Y] - a[Y]), curve[LENGTH]
+    off = abs(abs(apart - d) - abs(a[RADIUS] - b[RADIUS]))
+    if curve[SIDE] < 0.0:
+        off = abs(apart + d - a[RADIUS] - b[RADIUS])
+    off += EPSILON * (apart + d + a[RADIUS] + b[RADIUS])
+    return 3.0 * off / max(abs(turn), sqrt(off * (1.0 / a[RADIUS] + 1.0 / b[RADIUS])))
 
 
 @inner
@@ -143,7 +218,7 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
     alpha = psi + curve[SHIFT]
     gamma = from_coincidence(alpha, middle)
-    radius = a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
+    radius = regular_radius(a, b, kind)
     if not is_regular(kind, radius, d, gamma):
         return (False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     wx, wy = d * cos(alpha), d * sin(alpha)
@@ -160,6 +235,9 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
         vx = wy / 2.0 + dy * mx - y * my / 2.0
         vy = -wx / 2.0 + dy * my + y * mx / 2.0
         return (True, (a[X] + rx, a[Y] + ry, vx, vy, rx, ry))
+    if kind == TOUCHING:
+        rx, ry, rate = touching_arcs(a, b, d, side, gamma, wx, wy, way)
+        return (True, (a[X] + rx, a[Y] + ry, -rate * ry, rate * rx, rx, ry))
     line, arc = (a, b) if kind == LINE_FIRST else (b, a)
     nx, ny, tx, ty = line[AXIS_Y], -line[AXIS_X], line[AXIS_X], line[AXIS_Y]
     q, dq = d * (1.0 - cos(gamma)), d * sin(gamma)
@@ -172,6 +250,66 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
     if kind == LINE_FIRST:
         return (True, (arc[X] + rx - wx, arc[Y] + ry - wy, vx + wy, vy - wx, rx, ry))
     return (True, (arc[X] + rx, arc[Y] + ry, vx, vy, rx, ry))
+
+
+@inner
+def touching_arcs(
+    a: Array, b: Array, d: float, side: float, gamma: float, wx: float, wy: float, way: float
+) -> tuple[float, float, float]:
+    """The tail from the centre of a, in mm, and the rate at which it turns, where two arcs touch."""
+    cx, cy = b[X] - a[X], b[Y] - a[Y]
+    apart, total, difference = hypot(cx, cy), a[RADIUS] + b[RADIUS], a[RADIUS] - b[RADIUS]
+    sine, cosine = sin(gamma / 2.0), cos(gamma / 2.0)
+    k = 4.0 * apart * d * sine * sine
+    square = difference * difference + k if side > 0.0 else total * total - k
+    rest = 4.0 * a[RADIUS] * b[RADIUS] - k
+    gx, gy = cx - wx, cy - wy
+    gap = hypot(gx, gy)
+    ratio = difference * total / square
+    along, half = (1.0 + ratio) / 2.0, way * sine * sqrt(apart * d * rest) / square
+    size = sqrt(square) / gap
+    rx, ry = size * (along * gx - half * gy), size * (along * gy + half * gx)
+    turn = (1.0 + (d - apart) * (d + apart) / square) / 2.0
+    return (rx, ry, turn - side * way * sqrt(apart * d / rest) * cosine * (1.0 - ratio))
+
+
+@inner
+def touching_box(
+    a: Array, b: Array, d: float, side: float, middle: float, gamma: Interval, way: float
+) -> MotionBox:
+    """Enclosure of u - c_a, u' and u'' where two arcs touch."""
+    cx, cy = outward(b[X] - a[X], b[X] - a[X]), outward(b[Y] - a[Y], b[Y] - a[Y])
+    apart = isqrt(iadd(isquare(cx), isquare(cy)))
+    total, difference = a[RADIUS] + b[RADIUS], a[RADIUS] - b[RADIUS]
+    sum_, less = outward(total, total), outward(difference, difference)
+    half = iscale(0.5, gamma)
+    sine, cosine, product = isin(half), icos(half), iscale(d, apart)
+    k = iscale(4.0, imul(product, isquare(sine)))
+    square = iadd(isquare(less), k) if side > 0.0 else isub(isquare(sum_), k)
+    rest = isub(iscale(4.0 * a[RADIUS], outward(b[RADIUS], b[RADIUS])), k)
+    alpha = ishift(middle, gamma)
+    gx, gy = isub(cx, iscale(d, icos(alpha))), isub(cy, iscale(d, isin(alpha)))
+    ratio = idivide(imul(less, sum_), square)
+    along = iscale(0.5, ishift(1.0, ratio))
+    across = iscale(way, imul(sine, idivide(isqrt(imul(product, rest)), square)))
+    rx, ry = isub(imul(along, gx), imul(across, gy)), iadd(imul(along, gy), imul(across, gx))
+    # Rates of G and S, of g, and of the tail from it.
+    grown = iscale(2.0 * side, imul(product, isin(gamma)))
+    shrunk = iscale(-side, grown)
+    away = isub((d * d, d * d), isquare(apart))
+    turn = iscale(0.5, ishift(1.0, idivide(away, square)))
+    dturn = iscale(-0.5, idivide(imul(away, grown), isquare(square)))
+    one, two, three = imul(isqrt(product), cosine), ishift(1.0, ineg(ratio)), isqrt(rest)
+    done = imul(isqrt(product), iscale(-0.5, sine))
+    dtwo, dthree = idivide(imul(ratio, grown), square), iscale(0.5, idivide(shrunk, three))
+    swing = idivide(imul(one, two), three)
+    dswing = isub(idivide(iadd(imul(done, two), imul(one, dtwo)), three), idivide(imul(swing, dthree), three))
+    rate, drate = iadd(turn, iscale(-side * way, swing)), iadd(dturn, iscale(-side * way, dswing))
+    vx, vy = ineg(imul(rate, ry)), imul(rate, rx)
+    faster = isquare(rate)
+    ax = ineg(iadd(imul(drate, ry), imul(faster, rx)))
+    ay = isub(imul(drate, rx), imul(faster, ry))
+    return (rx, ry, vx, vy, ax, ay)
 
 
 @inner
@@ -243,14 +381,17 @@ def motion_box(a: Array, b: Array, curve: Array, low: float, high: float) -> tup
     """
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
     center, gamma = angle_box(low, high, middle)
-    radius = a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
+    radius = regular_radius(a, b, kind)
     zero = (0.0, 0.0)
     nothing = (zero, zero, zero, zero, zero, zero)
     if not (is_regular(kind, radius, d, gamma[0]) and is_regular(kind, radius, d, gamma[1])):
         return (False, nothing)
     way = curve[BRANCH] if center >= 0.0 else -curve[BRANCH]
-    if kind == ARCS:
-        r = arcs_box(a, b, d, middle, gamma, way)
+    if kind in (ARCS, TOUCHING):
+        if kind == ARCS:
+            r = arcs_box(a, b, d, middle, gamma, way)
+        else:
+            r = touching_box(a, b, d, side, middle, gamma, way)
         return (True, (ishift(a[X], r[0]), ishift(a[Y], r[1]), r[2], r[3], r[4], r[5]))
     if kind == ARC_FIRST:
         r = line_box(b, radius, d, side, gamma, way)

@@ -62,6 +62,7 @@ from workhold.kernels.chord.coincidences import (
     are_concentric,
     are_one_chord_apart,
     coincidence,
+    misfit,
     motion,
 )
 from workhold.kernels.chord.columns import (
@@ -288,9 +289,9 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
     if kind != NONE and kind != CONCENTRIC:
         regular, u = motion(a, b, curve, psi)
         if regular:
-            error = regular_error(curve)
             rax, ray = direction_at(a, u[0], u[1])
             rbx, rby = direction_at(b, u[0] + wx, u[1] + wy)
+            error = regular_error(curve) + misfit(a, b, curve, rax * rby - ray * rbx)
             slope_error = error * (1.0 + d * kappa)
             return (u[0], u[1], rax, ray, rbx, rby, u[0] - u[3], u[1] + u[2], error, slope_error)
     c = chord_along(a, b, wx, wy, curve[BRANCH], kind == ARCS)

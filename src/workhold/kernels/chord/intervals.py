@@ -18,7 +18,7 @@ from math import acos, atan2, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.conventions import EXACT, PARALLEL
+from workhold.conventions import EXACT, PARALLEL, SQUARE
 from workhold.kernels.base.compiling import inner, inner_making_arrays
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -34,7 +34,12 @@ from workhold.kernels.base.feature import (
     point_at,
 )
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.chord.coincidences import are_concentric, are_one_chord_apart, beyond_line
+from workhold.kernels.chord.coincidences import (
+    are_concentric,
+    are_one_chord_apart,
+    beyond_line,
+    touching_side,
+)
 from workhold.kernels.chord.evaluation import chord, parameter_on
 from workhold.kernels.chord.shallow import arcs_cosine, is_turned, tangent_off
 
@@ -144,7 +149,13 @@ def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) 
     apart = hypot(dx, dy)
     if apart == 0.0:
         return count
-    middle = atan2(dy, dx)
+    middle, side = atan2(dy, dx), touching_side(a, b, d)
+    if side != 0.0:
+        straight = middle if side > 0.0 else middle + pi
+        count = add_event(events, count, straight - SLIVER, CUT, 0.0)
+        count = add_event(events, count, straight + SLIVER, CUT, 0.0)
+        other = a[RADIUS] + side * b[RADIUS]
+        return add_gap(events, count, middle, apart, d, a, b, other)
     if are_one_chord_apart(a, b, d):
         count = add_event(events, count, middle - SLIVER, CUT, 0.0)
         count = add_event(events, count, middle + SLIVER, CUT, 0.0)
@@ -242,6 +253,28 @@ def only_touch(a: Array, b: Array, d: float) -> bool:
 
 
 @inner
+def are_parallel(a: Array, b: Array) -> bool:
+    """Whether two features are parallel lines."""
+    is_straight = a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0
+    return is_straight and abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL
+
+
+@inner
+def share_one_line(a: Array, b: Array, d: float) -> bool:
+    """Whether pegs d mm apart that touch two features always do so along one line of action.
+
+    So they do square to parallel lines, on a diameter through a common centre, and where carriers only touch.
+    Wrenches of opposite or equal contacts are dependent: with a third they fix no pose, and nothing closes.
+    """
+    if are_parallel(a, b):
+        apart = a[AXIS_Y] * (b[X] - a[X]) - a[AXIS_X] * (b[Y] - a[Y])
+        return abs(apart) >= d * (1.0 - SQUARE)
+    if are_concentric(a, b):
+        return min(abs(d - a[RADIUS] - b[RADIUS]), abs(d - abs(a[RADIUS] - b[RADIUS]))) <= EXACT
+    return only_touch(a, b, d)
+
+
+@inner
 def reaches(row: Array, x: float, y: float) -> bool:
     """Whether a point of a feature's carrier is on the feature, or past its end by no more than ``SPARE``."""
     spare = SPARE if row[IS_ARC] == 0.0 else SPARE / row[RADIUS]
@@ -295,18 +328,7 @@ def chord_intervals(a: Array, b: Array, d: float) -> Array:
         lines give none: their chords are sliding pairs. Nor do concentric arcs whose chord lies on a line
         through the centre: their contacts share one line of action.
     """
-    if (
-        are_concentric(a, b)
-        and min(abs(d - a[RADIUS] - b[RADIUS]), abs(d - abs(a[RADIUS] - b[RADIUS]))) <= EXACT
-    ):
-        return np.empty((0, 5))
-    if (
-        a[IS_ARC] == 0.0
-        and b[IS_ARC] == 0.0
-        and abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL
-    ):
-        return np.empty((0, 5))
-    if only_touch(a, b, d):
+    if are_parallel(a, b) or share_one_line(a, b, d):
         return np.empty((0, 5))
     events = np.empty((MOST_EVENTS, 3))
     count = collect_events(events, a, b, d)

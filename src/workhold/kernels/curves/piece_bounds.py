@@ -17,7 +17,8 @@ g = |c - w| is known to e and the direction of c - w to 1.6 e / g. With D = R_a^
     half = sqrt(R_a^2 - along^2)  to  min(sqrt q, q / half),  q = t (2 R_a + t).
 
 Near a coincidence the tail moves at no more than d + R + 3.2 sqrt(d R) < 2.6 (d + R). There d sin(gamma / 2)
-<= 0.7 R between arcs, and d (1 - cos gamma) <= R between a line and an arc (see ``chord.coincidences``).
+<= 0.7 R between arcs, and d (1 - cos gamma) <= R between a line and an arc. Arcs that touch have a bound of
+their own (see ``chord.coincidences``).
 
 Forces: two pegs push together with a force F between the two directions in which each pushes. Where closing
 clamps, F must point along +x for standing pegs, and moving pegs push with -F; where opening clamps it is the
@@ -36,7 +37,16 @@ from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import inner, inner_making_arrays
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y, is_shallow
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.chord.coincidences import CONCENTRIC, NONE, from_coincidence, is_regular
+from workhold.kernels.chord.coincidences import (
+    CONCENTRIC,
+    NONE,
+    TOUCHING,
+    from_coincidence,
+    is_regular,
+    misfit,
+    regular_radius,
+    touching_speed,
+)
 from workhold.kernels.chord.columns import (
     BACKWARD_ERROR,
     COINCIDENCE,
@@ -61,6 +71,7 @@ from workhold.kernels.chord.columns import (
     RIGHTWARD_HIGH,
     RIGHTWARD_LOW,
     SHIFT,
+    SIDE,
     TAIL_NORMAL_X,
     TAIL_NORMAL_Y,
 )
@@ -124,9 +135,12 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
         # The chord turns about the centre as it is; nearly along a diameter its place is known less well than
         # its length.
         return a[RADIUS] * reach + arcs_radius(a, b, state, eta, eta)
-    radius = a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
+    radius = regular_radius(a, b, kind)
     gamma = from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
     if is_regular(kind, radius, d, gamma - reach) and is_regular(kind, radius, d, gamma + reach):
+        if kind == TOUCHING:
+            off = regular_error(curve) + misfit(a, b, curve, 0.0)
+            return off + touching_speed(a, b, curve[SIDE], d) * reach
         return regular_error(curve) + 2.6 * (d + radius) * reach
     e = d * reach + eta
     if is_regular(kind, radius, d, gamma):
@@ -165,7 +179,7 @@ def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tu
     radius = tail_radius(curve, state, reach)
     coincides = curve[COINCIDENCE] != NONE
     if coincides:
-        radius += regular_error(curve)
+        radius += regular_error(curve) + misfit(a, b, curve, state[2] * state[5] - state[3] * state[4])
     if coincides or not isfinite(radius):
         radius = min(radius, disc_radius(a, b, curve, state, psi, reach + 1e-15))
     # A tail that counts is on its feature.

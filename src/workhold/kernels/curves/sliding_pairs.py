@@ -51,7 +51,13 @@ from workhold.kernels.contact.record import (
 )
 from workhold.kernels.contact.rules import is_fixture, is_listed, share_a_carrier
 from workhold.kernels.curves.roots import WorkSpace, work_space
-from workhold.kernels.curves.three_and_one import add_moving_pegs, height_range, place_triple, row_meets
+from workhold.kernels.curves.three_and_one import (
+    add_moving_pegs,
+    heads_share_a_line,
+    height_range,
+    place_triple,
+    row_meets,
+)
 from workhold.kernels.curves.two_and_two import CANDIDATES, CONTACTS, STOPPED, is_among, place_chord
 
 Array = NDArray[np.float64]
@@ -364,6 +370,8 @@ def add_third_pegs(
         if not exists or not share_a_carrier(whole, curves.integers[curve], limits):
             continue
         if shares_a_line(curves.reals[curve], inside):
+            continue
+        if not counting and heads_share_a_line(whole, curves.integers[curve], loose, lattice):
             continue
         place_triple(pegs, curve, curve, inside, 2.0 * reach + SLIVER, features.rows, curves)
         x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]

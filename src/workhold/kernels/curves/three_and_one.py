@@ -7,7 +7,7 @@ meets each feature in at most two points.
 
 from __future__ import annotations
 
-from math import atan2, ceil, cos, floor, pi, sin, sqrt
+from math import atan2, ceil, cos, floor, hypot, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,7 @@ from workhold.kernels.chord.columns import (
     Curves,
 )
 from workhold.kernels.chord.evaluation import POSITION
+from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact.record import (
     PEG_FEATURE,
     PEG_RADIUS,
@@ -393,6 +394,18 @@ def add_triples(
 
 
 @inner
+def heads_share_a_line(one: IntArray, two: IntArray, features: Array, lattice: Lattice) -> bool:
+    """Whether the heads of two chords with a common tail, given by their whole numbers, push along one line.
+
+    Chords of which tail and head do are no curves. Left in, such heads make thousands of crossings that no
+    rounding keeps apart, for all their curves nearly agree where the pegs stand square to the features.
+    """
+    x = (two[COLUMN_STEP] - one[COLUMN_STEP]) * lattice.pitch_x
+    y = (two[ROW_STEP] - one[ROW_STEP]) * lattice.pitch_y
+    return share_one_line(features[one[HEAD]], features[two[HEAD]], hypot(x, y))
+
+
+@inner
 def add_limb_pairs(
     out: Array,
     count: int,
@@ -441,6 +454,8 @@ def add_limb_pairs(
                 continue
             steady = first[STEADY] * second[STEADY] == 1.0 and not circle
             if steady and not may_meet(first, second, 0.0, 0.0):
+                continue
+            if not counting and heads_share_a_line(integers[one], integers[two], loose, lattice):
                 continue
             if stats[STOPPED] != 0:
                 break

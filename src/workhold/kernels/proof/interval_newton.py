@@ -75,7 +75,7 @@ ROOTS = 4
 SHARPENINGS = 4
 
 
-class WorkSpace(NamedTuple):
+class NewtonWorkSpace(NamedTuple):
     """What parts of a box are worked with; made once, so that no part makes an array.
 
     Parameters
@@ -99,9 +99,9 @@ class WorkSpace(NamedTuple):
 
 
 @inner_making_arrays
-def work_space() -> WorkSpace:
+def work_space() -> NewtonWorkSpace:
     """A work space."""
-    return WorkSpace(
+    return NewtonWorkSpace(
         np.empty((WORK_LENGTH, 4)),
         np.empty((3, 4, 2)),
         np.empty((DEPTH, 2, 4)),
@@ -252,7 +252,7 @@ def solutions_in(
     features: Array,
     setting: Setting,
     frame: Array,
-    space: WorkSpace,
+    space: NewtonWorkSpace,
     roots: Array,
 ) -> int:
     """Finds every solution of a box that may be a fixture.
@@ -316,7 +316,7 @@ def solutions_in_all(
     features: Array,
     setting: Setting,
     frames: Array,
-    space: WorkSpace,
+    space: NewtonWorkSpace,
     verdicts: Verdicts,
     roots: Array,
 ) -> int:

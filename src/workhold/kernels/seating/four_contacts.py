@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.compiling import compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
+from workhold.kernels.seating.cell_middles import COSINE, SINE, pair_in
 from workhold.kernels.seating.columns import (
     BOTTOM,
     CELL_LENGTH,
@@ -30,7 +31,7 @@ from workhold.kernels.seating.columns import (
     JawCells,
 )
 from workhold.kernels.seating.obstacles import length
-from workhold.kernels.seating.three_contacts import COSINE, HALVES, MAYBE, NOTHING, SINE, pair_in, write_root
+from workhold.kernels.seating.three_contacts import HALVES, MAYBE, NOTHING, write_root
 from workhold.kernels.seating.two_contact_curves import (
     APART,
     END,

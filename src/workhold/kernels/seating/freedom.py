@@ -1,8 +1,8 @@
-"""Where pegs and a wall leave a part free along a self-motion, and candidates that are one."""
+"""Where pegs and a wall leave a part free along a self-motion."""
 
 from __future__ import annotations
 
-from math import hypot, inf, pi
+from math import hypot, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,6 @@ from workhold.kernels.seating.columns import (
     CONTACTS,
     PEG,
     PIECE,
-    PLACE_X,
-    PLACE_Y,
-    SEPARATION,
-    THETA,
     Manifolds,
     Obstacles,
     SelfMotions,
@@ -377,32 +373,4 @@ def free_runs(
                     out.across[count, 0], out.across[count, 1] = motions.across[w, 0], motions.across[w, 1]
                     count, length = count + 1, 0
         begin += size
-    return count
-
-
-@compiled
-def first_of_each(rows: Array, turn: float, shift: float, kept: IntArray) -> int:
-    """Writes the numbers of candidates (N, 24) that are none of those before them; how many they are.
-
-    Parameters
-    ----------
-    turn, shift : radians and mm by which configurations that are one differ less.
-    """
-    count = 0
-    for n in range(rows.shape[0]):
-        row, is_new = rows[n], True
-        for k in range(count):
-            other = rows[kept[k]]
-            if (
-                abs(other[SEPARATION] - row[SEPARATION]) < shift
-                and abs(other[PLACE_X] - row[PLACE_X]) < shift
-                and abs(other[PLACE_Y] - row[PLACE_Y]) < shift
-                and abs((other[THETA] - row[THETA] + pi) % (2.0 * pi) - pi) < turn
-                and other[CONTACTS] == row[CONTACTS]
-            ):
-                is_new = False
-                break
-        if is_new:
-            kept[count] = n
-            count += 1
     return count

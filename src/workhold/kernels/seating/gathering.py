@@ -27,7 +27,9 @@ from workhold.kernels.seating.columns import (
     CONTACTS,
     PEG,
     PLACE_X,
+    PLACE_Y,
     SEPARATION,
+    THETA,
     Given,
     Manifolds,
 )
@@ -261,4 +263,32 @@ def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Array, 
             if gives or away > 0.0:
                 whose[count] = number
                 count += 1
+    return count
+
+
+@compiled
+def first_of_each(rows: Array, turn: float, shift: float, kept: IntArray) -> int:
+    """Writes the numbers of candidates (N, 24) that are none of those before them; how many they are.
+
+    Parameters
+    ----------
+    turn, shift : radians and mm by which configurations that are one differ less.
+    """
+    count = 0
+    for n in range(rows.shape[0]):
+        row, is_new = rows[n], True
+        for k in range(count):
+            other = rows[kept[k]]
+            if (
+                abs(other[SEPARATION] - row[SEPARATION]) < shift
+                and abs(other[PLACE_X] - row[PLACE_X]) < shift
+                and abs(other[PLACE_Y] - row[PLACE_Y]) < shift
+                and abs((other[THETA] - row[THETA] + pi) % (2.0 * pi) - pi) < turn
+                and other[CONTACTS] == row[CONTACTS]
+            ):
+                is_new = False
+                break
+        if is_new:
+            kept[count] = n
+            count += 1
     return count

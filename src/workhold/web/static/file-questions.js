@@ -3,10 +3,11 @@
  */
 import { byId, draw, make, show } from "./dom.js";
 import { boundsOf, segmentPath, segmentsOf } from "./geometry.js";
+import { standingQuestion } from "./standing-question.js";
 import { state } from "./state.js";
 import { bareLength, countText, length, number, unitWord } from "./units.js";
 
-/** @typedef {{unit?: string, part?: number, layer?: string[], join?: number, fit?: number, axis?: string, peg_height?: number}} How what has been answered so far */
+/** @typedef {{unit?: string, part?: number, layer?: string[], join?: number, fit?: number, axis?: string, peg_height?: number, head_room?: number, least_band?: number}} How what has been answered so far */
 
 /** Gaps up to this many mm are joined without asking. */
 const JOINED = 0.001;
@@ -48,7 +49,7 @@ export function askQuestions(survey, how, answer) {
   if (!how.unit && !survey.asked.includes("unit")) bare = null;
   const unit = unitQuestion(how, answer);
   // Sizes of parts and gaps mean nothing before there is a unit.
-  const rest = unit && !how.unit ? [] : [layerQuestion, fitQuestion, partQuestion, gapQuestion, solidQuestion].map((each) => each(survey, how, answer));
+  const rest = unit && !how.unit ? [] : [layerQuestion, fitQuestion, partQuestion, gapQuestion, standingQuestion].map((each) => each(survey, how, answer));
   const asked = [unit, ...rest].filter((question) => question !== null);
   byId("file-asks").replaceChildren(...asked);
   any = asked.length > 0;
@@ -141,18 +142,4 @@ function fitQuestion({ asked, part }, how, answer) {
   }, length(fit, 2)));
   const off = part?.departure ? [make("span", {}, `They are off by ${length(part.departure, 4)} at most, which counts in the location error.`)] : [];
   return question("Some curves are neither lines nor arcs. Fit curves within", make("div.row-of-buttons", {}, ...buttons, ...off));
-}
-
-/** Along which axis a solid is held, and which of several it is. */
-function solidQuestion({ solid }, how, answer) {
-  if (!solid) return null;
-  const buttons = ["x", "y", "z", "-x", "-y", "-z"].map((axis) => make("button", {
-    type: "button", "aria-pressed": String((how.axis ?? "z") === axis), click: () => answer({ axis }),
-  }, axis.replace("-", "−")));
-  const height = /** @type {HTMLInputElement} */ (make("input.short", { type: "number", id: "peg-height", min: 0, step: "any", value: how.peg_height ?? "" }));
-  height.addEventListener("change", () => height.validity.valid && answer({ peg_height: Number(height.value) || undefined }));
-  const which = /** @type {HTMLInputElement} */ (make("input.short", { type: "number", id: "solid", min: 1, step: 1, value: how.part ?? 1 }));
-  which.addEventListener("change", () => which.validity.valid && answer({ part: Number(which.value) }));
-  return question("Up is", make("div.row-of-buttons", {}, make("div.segmented", {}, ...buttons),
-    make("label.inline", {}, "Peg height", height, "mm; empty: the silhouette"), make("label.inline", {}, "Solid, the largest is 1", which)));
 }

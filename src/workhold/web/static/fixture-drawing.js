@@ -7,6 +7,7 @@ import { draw, show } from "./dom.js";
 import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
 import { drawLettering } from "./fixture-lettering.js";
 import { contactsOf, forceOf, intoVise, partSegments, place, poseMatrix } from "./pose.js";
+import { clampFromAbove, supportPads } from "./supports-drawing.js";
 import { lyingMatrix } from "./trial.js";
 import { Viewport } from "./viewport.js";
 
@@ -36,6 +37,8 @@ export class FixtureDrawing {
     this.extras = () => [];
     /** How far the cutter is to keep off the pegs, in mm; null for no such circles. @type {number|null} */
     this.clearance = null;
+    /** Supports under the part and the clamp over them. @type {any} */
+    this.supports = null;
   }
 
   /**
@@ -49,6 +52,7 @@ export class FixtureDrawing {
     cancelAnimationFrame(this.frame);
     this.open = 0;
     this.lying = null;
+    this.supports = null;
     const toVise = intoVise(row);
     const box = boundsOf(partSegments(part).map(({ segment }) => segment), toVise);
     this.part = part;
@@ -78,6 +82,13 @@ export class FixtureDrawing {
   keepOff(clearance) {
     if (clearance === this.clearance) return;
     this.clearance = clearance;
+    if (this.row) this.build();
+  }
+
+  /** Show supports and the clamp from above, or none. @param {any} supports a set of the server, with the radii */
+  showSupports(supports) {
+    if (supports === this.supports) return;
+    this.supports = supports;
     if (this.row) this.build();
   }
 
@@ -116,7 +127,9 @@ export class FixtureDrawing {
       ...(each.clamp ? [this.push(each)] : []),
       ...each.pegs.map((k, at) => this.peg(row.pegs[k], k, each, each.flats?.[at] ?? null)),
     ]);
-    this.view.world.replaceChildren(...this.plates, this.ghost, shape, ...this.pegs);
+    this.pads = row.carriers.map((_, k) => draw("g", {}, ...supportPads(this.supports, k)));
+    this.over = draw("g.clamped-down", {}, ...clampFromAbove(this.supports));
+    this.view.world.replaceChildren(...this.plates, this.ghost, shape, ...this.pads, this.over, ...this.pegs);
     this.slide(this.open);
   }
 
@@ -241,11 +254,12 @@ export class FixtureDrawing {
           body.setAttribute("y2", clamp.tip[1] + y);
         }
       }
-      for (const group of clamp?.hole ? [this.pegs[k]] : [this.plates[k], this.pegs[k]]) {
+      for (const group of clamp?.hole ? [this.pegs[k]] : [this.plates[k], this.pegs[k], this.pads[k]]) {
         if (x || y) group.setAttribute("transform", `translate(${x} ${y})`);
         else group.removeAttribute("transform");
       }
     });
+    show(this.over, !open);
     this.letter();
   }
 

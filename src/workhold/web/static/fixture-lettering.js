@@ -158,6 +158,34 @@ function holeLabels(drawing) {
   });
 }
 
+/** Labels of the supports' holes, on the side away from the clamp, and of the clamp from above. */
+function padLabels(drawing) {
+  const { supports, view, row } = drawing;
+  if (!supports) return [];
+  const clamp = view.page(supports.at);
+  const label = (center, way, text, radius, kind) => {
+    const w = 7.6 * text.length + 12;
+    return { center, text, w, h: 20, kind, places: around(center, way, [radius + 8 + w / 2, radius + 16]) };
+  };
+  const pads = supports.pads.map((at, k) => {
+    const [dx, dy] = drawing.shift(row.carriers[supports.carriers[k]]);
+    const [x, y] = view.page([at[0] + dx, at[1] + dy]);
+    const far = Math.hypot(x - clamp[0], y - clamp[1]) || 1;
+    return label([x, y], [(x - clamp[0]) / far, (y - clamp[1]) / far], supports.holes[k], supports.pad_radius * view.k, ".support");
+  });
+  if (drawing.open) return pads;
+  const words = supports.clamp_force === null ? "clamp" : `clamp ${number(Math.ceil(supports.clamp_force), 0)} N`;
+  return [...pads, label(clamp, [0.6, -0.8], words, supports.tip_radius * view.k, ".from-above")];
+}
+
+/** What supports and the clamp from above take of the drawing, in pixels. */
+function supportRooms({ supports, view, lying, open }) {
+  if (!supports || lying) return [];
+  const room = ([x, y], radius) => ({ x, y, w: 2 * radius * view.k, h: 2 * radius * view.k });
+  const pads = supports.pads.map((at) => room(view.page(at), supports.pad_radius));
+  return open ? [] : [...pads, room(view.page(supports.at), supports.tip_radius)];
+}
+
 /** Where the pegs are shown, in pixels. */
 function pegCenters(drawing) {
   const { row, view } = drawing;
@@ -190,11 +218,12 @@ function labels(drawing, closed, axes) {
   const radius = pegSize(drawing);
   const taken = axes.map(({ room }) => room);
   taken.push(...pegCenters(drawing).map(([x, y]) => ({ x, y, w: 2 * radius, h: 2 * radius })));
+  taken.push(...supportRooms(drawing));
   const load = closed && drawing.load ? [loadLabel(drawing)] : [];
   if (closed) taken.push(...forces(drawing).flatMap(({ tail, tip }) => along(tail, tip, 8)));
   if (load.length) taken.push(...along(load[0].tail, load[0].tip, 10));
   const faces = closed ? faceLabels(drawing) : [];
-  const holes = holeLabels(drawing);
+  const holes = [...holeLabels(drawing), ...(drawing.lying ? [] : padLabels(drawing))];
   // Where there is room for none they are pushed apart at last.
   const crowded = [];
   for (const label of [...load, ...holes, ...faces]) {
@@ -206,9 +235,9 @@ function labels(drawing, closed, axes) {
   apart(crowded, taken);
   return [
     ...faces.flatMap(({ x, y, text }) => [draw("circle.face-label", { cx: x, cy: y, r: 9.5 }), word(text, [x, y], "face-name")]),
-    ...holes.flatMap(({ x, y, w, center, text }) => [
-      draw("line.label-lead", { x1: center[0], y1: center[1], x2: x, y2: y }),
-      draw("rect.hole-label", { x: x - w / 2, y: y - 10, width: w, height: 20, rx: 4 }),
+    ...holes.flatMap(({ x, y, w, center, text, kind = "" }) => [
+      draw(`line.label-lead${kind}`, { x1: center[0], y1: center[1], x2: x, y2: y }),
+      draw(`rect.hole-label${kind}`, { x: x - w / 2, y: y - 10, width: w, height: 20, rx: 4 }),
       word(text, [x, y], "hole-name"),
     ]),
     ...load.map(({ x, y, text }) => word(text, [x, y], "load-text")),

@@ -8,22 +8,29 @@ import { state } from "./state.js";
 /** Keys of the state that a link carries. */
 const CARRIED = [
   "toolkitName", "toolkit", "unit", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating",
-  "list", "view", "force", "sheet",
+  "list", "view", "force", "sheet", "cut", "supports",
 ];
+/** @typedef {{known: Object<string, any>, part: any, job: string|null, searched: boolean, rank: number|null, pinned: number|null}} Kept what restores a state */
 
 let latest = 0;
 
+/** What restores all that is seen of one side of a part. @returns {Kept} */
+export function snapshot() {
+  const { part, job, selected, pinned } = state;
+  return {
+    known: Object.fromEntries(CARRIED.map((key) => [key, state[key]])),
+    part: part && { name: part.name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null },
+    job: job?.job ?? null,
+    searched: job !== null,
+    rank: selected?.rank ?? null,
+    pinned: pinned?.rank ?? null,
+  };
+}
+
 /** The state as a fragment, without the "#". */
 export async function fragment() {
-  const carried = Object.fromEntries(CARRIED.map((key) => [key, state[key]]));
-  const text = JSON.stringify({
-    ...carried,
-    part: state.part && { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0, solid: state.part.solid ?? null },
-    job: state.job?.job ?? null,
-    searched: state.job !== null,
-    rank: state.selected?.rank ?? null,
-    pinned: state.pinned?.rank ?? null,
-  });
+  const { known, ...rest } = snapshot();
+  const text = JSON.stringify({ ...known, ...rest, sides: state.sides });
   const bytes = await through(new TextEncoder().encode(text), new CompressionStream("deflate-raw"));
   let binary = "";
   for (const byte of bytes) binary += String.fromCharCode(byte);
@@ -51,7 +58,7 @@ export async function restored(text) {
     const whole = await through(bytes, new DecompressionStream("deflate-raw"));
     const kept = JSON.parse(new TextDecoder().decode(whole));
     const known = Object.fromEntries(CARRIED.filter((key) => key in kept).map((key) => [key, kept[key]]));
-    return { known, part: kept.part, job: kept.job, searched: kept.searched, rank: kept.rank, pinned: kept.pinned };
+    return { known, part: kept.part, job: kept.job, searched: kept.searched, rank: kept.rank, pinned: kept.pinned, sides: kept.sides ?? null };
   } catch {
     return null;
   }

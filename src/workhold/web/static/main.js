@@ -1,7 +1,7 @@
 /**
  * The page: sets up its panels, asks the server what there is, and takes up the state that the address holds.
  */
-import { ask, send } from "./api.js";
+import { ask } from "./api.js";
 import { detailsPanel } from "./details-panel.js";
 import { byId, quiet, show } from "./dom.js";
 import { familiesDialog } from "./families-dialog.js";
@@ -9,13 +9,14 @@ import { forcesPanel } from "./forces-panel.js";
 import { listenToKeys } from "./keys.js";
 import { keep, restored } from "./link.js";
 import { offerParts, partPanel } from "./part-panel.js";
-import { resultsPanel, want, writeFilters } from "./results-panel.js";
-import { rulesPanel, writeRules } from "./rules-panel.js";
-import { takeUp } from "./search.js";
+import { resultsPanel } from "./results-panel.js";
+import { rulesPanel } from "./rules-panel.js";
 import { listenToSections } from "./sections.js";
+import { restore, setUpsPanel } from "./set-ups.js";
 import { spaceDialog } from "./space-dialog.js";
 import { partDrawing, showView, stagePanel } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
+import { supportsPanel } from "./supports-panel.js";
 import { takePanel } from "./take-panel.js";
 import { trialPanel } from "./trial-panel.js";
 import { unitWord } from "./units.js";
@@ -38,20 +39,8 @@ function writeGrids() {
 async function takeUpState() {
   const kept = await restored(location.hash);
   if (!kept) return;
-  change({ unit: kept.known.unit ?? "mm", view: "part" });
-  if (!kept.part) {
-    change(kept.known);
-    return;
-  }
-  const part = await send("parts/check", kept.part);
-  change({ part });
-  change({ ...kept.known, view: "part" });
-  writeRules(partDrawing);
-  writeFilters();
-  if (kept.searched) {
-    want(kept.rank, kept.pinned, kept.known.view);
-    await takeUp(kept.job);
-  }
+  change({ sides: kept.sides });
+  await restore(kept);
 }
 
 /** The next frame, or a tenth of a second where none is drawn. */
@@ -86,6 +75,8 @@ async function begin() {
   familiesDialog();
   takePanel(about);
   spaceDialog();
+  supportsPanel();
+  setUpsPanel();
   warningsPanel();
   await takeUpState().catch(() => {});
   const keepSoon = quiet(keep, 150);

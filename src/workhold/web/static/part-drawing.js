@@ -6,7 +6,7 @@ import { boundsOf, extend, outlinePath, pointAt, normalAt, segmentPath, segments
 import { apart } from "./labels.js";
 import { partSegments } from "./pose.js";
 import { change, state } from "./state.js";
-import { bareLength, unitWord } from "./units.js";
+import { bareLength, length, unitWord } from "./units.js";
 import { Viewport } from "./viewport.js";
 
 const MARGINS = [40, 40, 46, 46];
@@ -90,6 +90,7 @@ export class PartDrawing {
       }
       for (const [face, d] of byFace) shapes.push(this.face(face, d));
       shapes.push(draw("path.outline", { d: outline }));
+      for (const [face, d] of byFace) if (isNever(part, face)) shapes.push(draw("path.never", { d }));
       for (const { hit } of this.faces.values()) shapes.push(hit);
     }
     this.view.world.replaceChildren(...shapes, this.sketch);
@@ -112,7 +113,7 @@ export class PartDrawing {
   face(number, d) {
     const seen = draw("path.face", { d });
     const hit = draw("path.face-hit", { d, "data-face": number });
-    hit.append(draw("title", {}, `Face ${number}`));
+    hit.append(draw("title", {}, `Face ${number}${bandWords(state.part, number)}`));
     hit.addEventListener("click", () => {
       if (!this.view.tool) toggleFace(number);
     });
@@ -199,6 +200,22 @@ export class PartDrawing {
       ),
     ];
   }
+}
+
+/**
+ * Whether nothing may touch a face of a solid at the height of the pegs.
+ * @param {any} part
+ * @param {number} face
+ */
+export function isNever({ solid }, face) {
+  return Boolean(solid) && solid.bands[face] === null;
+}
+
+/** The heights at which a face of a solid may be touched, after a comma; nothing where there are none to tell. */
+export function bandWords({ solid }, face) {
+  if (!solid) return "";
+  const band = solid.bands[face];
+  return band ? `, touched at heights ${bareLength(band[0], 2)} to ${length(band[1], 2)}` : ", never touched";
 }
 
 /** The path of an open chain of [x, y, bulge]. */

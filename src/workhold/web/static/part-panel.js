@@ -8,6 +8,7 @@ import { previewOf } from "./file-preview.js";
 import { askQuestions, noQuestions, showQuestions } from "./file-questions.js";
 import { start } from "./search.js";
 import { showSection } from "./sections.js";
+import { otherFile } from "./standing-question.js";
 import { change, on, state } from "./state.js";
 import { usePreset } from "./toolkit-panel.js";
 import { length } from "./units.js";
@@ -21,6 +22,8 @@ const EXAMPLE_IN = "clamp-plate-20mm";
 let lastFile = null;
 /** What has been answered about it. @type {import("./file-questions.js").How} */
 let how = {};
+/** What the server told of it. @type {any} */
+let lastSurvey = null;
 let reading = 0;
 /** @type {import("./part-drawing.js").PartDrawing} */
 let drawing;
@@ -52,8 +55,11 @@ export function partPanel({ drawing: board, onDraw }) {
 function openFile(chosen) {
   if (lastFile) choice("file-unit").value = "";
   lastFile = chosen;
+  lastSurvey = null;
+  change({ sides: null, cut: null });
   how = choice("file-unit").value ? { unit: choice("file-unit").value } : {};
   noQuestions();
+  otherFile();
   readFile();
 }
 
@@ -73,7 +79,8 @@ async function readFile() {
   try {
     const survey = await surveyPart(chosen, how);
     if (mine !== reading) return;
-    survey.solid = /\.ste?p$/i.test(chosen.name);
+    survey.solid = isStep(chosen);
+    lastSurvey = survey;
     if (survey.part) {
       usePart(survey.part, { ...survey, chosen: how.part ?? null });
     } else await refuse(survey, chosen);
@@ -81,6 +88,32 @@ async function readFile() {
   } catch (error) {
     if (mine === reading) await trouble(error, chosen);
   }
+}
+
+/** Whether a file holds solids. @param {File} file */
+const isStep = (file) => /\.ste?p$/i.test(file.name);
+
+/** The file with a solid that the part is of, how it was read and what was told of it; null where it is not at hand. */
+export function fileRead() {
+  return lastFile && lastSurvey?.solid && lastSurvey.part ? { file: lastFile, how, survey: lastSurvey } : null;
+}
+
+/** The same file read otherwise. @param {import("./file-questions.js").How} more */
+export async function readOver(more) {
+  const chosen = /** @type {File} */ (lastFile);
+  const turned = { ...how, ...more };
+  const survey = await surveyPart(chosen, turned);
+  return { file: chosen, how: turned, survey: { ...survey, solid: true } };
+}
+
+/** Go on with a file as it was read; with none where it is not at hand. @param {ReturnType<typeof fileRead>} read */
+export function resumeFile(read) {
+  reading += 1;
+  lastFile = read?.file ?? null;
+  how = read?.how ?? {};
+  lastSurvey = read?.survey ?? null;
+  if (read) askQuestions(read.survey, how, answered);
+  else noQuestions();
 }
 
 /** Show what a refused file holds, and where it is wrong. */
@@ -108,6 +141,8 @@ async function takeBuiltin() {
   const { value } = choice("builtin");
   if (!value) return;
   lastFile = null;
+  lastSurvey = null;
+  change({ sides: null, cut: null });
   const mine = ++reading;
   noQuestions();
   try {
@@ -121,6 +156,8 @@ async function takeBuiltin() {
 /** A part and what holds it, and its search, in one click. */
 async function takeExample() {
   lastFile = null;
+  lastSurvey = null;
+  change({ sides: null, cut: null });
   const mine = ++reading;
   noQuestions();
   const example = await (await fetch("static/example.json")).json();
@@ -161,7 +198,7 @@ export function usePart(part, { name = "", parts = [], strokes = [], gaps = [], 
   choice("builtin").value = name;
   const others = parts.length > 1 ? parts.filter((each) => each.number !== (chosen ?? 1)) : [];
   drawing.others = { parts: others, strokes: gaps.length ? strokes : [], take: (other) => answered({ part: other }), isChosen: chosen !== null };
-  change({ part, avoid: [], zones: [], force: null, loads: [], view: "part" });
+  change({ part, avoid: [], zones: [], cut: null, supports: { ...state.supports, below: [], above: [] }, force: null, loads: [], view: "part" });
 }
 
 /** Offer the parts that come with the program. */

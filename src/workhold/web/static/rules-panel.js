@@ -2,7 +2,7 @@
  * Step 3: what is ruled out: faces, zones, angles, margins, types.
  */
 import { byId, make, quiet, show } from "./dom.js";
-import { toggleFace } from "./part-drawing.js";
+import { bandWords, isNever, toggleFace } from "./part-drawing.js";
 import { change, on, state } from "./state.js";
 import { kindOf, kinds } from "./toolkits.js";
 import { fieldLength, length, number, readLength, readNumber } from "./units.js";
@@ -50,8 +50,9 @@ function writeFaces(drawing) {
   const faces = state.part?.faces ?? [];
   byId("faces").replaceChildren(
     ...faces.map((face) => {
-      const size = face.kind === "line" ? `line of ${length(face.size, 1)}` : `arc of radius ${length(face.size, 1)}`;
-      return make("button", {
+      const kind = face.kind === "line" ? `line of ${length(face.size, 1)}` : `arc of radius ${length(face.size, 1)}`;
+      const size = `${kind}${bandWords(state.part, face.number)}`;
+      return make(`button${isNever(state.part, face.number) ? ".never-touched" : ""}`, {
         type: "button", title: size, "aria-label": `Face ${face.number}, ${size}`, "data-face": face.number,
         click: () => toggleFace(face.number),
         pointerenter: () => drawing.point(face.number), pointerleave: () => drawing.point(null),

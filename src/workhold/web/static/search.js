@@ -32,7 +32,7 @@ export function leave() {
   events?.close();
   events = null;
   const old = state.job?.job;
-  if (old) forget(old);
+  if (old && !state.sides?.kept.some((side) => side?.job === old)) forget(old);
   change({ job: null, selected: null, pinned: null, index: -1 });
 }
 

@@ -75,12 +75,12 @@ function write() {
   byId("sheet-words").textContent = given.filter(Boolean).join(", ");
 }
 
-/** What is asked of the sheet, as the server takes it: lengths in the unit shown. */
-export function sheetQuery() {
-  const query = { paper: state.sheet.paper, unit: state.unit };
-  if (state.sheet.seating) query.seating = "true";
+/** What is asked of a sheet, as the server takes it: lengths in the unit shown. @param {Object<string, any>} [sheet] */
+export function sheetQuery(sheet = state.sheet) {
+  const query = { paper: sheet.paper, unit: state.unit };
+  if (sheet.seating) query.seating = "true";
   for (const { name, form } of FIELDS) {
-    const value = state.sheet[name];
+    const value = sheet[name];
     if (value === undefined || value === null) continue;
     query[name] = form === "length" ? String(Number((value / scale()).toPrecision(12))) : String(value);
   }

@@ -3,16 +3,18 @@
  */
 import { ApiError, downloadPath, fetched } from "./api.js";
 import { byId, make, show } from "./dom.js";
+import { SIDES, setUps } from "./set-ups.js";
 import { sheetQuery } from "./sheet-fields.js";
 import { bodiesOf } from "./space/glb-reading.js";
 import { on, state } from "./state.js";
+import { supportsQuery } from "./supports.js";
 import { length } from "./units.js";
 
-const NO_WEBGL = "This browser has no WebGL, so nothing can be turned here: save the GLB, which any viewer of such files opens.";
+const NO_WEBGL = "Drawn without WebGL, which this browser has not or would be slow with.";
 /** How far things open at most, in parts of the extent of all bodies. */
 const WIDEST = 0.3;
 
-/** The view, once it is there; null where WebGL is missing. @type {import("./space/space-view.js").SpaceView|null} */
+/** The view, once it is there. @type {import("./space/space-view.js").SpaceView|import("./space/plain-view.js").PlainView|null} */
 export let view = null;
 let latest = 0;
 
@@ -28,6 +30,7 @@ export function spaceDialog() {
   byId("space-first").addEventListener("click", () => view?.fit());
   byId("space-above").addEventListener("click", () => view?.look(0, Math.PI / 2));
   byId("space-front").addEventListener("click", () => view?.look(0, 0));
+  for (const number of SIDES.keys()) byId(`space-side-${number}`).addEventListener("click", () => showSide(number));
   dialog.addEventListener("close", () => {
     latest += 1;
     view?.clear();
@@ -42,6 +45,7 @@ function made() {
   const hint = "Drag to turn, with Shift or two fingers to move; wheel or pinch to zoom. Keys: arrows, + and −, 0.";
   return make("dialog.wide", { id: "space", "aria-labelledby": "space-title" },
     make("h2", { id: "space-title" }),
+    make("div.segmented", { id: "space-sides", role: "group", "aria-label": "Side of the part", hidden: true }, ...SIDES.map((words, number) => button(`space-side-${number}`, words))),
     make("p", { id: "space-words", role: "status" }),
     make("div.trouble-box", { id: "space-trouble", role: "alert", hidden: true }),
     make("div", { id: "space-turn" },
@@ -57,51 +61,79 @@ function made() {
     make("form", { method: "dialog" }, make("button.primary", {}, "Close")));
 }
 
-/** Open the dialog and fetch the bodies of the fixture shown. */
+/** Open the dialog with the fixture shown. */
 export async function openSpace() {
-  const { job, selected } = state;
-  if (!job || !selected) return;
+  if (!state.job || !state.selected) return;
+  /** @type {HTMLDialogElement} */ (byId("space")).showModal();
+  await showSide(state.sides?.shown ?? 0);
+}
+
+/** Fetch the bodies of one side's fixture and show them. @param {number} number of the side */
+async function showSide(number) {
+  const all = setUps();
+  const shown = all.find((one) => one.number === number);
+  if (!shown) return;
   const mine = ++latest;
   const trouble = byId("space-trouble");
   show(trouble, false);
   byId("space-words").textContent = "";
   byId("space-kinds").replaceChildren();
-  byId("space-title").textContent = `Fixture ${selected.rank} in three dimensions`;
-  const sizes = Object.entries(sheetQuery()).filter(([name]) => ["thickness", "peg_length", "peg_height", "unit"].includes(name));
-  const path = downloadPath(job.job, selected.rank, "assembly.glb", Object.fromEntries(sizes));
+  show(byId("space-sides"), all.length > 1);
+  for (const other of SIDES.keys()) byId(`space-side-${other}`).setAttribute("aria-pressed", String(other === number));
+  byId("space-title").textContent = `${all.length > 1 ? `${SIDES[number]}, fixture` : "Fixture"} ${shown.rank} in three dimensions`;
+  const sizes = Object.entries(sheetQuery(shown.known.sheet)).filter(([name]) => ["thickness", "peg_length", "peg_height", "unit"].includes(name));
+  const supported = supportsQuery({ ...shown.known, part: shown.part, unit: state.unit });
+  const path = downloadPath(shown.job, shown.rank, "assembly.glb", { ...Object.fromEntries(sizes), ...supported });
   byId("space-save").setAttribute("href", path);
-  /** @type {HTMLDialogElement} */ (byId("space")).showModal();
   try {
     const { content } = await fetched(path);
     const bodies = bodiesOf(await content.arrayBuffer());
-    const canBeTurned = await viewOf();
+    const shownBy = await viewOf();
     if (mine !== latest) return;
     tell(bodies);
-    show(byId("space-turn"), canBeTurned);
-    if (!canBeTurned) {
-      byId("space-words").textContent = NO_WEBGL;
-      return;
-    }
-    view?.show(bodies);
+    if (isPlain) byId("space-words").textContent = NO_WEBGL;
+    shownBy.show(bodies);
     byId("space-canvas").focus();
     setSlider(bodies);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     if (mine !== latest) return;
-    trouble.textContent = error.message;
+    view?.clear();
+    trouble.textContent = error.status === 404 && all.length > 1 && number !== state.sides?.shown
+      ? `The search for the ${SIDES[number].toLowerCase()} has been forgotten: show that side once, and it is searched again.` : error.message;
     show(trouble, true);
   }
 }
 
-/** Make the view where there is WebGL, and say whether there is. */
+/** Whether the view does without WebGL. */
+let isPlain = false;
+
+/** Renderers that stand in for a graphics card; they are slower than drawing without WebGL. */
+const STAND_IN = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+/** Whether a graphics card draws WebGL here, as far as the browser tells. */
+function hasCard() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  const told = context?.getExtension("WEBGL_debug_renderer_info");
+  const name = context && told ? String(context.getParameter(told.UNMASKED_RENDERER_WEBGL)) : "";
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return Boolean(context) && !STAND_IN.test(name);
+}
+
+/** Make the view, with WebGL where a graphics card draws it. */
 async function viewOf() {
-  if (view) return true;
+  if (view) return view;
   const canvas = /** @type {HTMLCanvasElement} */ (byId("space-canvas"));
-  const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
-  if (!context) return false;
-  const { SpaceView } = await import("./space/space-view.js");
-  view ??= new SpaceView(canvas, context);
-  return true;
+  const context = hasCard() ? canvas.getContext("webgl2", { antialias: true, alpha: true }) : null;
+  if (context) {
+    const { SpaceView } = await import("./space/space-view.js");
+    view ??= new SpaceView(canvas, context);
+  } else {
+    const { PlainView } = await import("./space/plain-view.js");
+    view ??= new PlainView(canvas, /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d")));
+    isPlain = true;
+  }
+  return view;
 }
 
 /** Set the slider to closed, as far as these bodies open. */

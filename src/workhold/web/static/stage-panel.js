@@ -80,7 +80,10 @@ export function showView() {
   show(byId("draw-words"), view === "draw");
   if (view === "draw" && !tool) {
     show(byId("stage-empty"), false);
-    tool = new DrawingTool(partDrawing, usePart);
+    tool = new DrawingTool(partDrawing, (part) => {
+      change({ sides: null, cut: null });
+      usePart(part);
+    });
     byId("drawing-part").focus();
   } else if (view !== "draw" && tool) {
     tool.stop();

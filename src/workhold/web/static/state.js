@@ -34,6 +34,9 @@ export const SETTINGS = [
  * @property {string} view "part", "fixture" or "draw"
  * @property {{x: number, y: number, size: number, direction: number, moment: number, jaw: number|null, kind?: string|number}|null} force with the force and kind of the jaw
  * @property {import("./trial.js").Trial|null} trial the part in the hand
+ * @property {number[]|null} cut faces that this set-up cuts, so that the second side is not held by them; null is those not to touch
+ * @property {import("./set-ups.js").Sides|null} sides both sides of a part that is turned over, or null
+ * @property {import("./supports.js").Wish} supports what supports under the part and the clamp from above are
  * @property {Object<string, any>} sheet what stands on the setup sheet besides: wishes by the server's names, lengths in mm
  */
 
@@ -63,6 +66,9 @@ export const state = {
   force: null,
   sheet: { paper: "a4" },
   trial: null,
+  cut: null,
+  sides: null,
+  supports: { below: [], above: [] },
 };
 
 /** @type {{keys: string[], call: (changed: Set<string>) => void}[]} */

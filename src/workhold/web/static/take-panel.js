@@ -6,17 +6,19 @@ import { byId, make, show } from "./dom.js";
 import { keep } from "./link.js";
 import { searching } from "./search.js";
 import { sheetFields, sheetQuery } from "./sheet-fields.js";
+import { firstSideQuery, SIDES, setUps } from "./set-ups.js";
 import { on, state } from "./state.js";
+import { supportsQuery } from "./supports.js";
 import { loadQuery } from "./warnings-panel.js";
 
 /** Links to what is made for the fixture shown. */
-const PAPERS = ["take-sheet", "take-svg", "take-dxf", "take-step", "take-pins", "take-picture"];
+const PAPERS = ["take-sheet", "take-other", "take-svg", "take-dxf", "take-step", "take-pins", "take-picture"];
 
 /** @param {any} about what the server can do */
 export function takePanel(about) {
   show(byId("take-step"), Boolean(about.step));
   sheetFields();
-  on(["part", "selected", "job", "unit", "force", "sheet"], write);
+  on(["part", "selected", "job", "unit", "force", "sheet", "supports", "sides", "loads"], write);
   for (const id of PAPERS) byId(id).addEventListener("click", save);
   byId("print").addEventListener("click", () => print());
   byId("copy-link").addEventListener("click", copyLink);
@@ -32,7 +34,7 @@ function write() {
   if (!job || !rank) return;
   const date = new Date();
   const day = [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
-  const sheet = { ...sheetQuery(), date: day, ...loadQuery() };
+  const sheet = { ...sheetQuery(), date: day, ...loadQuery(), ...supportsQuery(), ...firstSideQuery(state.sides?.shown ?? 0) };
   // Files are made of a whole search only; until then a link leads nowhere.
   const over = !searching();
   const point = (id, path) => {
@@ -48,6 +50,13 @@ function write() {
   point("take-step", downloadPath(job, rank, "setup.step", sheet));
   point("take-pins", downloadPath(job, rank, "pins.csv", sheet));
   point("take-picture", downloadPath(job, rank, "picture.svg"));
+  const other = setUps().find(({ number }) => number !== (state.sides?.shown ?? 0));
+  show(byId("take-other"), Boolean(other));
+  if (other) {
+    const known = { ...other.known, part: other.part, unit: state.unit };
+    byId("take-other").textContent = `Sheet of the ${SIDES[other.number].toLowerCase()}`;
+    point("take-other", downloadPath(other.job, other.rank, "sheet.pdf", { ...sheetQuery(known.sheet), date: day, ...loadQuery(known), ...supportsQuery(known), ...firstSideQuery(other.number) }));
+  }
   point("take-json", downloadPath(job, null, "result.json"));
   point("take-csv", downloadPath(job, null, "result.csv"));
 }

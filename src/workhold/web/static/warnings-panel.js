@@ -13,10 +13,10 @@ export function warningsPanel() {
 
 /**
  * What is asked about loads and jaw, for the sentences and for the sheet.
+ * @param {any} [of] the state of this side or of the other
  * @returns {Object<string, string>}
  */
-export function loadQuery() {
-  const { force, loads } = state;
+export function loadQuery({ force, loads } = state) {
   if (!force) return {};
   const query = {};
   if (force.jaw) query.jaw_force = String(force.jaw);

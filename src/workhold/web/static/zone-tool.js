@@ -24,8 +24,10 @@ export class ZoneTool {
    * @param {import("./part-drawing.js").PartDrawing} drawing
    * @param {"circle"|"polygon"} kind
    * @param {(made: boolean) => void} ended
+   * @param {(loop: number[][]) => void} take what becomes of the zone; by default no peg may stand there
    */
-  constructor(drawing, kind, ended) {
+  constructor(drawing, kind, ended, take = (loop) => change({ zones: [...state.zones, loop] })) {
+    this.take = take;
     this.drawing = drawing;
     this.kind = kind;
     this.ended = ended;
@@ -103,10 +105,10 @@ export class ZoneTool {
     return [draw("text.dimension-text", { x, y: y - 6, "text-anchor": "middle" }, `r ${length(radius, 1)}`)];
   }
 
-  /** Add the zone to the state. */
+  /** Hand the zone on. */
   finish(loop) {
+    this.take(loop);
     this.stop(true);
-    change({ zones: [...state.zones, loop] });
   }
 
   /** Put everything back. */

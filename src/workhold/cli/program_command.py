@@ -1,0 +1,197 @@
+"""The command ``program``: what was understood of a program for the machine, as tables and as a picture."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+from attrs import asdict
+
+from workhold.cli.commands import option
+from workhold.cli.options import SHOWN_UNIT
+from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.table import Table, print_tables
+from workhold.cli.values import choice, length, length_unit, optional_positive_length
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.files.program.reader import ReadProgram
+    from workhold.model.program_figures import ToolFigures
+    from workhold.units import Unit
+
+__all__ = ["program"]
+
+PLACE, READING = "Where it runs", "How it is read"
+
+
+def program(
+    program_file: Annotated[
+        str, typer.Argument(metavar="PROGRAM", help="A program of RS-274 (G-code), for the mill.")
+    ],
+    tools: str | None = option(
+        READING,
+        "FILE",
+        "Table of tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given.",
+    ),
+    program_unit: str | None = option(READING, "mm|inch", "Unit of a program without G20 and G21."),
+    rapid: str = option(
+        READING,
+        "straight|box",
+        "Whether rapid moves are straight, or may go anywhere in the box of their ends.",
+        default="straight",
+    ),
+    zero: str = option(PLACE, "X,Y", "Where the program's X0 Y0 is on the part.", default="0,0"),
+    z_zero: str = option(
+        PLACE, "top|bottom|LENGTH", "Where its Z0 is: a side of the part, or a height.", default="top"
+    ),
+    thickness: str | None = option(
+        PLACE, "LENGTH", "How thick the part is; heights are those of the program if not given."
+    ),
+    draw: str | None = option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
+    force: ForceOption = False,
+    unit: str | None = SHOWN_UNIT,
+    json_: JsonOption = False,
+) -> None:
+    """Report what was understood of a program for the mill: tools, lengths, heights, time, lines left out.
+
+    What cannot be read is refused with its line. Nothing is searched, and the part is not needed.
+
+    Example: workhold program bracket.nc --tools tools.toml --draw bracket.png
+    """
+    shown = length_unit(unit)
+    picture = asked_picture(draw, (program_file, tools), force)
+    height = None if thickness is None else optional_positive_length("--thickness", thickness, shown)
+    asked_unit = None if program_unit is None else choice("--program-unit", program_unit, ("mm", "inch"))
+    from workhold.files.program.reader import read_program_with_calls
+
+    read = read_program_with_calls(
+        program_file,
+        tools,
+        zero=asked_zero(zero, shown),
+        z_zero=asked_height(z_zero, height, shown),
+        thickness=height,
+        rapid=asked_rapid(rapid),
+        unit=asked_unit,
+    )
+    if picture is not None:
+        from workhold.drawing.program_picture import draw_program
+
+        write_picture(picture, draw_program(read.program, unit=shown))
+    if json_:
+        print_json(**data_of(read), written=[str(picture)] if picture else [])
+        return
+    report(read, shown, from_z_zero=z_zero == "top" and height is None)
+    if picture is not None:
+        print_tables(f"Written to {picture}.")
+
+
+def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
+    """The place of the program's zero on the part, in mm.
+
+    Raises
+    ------
+    InputError
+        For anything but two lengths.
+    """
+    words = text.split(",")
+    if len(words) != 2:
+        raise InputError(f"--zero {text!r} is not a place: give two lengths, such as 10,5.")
+    return length("--zero", words[0], unit), length("--zero", words[1], unit)
+
+
+def asked_height(text: str, thickness: float | None, unit: Unit) -> float | Literal["top", "bottom"]:
+    """The height of the program's Z0: a side of the part, or in mm; 0 for the top of a part nobody knows."""
+    if text == "top":
+        return "top" if thickness is not None else 0.0
+    if text == "bottom":
+        return "bottom"
+    return length("--z-zero", text, unit)
+
+
+def asked_rapid(text: str) -> Literal["straight", "box"]:
+    """How rapid moves go."""
+    return "box" if choice("--rapid", text, ("straight", "box")) == "box" else "straight"
+
+
+def data_of(read: ReadProgram) -> dict[str, Any]:
+    """What was understood, as plain data; lengths in mm."""
+    from workhold.model.program_figures import tip_box, tool_figures
+
+    program = read.program
+    low, high = tip_box(program.moves)
+    return {
+        **program.head(),
+        "lines": read.lines,
+        "moves": len(program.moves),
+        "calls": [{"line": line, "tool": number} for line, number in read.calls],
+        "tip": {"low": low.tolist(), "high": high.tolist()},
+        "figures": [asdict(one) for one in tool_figures(program)],
+    }
+
+
+def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
+    """Prints the tools with their figures, where they go, and the notes."""
+    from workhold.model.program_figures import tip_box, tool_figures
+
+    program = read.program
+    figures = tool_figures(program)
+    calls = Counter(number for _, number in read.calls)
+    short = unit.abbreviation
+    table = Table(
+        (
+            "tool",
+            f">Ø {short}",
+            "name",
+            ">calls",
+            ">first line",
+            f">cutting {short}",
+            f">rapid {short}",
+            ">time cutting",
+            f">lowest cut {short}",
+        )
+    )
+    for one in figures:
+        tool = program.tools[one.tool]
+        table.add_row(
+            f"T{one.tool}",
+            unit.number(tool.diameter),
+            tool.name,
+            str(calls[one.tool]),
+            str(one.first_line),
+            unit.number(one.cutting, 0 if unit.millimetres == 1 else 1),
+            unit.number(one.rapid, 0 if unit.millimetres == 1 else 1),
+            time_words(one),
+            "" if one.lowest_cut is None else unit.number(one.lowest_cut),
+        )
+    low, high = tip_box(program.moves)
+    spans = ", ".join(
+        f"{axis} {unit.number(one)} to {unit.number(other)}"
+        for axis, one, other in zip("XYZ", low.tolist(), high.tolist(), strict=True)
+    )
+    above = "the program's Z0" if from_z_zero else "the part's lower side"
+    total = sum(one.seconds for one in figures)
+    print_tables(
+        f"{program.name}: {read.lines:,} lines in {program.unit}, {len(program.moves):,} moves.",
+        table,
+        f"The tips go from {spans} {short}; heights are above {above}.",
+        f"Cutting takes {clock(total)} at the feeds that are written; rapid moves, dwells and tool changes "
+        "come on top.",
+        *program.notes,
+    )
+
+
+def time_words(figures: ToolFigures) -> str:
+    """The time of a tool's cutting moves; a plus sign behind it where some have no feed."""
+    return clock(figures.seconds) + ("+" if figures.untimed else "")
+
+
+def clock(seconds: float) -> str:
+    """A time in hours, minutes and seconds.
+
+    >>> clock(75.4), clock(3675)
+    ('1:15', '1:01:15')
+    """
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"

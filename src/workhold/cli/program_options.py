@@ -1,0 +1,173 @@
+"""Options of a program that fixtures are to let pass, and how near its tools come to one."""
+
+from __future__ import annotations
+
+from functools import cache
+from inspect import signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from attrs import asdict, evolve, fields, frozen
+
+from workhold.cli.commands import option, print_remark
+from workhold.cli.options import PartWords
+from workhold.cli.program_command import asked_height, asked_rapid, asked_zero
+from workhold.cli.values import choice, length, optional_positive_length
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.model.program import Program
+    from workhold.model.result import Result
+    from workhold.model.workpiece import Workpiece
+    from workhold.units import Unit
+
+__all__ = ["ProgramWords", "passing_data", "passing_words"]
+
+PROGRAM = "The program"
+SOLIDS = (".step", ".stp")
+
+
+@frozen
+class ProgramWords:
+    """The options of a program, as typed; None for those not given."""
+
+    program: str | None = option(
+        PROGRAM,
+        "FILE",
+        "List only fixtures that the tools of this program (G-code) keep clear of; see workhold program.",
+    )
+    tools: str | None = option(
+        PROGRAM,
+        "FILE",
+        "Table of its tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given.",
+    )
+    zero: str = option(PROGRAM, "X,Y", "Where its X0 Y0 is on the part.", default="0,0")
+    z_zero: str = option(
+        PROGRAM, "top|bottom|LENGTH", "Where its Z0 is: a side of the part, or a height.", default="top"
+    )
+    program_clearance: str = option(
+        PROGRAM, "LENGTH", "What tools keep from pegs, clamps and walls.", default="1mm"
+    )
+    rapid: str = option(
+        PROGRAM,
+        "straight|box",
+        "Whether its rapid moves are straight, or may go anywhere in the box of their ends.",
+        default="straight",
+    )
+    program_unit: str | None = option(PROGRAM, "mm|inch", "Unit of a program without G20 and G21.")
+    thickness: str | None = option(
+        PROGRAM,
+        "LENGTH",
+        "How thick the part is; that of its solid if not given. Pegs are as high, or as --peg-height says.",
+    )
+
+    @classmethod
+    def untyped(cls) -> ProgramWords:
+        """The options as they are where none is typed."""
+        return cls(
+            **{name: parameter.default.default for name, parameter in signature(cls).parameters.items()}
+        )
+
+    @property
+    def files(self) -> tuple[str | None, ...]:
+        """The files that are read."""
+        return self.program, self.tools
+
+    def reading(self, part: str, reading: PartWords) -> PartWords:
+        """How a part is read: of a drawing the peg height is no question of the reader but of the program."""
+        is_drawing = Path(part).suffix.lower() not in SOLIDS
+        return evolve(reading, peg_height=None) if self.program is not None and is_drawing else reading
+
+    def asked(self, unit: Unit, peg_height: str | None, workpiece: Workpiece | None = None) -> dict[str, Any]:
+        """Keyword arguments of a query; reads the program, and prints remarks on it on stderr.
+
+        Parameters
+        ----------
+        peg_height : as typed.
+        workpiece : for the heights of its solid; None where it is not known yet.
+
+        Raises
+        ------
+        InputError
+            For words that mean nothing, a program that cannot be read, and heights that are needed and not
+            given; for words about a program without one.
+        """
+        if self.program is None:
+            # Of a thickness other options make use as well.
+            usual = evolve(ProgramWords.untyped(), thickness=self.thickness)
+            given = [
+                one.name
+                for one in fields(ProgramWords)
+                if getattr(self, one.name) != getattr(usual, one.name)
+            ]
+            if given:
+                raise InputError(
+                    f"--{given[0].replace('_', '-')} says something of a program: name it with --program."
+                )
+            return {}
+        solid = None if workpiece is None else workpiece.solid
+        thick = optional_positive_length("--thickness", self.thickness, unit)
+        high = optional_positive_length("--peg-height", peg_height, unit)
+        if solid is not None:
+            thick, high = thick or solid.height, solid.peg_height
+        if thick is None and (self.z_zero == "top" or high is None):
+            raise InputError(
+                "the part is an outline without heights, so nobody knows what of --program passes over the "
+                "pegs: give its --thickness, and --peg-height where pegs are not as high."
+            )
+        return {"program": read_once(self, unit, thick), "peg_height": high or thick}
+
+
+@cache
+def read_once(words: ProgramWords, unit: Unit, thickness: float | None) -> Program:
+    """Reads the program, and prints remarks on it; ``thickness`` of the part in mm.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing, and a program that cannot be read.
+    """
+    assert words.program is not None
+    kept = length("--program-clearance", words.program_clearance, unit)
+    named = (
+        None if words.program_unit is None else choice("--program-unit", words.program_unit, ("mm", "inch"))
+    )
+    from workhold.files.program.reader import read_program
+
+    program = read_program(
+        words.program,
+        words.tools,
+        zero=asked_zero(words.zero, unit),
+        z_zero=asked_height(words.z_zero, thickness, unit),
+        thickness=thickness,
+        clearance=kept,
+        rapid=asked_rapid(words.rapid),
+        unit=named,
+    )
+    for note in program.notes:
+        print_remark(note)
+    return program
+
+
+def passing_data(result: Result, rank: int) -> dict[str, Any]:
+    """Returns where the program's tools come nearest, as plain data; nothing without a program."""
+    from workhold.statics.program_clearance import passing_of
+
+    near = passing_of(result, rank - 1)
+    return {} if near is None else {"program_clearance": asdict(near)}
+
+
+def passing_words(result: Result, rank: int, unit: Unit) -> list[str]:
+    """Says how near the program's tools come to the fixture of a rank, and where; nothing without one."""
+    from workhold.statics.program_clearance import passing_of
+
+    program = result.query.program
+    if program is None:
+        return []
+    near = passing_of(result, rank - 1)
+    if near is None:
+        return [f"No tool of {program.name} comes down to where anything holds the part."]
+    return [
+        f"The tools of {program.name} keep {unit.text(near.distance)} from all that holds the part; "
+        f"T{near.tool} comes nearest in line {near.line}, to the {near.element}."
+    ]

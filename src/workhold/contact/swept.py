@@ -1,0 +1,265 @@
+"""What a program sweeps at the heights of pegs: pieces of the plane that everything of a fixture keeps from.
+
+An element of a fixture is clear where the axis of a tool's cylinder keeps the cylinder's radius and the
+clearance from it. So a disc, a capsule and a half plane ask for the least distance less radius over all
+pieces. Pieces of one path count once, with the largest radius. A tree of boxes finds the
+nearest of thousands.
+
+Glossary
+--------
+span : one segment or arc of a swept piece's path; a filled box has four, and its inside.
+reach : distance less radius, in mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from math import inf
+
+import numpy as np
+from attrs import define
+from numpy.typing import NDArray
+
+from workhold.conventions import STRAIGHT
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    IS_ARC,
+    RADIUS,
+    REST_X,
+    REST_Y,
+    SEGMENT_LENGTH,
+    SHALLOW,
+    SIGN,
+    X,
+    Y,
+)
+from workhold.kernels.contact.swept import DEPTH, LEAF, SweptTree, nearest_swept
+from workhold.model.program import Program, SweptPiece
+
+__all__ = ["Swept", "span_boxes", "swept_below"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+# Columns of a span: both ends, the bulge between them, and the radius of the cylinder.
+SPAN = 6
+# Bits of each coordinate in the order of a tree's pieces (G. M. Morton 1966).
+MORTON_BITS = 16
+
+
+@define(frozen=True, eq=False)
+class Swept:
+    """The spans of what is swept, in the order of their tree; in mm, in the part's coordinates.
+
+    Parameters
+    ----------
+    tree : of the spans, with rows that only fill leaves.
+    line, tool : (N,) of the program, -1 of rows that fill.
+    boxes : (N, 4) around each span.
+    filled : (B, 4) boxes whose whole inside is swept, x0, y0, x1, y1.
+    filled_radius, filled_line : (B,) of the cylinder there, and of the program.
+    """
+
+    tree: SweptTree
+    line: IntArray
+    tool: IntArray
+    boxes: Array
+    filled: Array
+    filled_radius: Array
+    filled_line: IntArray
+
+    def __len__(self) -> int:
+        return int((self.line >= 0).sum())
+
+    @classmethod
+    def of(cls, pieces: Iterator[SweptPiece] | tuple[SweptPiece, ...]) -> Swept:
+        """The spans of pieces."""
+        spans, numbers, filled = list[tuple[float, ...]](), list[tuple[int, int]](), list[tuple[float, ...]]()
+        filled_lines = []
+        for piece in pieces:
+            path = piece.path
+            for (x, y, bulge), (to_x, to_y, _) in zip(path, path[1:] or path, strict=False):
+                spans.append((x, y, to_x, to_y, bulge, piece.radius))
+                numbers.append((piece.line, piece.tool))
+            if piece.filled:
+                xs, ys = [vertex[0] for vertex in path], [vertex[1] for vertex in path]
+                filled.append((min(xs), min(ys), max(xs), max(ys), piece.radius))
+                filled_lines.append(piece.line)
+        rows = np.array(spans).reshape(-1, SPAN)
+        named = np.array(numbers, np.int64).reshape(-1, 2)
+        kept = each_path_once(rows)
+        rows, named = rows[kept], named[kept]
+        inside = np.array(filled).reshape(-1, 5)
+        order, boxes = tree_order(rows, (segments := span_rows(rows)))
+        count = len(order)
+        filling = order < 0
+        out, radius = np.zeros((count, SEGMENT_LENGTH)), np.full(count, -inf)
+        line, tool = np.full(count, -1), np.full(count, -1)
+        around = np.tile([inf, inf, -inf, -inf], (count, 1))
+        chosen = order[~filling]
+        out[~filling], radius[~filling] = segments[chosen], rows[chosen, 5]
+        line[~filling], tool[~filling] = named[chosen].T
+        around[~filling] = boxes[chosen]
+        out.setflags(write=False)
+        return cls(
+            SweptTree(out, radius, nodes_of(around, radius)),
+            line,
+            tool,
+            around,
+            inside[:, :4],
+            inside[:, 4],
+            np.array(filled_lines, np.int64),
+        )
+
+    def nearest(self, starts: Array, ends: Array) -> tuple[Array, IntArray]:
+        """Least reach (M,) of straight pieces between ends (M, 2), and the number (M,) of the span it is to.
+
+        It is infinite, and the number -1, where nothing is swept. Inside a filled box it is that to its
+        border.
+        """
+        least, which = np.full(len(starts), inf), np.full(len(starts), -1)
+        starts, ends = (np.ascontiguousarray(points, np.float64) for points in (starts, ends))
+        nearest_swept(starts, ends, self.tree, np.zeros(DEPTH, np.int64), least, which)
+        return least, which
+
+    def above(self, theta: float, height: float) -> tuple[float, int]:
+        """Least reach to the half plane below a level line, once all is turned, and the span it is to.
+
+        Parameters
+        ----------
+        theta : by which the part is turned about its origin, in radians.
+        height : of the line in mm, from where the part's origin then lies.
+        """
+        if not len(self.line):
+            return inf, -1
+        rows, (sine, cosine) = self.tree.rows, (np.sin(theta), np.cos(theta))
+        upward = sine * rows[:, X] + cosine * rows[:, Y] + (sine * rows[:, REST_X] + cosine * rows[:, REST_Y])
+        axis = sine * rows[:, AXIS_X] + cosine * rows[:, AXIS_Y]
+        across = cosine * rows[:, AXIS_X] - sine * rows[:, AXIS_Y]
+        half, is_arc = rows[:, HALF_EXTENT], rows[:, IS_ARC] != 0.0
+        # An arc is lowest where it faces down, or at an end; its middle has the direction of its axis.
+        turn = np.abs(np.arctan2(across, -axis))
+        dip = np.where(turn <= half, -1.0, -np.cos(turn - half))
+        low = upward + np.where(is_arc, rows[:, RADIUS] * dip, -np.abs(axis) * half)
+        reach = np.where(self.line < 0, inf, np.maximum(low - height, 0.0) - self.tree.radius)
+        number = int(reach.argmin())
+        return float(reach[number]), number if reach[number] < inf else -1
+
+
+@lru_cache(maxsize=16)
+def swept_below(program: Program, height: float) -> Swept:
+    """What a program sweeps at heights up to one in mm, above which nothing of a fixture reaches."""
+    return Swept.of(program.iter_swept(-inf, height))
+
+
+def each_path_once(spans: Array) -> IntArray:
+    """The numbers of the spans (N, 6) to keep, in order: of those of one path the one of the largest radius.
+
+    What a smaller cylinder sweeps on a path, the largest sweeps as well.
+    """
+    backward = (spans[:, 0] > spans[:, 2]) | ((spans[:, 0] == spans[:, 2]) & (spans[:, 1] > spans[:, 3]))
+    ends = np.where(backward[:, None], spans[:, [2, 3, 0, 1]], spans[:, :4])
+    bulge = np.where(backward, -spans[:, 4], spans[:, 4])
+    keys = np.column_stack([ends, bulge]) + 0.0
+    order = np.lexsort([-spans[:, 5], *keys.T])
+    fresh = np.ones(len(order), np.bool_)
+    fresh[1:] = (np.diff(keys[order], axis=0) != 0.0).any(axis=1)
+    return np.sort(order[fresh])
+
+
+def span_rows(spans: Array) -> Array:
+    """Rows (N, 10) as kernels take them of spans (N, 6); a span of no length is a line of none.
+
+    Formulas as in ``geometry.segment.segment_from_bulge``. The centres of shallow arcs are worked out with
+    eleven bits more, and what is left of them stands beside them.
+    """
+    out = np.zeros((len(spans), SEGMENT_LENGTH))
+    start, end, bulge = spans[:, :2], spans[:, 2:4], spans[:, 4]
+    along = end - start
+    chord = np.hypot(along[:, 0], along[:, 1])
+    tangent = np.where(chord[:, None] > 0.0, along / np.where(chord > 0.0, chord, 1.0)[:, None], (1.0, 0.0))
+    middle = (start + end) / 2
+    is_arc = (np.abs(bulge) >= STRAIGHT) & (chord > 0.0)
+    out[:, X], out[:, Y] = middle.T
+    out[:, AXIS_X], out[:, AXIS_Y], out[:, HALF_EXTENT], out[:, SIGN] = *tangent.T, chord / 2, 1.0
+    arcs = np.flatnonzero(is_arc)
+    if len(arcs):
+        bent, (tx, ty) = bulge[arcs], tangent[arcs].T
+        half, sign = 2.0 * np.arctan(np.abs(bent)), np.sign(bent)
+        radius = chord[arcs] / (2.0 * np.sin(half))
+        axis = np.stack([sign * ty, -sign * tx], axis=1)
+        center = middle[arcs] - axis * (radius * np.cos(half))[:, None]
+        # Half a chord times the bulge beyond the chord lies the arc's own middle.
+        wide = np.longdouble
+        rim = middle[arcs].astype(wide) + axis.astype(wide) * (np.abs(bent) * chord[arcs] / 2)[:, None]
+        exact = rim - radius[:, None].astype(wide) * axis.astype(wide)
+        shallow = half < SHALLOW
+        center[shallow] = exact[shallow].astype(np.float64)
+        rest = np.where(shallow[:, None], (exact - center).astype(np.float64), 0.0)
+        out[arcs, IS_ARC], out[arcs, RADIUS], out[arcs, SIGN], out[arcs, HALF_EXTENT] = (
+            1.0,
+            radius,
+            sign,
+            half,
+        )
+        columns = np.array([X, Y, AXIS_X, AXIS_Y, REST_X, REST_Y])
+        out[np.ix_(arcs, columns)] = np.hstack([center, axis, rest])
+    return out
+
+
+def span_boxes(rows: Array) -> Array:
+    """Boxes (N, 4) around rows (N, 10), x0, y0, x1, y1, a hair too wide."""
+    is_arc, half = rows[:, IS_ARC] != 0.0, rows[:, HALF_EXTENT]
+    out = np.empty((len(rows), 4))
+    for k, (center, axis, other) in enumerate(((X, AXIS_X, AXIS_Y), (Y, AXIS_Y, AXIS_X))):
+        for side in (-1.0, 1.0):
+            # How far an arc's axis looks away from this side of the box.
+            turn = np.abs(np.arctan2(rows[:, other], side * rows[:, axis]))
+            farthest = np.where(turn <= half, 1.0, np.cos(turn - half)) * rows[:, RADIUS]
+            extent = np.where(is_arc, farthest, np.abs(rows[:, axis]) * half)
+            hair = 1e-12 * (np.abs(rows[:, center]) + rows[:, RADIUS] + half)
+            out[:, k + (side > 0) * 2] = rows[:, center] + side * (extent + hair)
+    return out
+
+
+def tree_order(spans: Array, rows: Array) -> tuple[IntArray, Array]:
+    """Numbers of spans in the order of the leaves, -1 for places left over, and the boxes (N, 4) of all."""
+    boxes = span_boxes(rows)
+    leaves = 1
+    while leaves * LEAF < len(spans):
+        leaves *= 2
+    order = np.full(leaves * LEAF, -1)
+    if len(spans):
+        middle = (boxes[:, :2] + boxes[:, 2:]) / 2
+        low, size = middle.min(axis=0), np.ptp(middle, axis=0).max() or 1.0
+        cells = ((middle - low) / size * ((1 << MORTON_BITS) - 1)).astype(np.int64)
+        code = np.zeros(len(spans), np.int64)
+        for bit in range(MORTON_BITS):
+            code |= ((cells[:, 0] >> bit) & 1) << (2 * bit) | ((cells[:, 1] >> bit) & 1) << (2 * bit + 1)
+        order[: len(spans)] = np.argsort(code, kind="stable")
+    return order, boxes
+
+
+def nodes_of(boxes: Array, radius: Array) -> Array:
+    """The nodes (2 L, 5) of a tree with leaves of ``LEAF`` boxes (N, 4) and radii (N,) each."""
+    level = np.column_stack(
+        [
+            boxes[:, :2].reshape(-1, LEAF, 2).min(axis=1),
+            boxes[:, 2:].reshape(-1, LEAF, 2).max(axis=1),
+            radius.reshape(-1, LEAF).max(axis=1),
+        ]
+    )
+    levels = [level]
+    while len(level) > 1:
+        low, high = level[::2], level[1::2]
+        level = np.column_stack(
+            [
+                np.minimum(low[:, :2], high[:, :2]),
+                np.maximum(low[:, 2:4], high[:, 2:4]),
+                np.maximum(low[:, 4], high[:, 4]),
+            ]
+        )
+        levels.append(level)
+    return np.ascontiguousarray(np.concatenate([np.full((1, 5), -inf), *levels[::-1]]))

@@ -1,0 +1,132 @@
+"""Heights on a setup sheet: of part, pegs, supports and plates, and which of them nobody said.
+
+Glossary
+--------
+lying plane : the plane on which the part lies, z = 0: the supports' upper side, or that of the plates.
+"""
+
+from __future__ import annotations
+
+from attrs import field, frozen
+
+from workhold.drawing.sheet_facts import SheetDetails
+from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.bodies import THICKNESS
+from workhold.model.fixture import Fixture
+from workhold.model.solid import Band
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["SUPPORT_HEIGHT", "SheetHeights", "heights_of"]
+
+# Of supports in mm, where nobody says.
+SUPPORT_HEIGHT = 10.0
+
+
+@frozen
+class SheetHeights:
+    """Heights in mm, z upward from the lying plane.
+
+    Parameters
+    ----------
+    thickness : of the part.
+    peg_top : up to which pegs reach.
+    head_room : kept free above the pegs; None of a part that is no solid.
+    supported_by : height of the supports, 0 without them.
+    plate_thickness : of the plates, through which pegs stand.
+    peg_length : of the pegs.
+    bands : of each peg of the fixture the heights at which it presses; None where nobody knows.
+    assumed : names of those of these that nobody said.
+    """
+
+    thickness: float
+    peg_top: float
+    head_room: float | None
+    supported_by: float
+    plate_thickness: float
+    peg_length: float
+    bands: tuple[Band | None, ...]
+    assumed: frozenset[str] = field(default=frozenset())
+
+    @property
+    def above_plate(self) -> float:
+        """How far the pegs stand out of the plates."""
+        return self.peg_top + self.supported_by
+
+    @property
+    def known_up_to(self) -> float:
+        """The height up to which the outline is that of the part."""
+        top = self.thickness if self.head_room is None else self.peg_top + self.head_room
+        return min(top, self.thickness)
+
+    def sure(self, name: str) -> str:
+        """What stands behind a height that was assumed, and nothing behind another one."""
+        return " (assumed)" if name in self.assumed else ""
+
+
+def heights_of(
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails
+) -> SheetHeights | None:
+    """The heights of a set-up; None where nobody knows how thick the part is.
+
+    Raises
+    ------
+    InputError
+        For pegs that end below the part.
+    """
+    solid, supports = workpiece.solid, details.supports
+    thickness = details.thickness
+    if thickness is None and supports is not None:
+        thickness = supports.supports.request.thickness
+    if thickness is None and solid is not None:
+        thickness = solid.height
+    if thickness is None:
+        return None
+    assumed = set()
+    lift = 0.0
+    if supports is not None:
+        lift = SUPPORT_HEIGHT if details.support_height is None else details.support_height
+        if details.support_height is None:
+            assumed.add("supported_by")
+    plate = THICKNESS if details.plate_thickness is None else details.plate_thickness
+    if details.plate_thickness is None:
+        assumed.add("plate_thickness")
+    if details.peg_height is not None:
+        top = details.peg_height - lift
+    elif solid is not None:
+        top = min(solid.peg_height, thickness)
+    else:
+        top = thickness
+        assumed.add("peg_top")
+    if top <= 0:
+        raise InputError(
+            f"pegs {details.peg_height:g} mm high end below the part, which lies {lift:g} mm above the "
+            "plates: give a larger peg height, or lower supports."
+        )
+    length = details.peg_length
+    if length is None:
+        length = top + lift + plate
+        assumed.add("peg_length")
+    return SheetHeights(
+        thickness=thickness,
+        peg_top=top,
+        head_room=None if solid is None else solid.head_room,
+        supported_by=lift,
+        plate_thickness=plate,
+        peg_length=length,
+        bands=bands_of_pegs(fixture, workpiece, details, thickness, top),
+        assumed=frozenset(assumed),
+    )
+
+
+def bands_of_pegs(
+    fixture: Fixture, workpiece: Workpiece, details: SheetDetails, thickness: float, top: float
+) -> tuple[Band | None, ...]:
+    """The heights at which each peg presses: as supports were asked for, of the solid, or of a prism."""
+    supports, solid = details.supports, workpiece.solid
+    if supports is not None:
+        given = supports.supports.request.for_fixture(fixture, solid).peg_bands(len(fixture.pegs))
+        return tuple((float(low), float(high)) for low, high in given)
+    if solid is not None:
+        return tuple(solid.bands[peg.face] for peg in fixture.pegs)
+    return tuple((0.0, min(top, thickness)) for _ in fixture.pegs)

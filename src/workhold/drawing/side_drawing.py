@@ -1,0 +1,347 @@
+"""A view of a set-up from the side, to scale, with its heights and the names of what stands in holes.
+
+The drawing stands across the top of a page. At its left are dimensions, at its right the heights of all
+levels above the lying plane, below it the names of pegs, clamps and supports.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from attrs import frozen
+
+from workhold.drawing.apart import moved_apart
+from workhold.drawing.bench import PART_FILL, PEG_FILL, TOUCHED
+from workhold.drawing.carriers import FENCE, SLIDING, STILL
+from workhold.drawing.panel import TextColumn
+from workhold.drawing.scene import BLACK, GREY, UNITS_PER_MM, Box, LengthUnit, Scene, View, text_width
+from workhold.drawing.sheet_writing import NOTE
+from workhold.drawing.side_view import SideContact, SideView
+from workhold.drawing.supports_drawn import SUPPORT
+from workhold.geometry.segment import Point
+
+__all__ = ["SideFigure"]
+
+TITLE, TITLE_ROOM, NOTE_GAP = 14.0, 34.0, 8.0
+# Room above the part without and with a clamp from above, and below the plates for names, page units.
+ABOVE, CLAMP_ROOM, NAMES_ROOM = 16.0, 74.0, 48.0
+# Size of the words of levels and dimensions, and of names; the least distance of names in a row.
+WORDS, NAMES, NAME_GAP = 12.0, 12.5, 10.0
+# From what is drawn to the first dimension line, between dimension lines, and from these to their words or
+# from what is drawn to the heights at the right.
+OUT, BETWEEN, BEND = 20.0, 18.0, 24.0
+# Thinner than this, page units, nothing is drawn.
+THINNEST = 2.5
+# Of a dimension line shorter than this the arrows are outside.
+TIGHT, OUTSIDE = 26.0, 15.0
+LEVEL = "#aab2bc"
+# The view's scale is at most so many times that of the plan.
+LARGER = 2.0
+HEIGHT_OF_LINE = 15.0
+STEM, HEAD = 44.0, 12.0
+
+
+@frozen
+class SideFigure:
+    """The drawing with its words.
+
+    Parameters
+    ----------
+    view : what is drawn.
+    lengths : how lengths are written.
+    scale_of : the largest standard scale up to a factor, paper over model.
+    plates : what pegs stand in, such as "jaws".
+    """
+
+    view: SideView
+    lengths: LengthUnit
+    scale_of: Callable[[float], tuple[str, float]]
+    plates: str = "plate"
+
+    @property
+    def levels(self) -> list[tuple[float, str]]:
+        """Heights to mark, and what is there."""
+        heights, number = self.view.heights, self.lengths.number
+        marks: dict[float, list[str]] = {0.0: ["the part lies here"]}
+        marks.setdefault(heights.thickness, []).append("top of the part")
+        marks.setdefault(heights.peg_top, []).append("top of the pegs")
+        if heights.head_room and heights.known_up_to < heights.thickness:
+            room = number(heights.head_room)
+            marks.setdefault(heights.known_up_to, []).append(f"head room {room}")
+        if heights.supported_by:
+            marks.setdefault(-heights.supported_by, []).append(f"top of the {self.plates}")
+        return [
+            (height, f"{'+' if height > 0 else ''}{number(height)} {', '.join(words)}")
+            for height, words in sorted(marks.items())
+        ]
+
+    @property
+    def dimensions(self) -> list[tuple[float, float, str]]:
+        """Lengths to dimension: from and to which height, and words. The last stands outermost."""
+        heights, words = self.view.heights, self.lengths.words
+        low, found = -heights.supported_by, list[tuple[float, float, str]]()
+        if heights.supported_by:
+            found.append((low, 0.0, f"supports {words(heights.supported_by)}"))
+        found.append((low, heights.peg_top, f"pegs {words(heights.above_plate)}"))
+        found.append((0.0, heights.thickness, f"part {words(heights.thickness)}"))
+        return found
+
+    @property
+    def left_room(self) -> float:
+        """Room for the dimensions, page units."""
+        lines = self.dimensions
+        return OUT + BETWEEN * len(lines) + BEND + max(text_width(words, WORDS) for _, _, words in lines)
+
+    @property
+    def right_room(self) -> float:
+        """Room for the heights of levels, page units."""
+        return BEND + 8 + max(text_width(words, WORDS) for _, words in self.levels)
+
+    @property
+    def top_room(self) -> float:
+        """Room above the part, page units."""
+        return TITLE_ROOM + (ABOVE if self.view.clamp is None else CLAMP_ROOM)
+
+    @property
+    def title(self) -> str:
+        """What is seen, without the scale."""
+        way = self.view.way
+        return f"Side view {way.words}, along {way.seen_along}"
+
+    @property
+    def notes(self) -> list[str]:
+        """Sentences on what is drawn, and what is not known."""
+        heights, words = self.view.heights, self.lengths.words
+        notes = [f"Heights in {self.lengths.sign} above the plane on which the part lies."]
+        if heights.head_room is None:
+            notes.append("The part is drawn as a prism of its outline.")
+        elif heights.known_up_to < heights.thickness:
+            notes.append(
+                f"Up to {words(heights.known_up_to)} the part is drawn as wide as all that pegs can meet; "
+                "above, dashed, only its height is known and how far level upper faces reach."
+            )
+        else:
+            notes.append(
+                "The part is drawn as wide as its outline at every height; its true shape may be less."
+            )
+        if self.view.clamp is not None and heights.head_room is not None:
+            notes.append(
+                "The clamp on top presses on the level face at its place, at whatever height that is."
+            )
+        notes.append("Thick lines on the part: where pegs press, over the heights of their faces.")
+        if any(one.is_hidden for one in self.view.contacts):
+            notes.append("Grey names: behind the part.")
+        assumed = [
+            f"{name} {words(value)}"
+            for key, name, value in (
+                ("supported_by", "height of the supports", heights.supported_by),
+                ("plate_thickness", f"thickness of the {self.plates}", heights.plate_thickness),
+                ("peg_top", "pegs as high as the part,", heights.peg_top),
+            )
+            if key in heights.assumed
+        ]
+        if assumed:
+            notes.append(f"Assumed, as nobody said: {'; '.join(assumed)}.")
+        return notes
+
+    def scaled(self, width: float, most: float, plan: float) -> tuple[str, float]:
+        """The scale's name and factor: the largest standard one with room that is not far from the plan's.
+
+        Parameters
+        ----------
+        width, most : of the page's room for all of it, page units.
+        plan : factor of the plan's scale.
+        """
+        extent = self.view.extent
+        across = (width - self.left_room - self.right_room) / extent.width
+        high = (most - self.top_room - NAMES_ROOM) / extent.height
+        return self.scale_of(min(LARGER * plan, across / UNITS_PER_MM, high / UNITS_PER_MM))
+
+    def height(self, width: float, most: float, plan: float) -> float:
+        """The height of all of it in a box of a width, page units; see :meth:`scaled`."""
+        _, factor = self.scaled(width, most, plan)
+        return (
+            self.top_room
+            + self.view.extent.height * factor * UNITS_PER_MM
+            + NAMES_ROOM
+            + self.notes_height(width)
+        )
+
+    def notes_height(self, width: float) -> float:
+        """Height of the sentences below, page units."""
+        column = TextColumn(Scene.page((1.0, 1.0), ""), 0.0, 0.0, width)
+        column.paragraph(" ".join(self.notes), NOTE)
+        return column.y + NOTE_GAP
+
+    def draw(self, scene: Scene, box: Box, most: float, plan: float) -> None:
+        """Draws all of it into a page box of at least its height."""
+        name, factor = self.scaled(box.width, most, plan)
+        head = TextColumn(scene.group("words"), box.x0, box.y0, box.width)
+        head.rule(1.4)
+        head.words(f"{self.title}, scale {name}", TITLE, bold=True)
+        scale, extent = factor * UNITS_PER_MM, self.view.extent
+        room = box.width - self.left_room - self.right_room
+        left = box.x0 + self.left_room + (room - scale * extent.width) / 2
+        page = View(scale, left - scale * extent.x0, box.y0 + self.top_room + scale * extent.y1)
+        drawn = page.box(extent)
+        self.draw_levels(scene.group("levels"), page, drawn)
+        self.draw_bodies(scene.group("side", page), page)
+        self.draw_dimensions(scene.group("heights"), page, drawn)
+        self.draw_names(scene.group("names"), page, Box(box.x0, drawn.y0, box.x1, drawn.y1))
+        foot = TextColumn(scene.group("words"), box.x0, drawn.y1 + NAMES_ROOM, box.width)
+        foot.paragraph(" ".join(self.notes), NOTE)
+
+    def draw_bodies(self, scene: Scene, page: View) -> None:
+        """Draws plates, pegs, supports, the part, clamps and walls, those behind the part first."""
+        view, heights = self.view, self.view.heights
+        low = -heights.supported_by
+        for span in view.plates:
+            fill, edge = STILL
+            scene.rectangle(
+                page.box(Box(span[0], low - heights.plate_thickness, span[1], low)), fill, edge, 1.4
+            )
+        behind = [one for one in view.contacts if one.is_hidden]
+        before = [one for one in view.contacts if not one.is_hidden]
+        for one in behind:
+            self.draw_contact(scene, page, one)
+        for pad in view.pads:
+            box = page.box(Box(pad.at - view.pad_radius, low, pad.at + view.pad_radius, 0.0))
+            scene.rectangle(box, SUPPORT, BLACK, 1.0)
+        self.draw_part(scene, page)
+        for one in before:
+            self.draw_contact(scene, page, one)
+        for span in view.walls:
+            box = page.box(Box(span[0], low, span[1], heights.peg_top))
+            scene.path(outline(box), FENCE[1], 1.2, FENCE[0], fill_opacity="0.5", **{"class": "fence"})
+        for one in view.contacts:
+            self.draw_band(scene, page, one)
+        if view.clamp is not None:
+            self.draw_top_clamp(scene, page)
+
+    def draw_part(self, scene: Scene, page: View) -> None:
+        """Draws the part as far as it is known; what is not stands in dashes."""
+        view, heights = self.view, self.view.heights
+        known = page.box(Box(view.part[0], 0.0, view.part[1], heights.known_up_to))
+        scene.path(outline(known), BLACK, 1.8, PART_FILL, fill_opacity="0.82", **{"class": "part-side"})
+        if heights.known_up_to < heights.thickness:
+            rest = page.box(Box(view.upper[0], heights.known_up_to, view.upper[1], heights.thickness))
+            scene.path(
+                outline(rest),
+                BLACK,
+                1.2,
+                PART_FILL,
+                fill_opacity="0.3",
+                stroke_dasharray="7 4",
+                **{"class": "unknown"},
+            )
+        for low, high in view.feet:
+            scene.line([page((low, 0.0)), page((high, 0.0))], BLACK, 3.4, **{"class": "foot-face"})
+
+    def draw_contact(self, scene: Scene, page: View, one: SideContact) -> None:
+        """Draws a peg through its plate, or a clamp on it."""
+        heights = self.view.heights
+        low, top = -heights.supported_by, heights.peg_top
+        radius = max(one.radius, THINNEST / page.scale / 2)
+        if one.is_clamp:
+            ends = [one.at] if one.hole is None else [one.at, one.hole]
+            box = page.box(Box(min(ends) - radius, low, max(ends) + radius, top))
+            scene.rectangle(box, SLIDING[0], SLIDING[1], 1.2, 2.0)
+            tip = page.box(Box(one.at - radius, low, one.at + radius, top))
+            scene.line(
+                [(tip.center[0], tip.y0), (tip.center[0], tip.y1)],
+                SLIDING[1],
+                0.8,
+                stroke_dasharray="8 2 2 2",
+            )
+            return
+        box = page.box(Box(one.at - radius, low, one.at + radius, top))
+        scene.rectangle(box, PEG_FILL, BLACK, 1.0)
+        foot = page.box(Box(one.at - radius, top - heights.peg_length, one.at + radius, low))
+        if foot.y1 > foot.y0:
+            scene.path(outline(foot), PEG_FILL, 0.9, stroke_dasharray="4 2.5", **{"class": "peg-foot"})
+
+    def draw_band(self, scene: Scene, page: View, one: SideContact) -> None:
+        """Draws the line on which a peg presses."""
+        if one.band is None:
+            return
+        ends = [page((one.touches, height)) for height in one.band]
+        scene.line(ends, TOUCHED, 6.0, **{"class": "band"})
+        scene.line(ends, BLACK, 1.2)
+
+    def draw_top_clamp(self, scene: Scene, page: View) -> None:
+        """Draws the clamp from above as an arrow that ends in its tip."""
+        assert self.view.clamp is not None
+        x, y = page((self.view.clamp, self.view.heights.thickness))
+        half = max(self.view.tip_radius * page.scale, 4.0)
+        scene.arrow((x, y - STEM - HEAD), (x, y - HEAD), SUPPORT, 3.0, 14)
+        scene.rectangle(Box(x - half, y - HEAD, x + half, y), "#ffffff", SUPPORT, 1.8, 2.0)
+
+    def draw_levels(self, scene: Scene, page: View, drawn: Box) -> None:
+        """Draws a thin line at each height, and at its right end what it is."""
+        levels = self.levels
+        wanted = [page((0.0, height))[1] for height, _ in levels]
+        low, high = drawn.y0 - ABOVE - HEIGHT_OF_LINE, drawn.y1 + NAMES_ROOM - 12
+        places = moved_apart(wanted, [HEIGHT_OF_LINE] * len(levels), 1.0, low, high)
+        for (_, words), y, at in zip(levels, wanted, places, strict=True):
+            right = drawn.x1 + 8
+            scene.line([(drawn.x0 - OUT - 6, y), (right, y), (right + BEND - 6, at)], LEVEL, 0.7)
+            scene.text((right + BEND - 2, at), words, WORDS)
+
+    def draw_dimensions(self, scene: Scene, page: View, drawn: Box) -> None:
+        """Draws the dimensions side by side; all words stand at their left, each with a line to its own."""
+        lines = self.dimensions
+        wanted = [page((0.0, (start + end) / 2))[1] for start, end, _ in lines]
+        places = moved_apart(
+            wanted, [HEIGHT_OF_LINE] * len(lines), 1.0, drawn.y0 - CLAMP_ROOM, drawn.y1 + NAMES_ROOM
+        )
+        left = drawn.x0 - OUT - BETWEEN * len(lines)
+        for number, ((start, end, words), middle, at) in enumerate(zip(lines, wanted, places, strict=True)):
+            x = drawn.x0 - OUT - BETWEEN * number
+            low, high = page((0.0, start))[1], page((0.0, end))[1]
+            for y in (low, high):
+                scene.line([(drawn.x0 - 4, y), (x - 4, y)], BLACK, 0.6)
+            upright(scene, x, low, high)
+            scene.line([(x, middle), (left, middle), (left - BEND + 8, at)], BLACK, 0.6)
+            scene.circle((x, middle), 1.8, BLACK)
+            scene.text((left - BEND + 4, at), words, WORDS, "end")
+
+    def draw_names(self, scene: Scene, page: View, row: Box) -> None:
+        """Writes names below the plates, each with a line that leads to it; those of one place together."""
+        view = self.view
+        found: dict[tuple[float, str], list[str]] = {}
+        for one in view.contacts:
+            at = round(page((one.at, 0.0))[0], 1)
+            found.setdefault((at, GREY if one.is_hidden else BLACK), []).append(one.name)
+        for pad in view.pads:
+            found.setdefault((round(page((pad.at, 0.0))[0], 1), SUPPORT), []).append(pad.name)
+        named = sorted(found.items())
+        words = [", ".join(names) for _, names in named]
+        wanted = [at for (at, _), _ in named]
+        sizes = [text_width(name, NAMES, bold=True) for name in words]
+        places = moved_apart(wanted, sizes, NAME_GAP, row.x0, row.x1)
+        y = row.y1 + 30
+        for ((at, colour), _), name, middle in zip(named, words, places, strict=True):
+            scene.line([(at, row.y1 + 2), (at, row.y1 + 8), (middle, y - 9)], colour, 0.8)
+            scene.text((middle, y), name, NAMES, "middle", bold=True, fill=colour)
+        if view.clamp is not None:
+            x, top = page((view.clamp, view.heights.thickness))
+            words_at: Point = (x + 12, top - STEM)
+            scene.text(words_at, "clamp on top", NAMES, bold=True, fill=SUPPORT, halo=2.5)
+
+
+def outline(box: Box) -> str:
+    """SVG path data of a box."""
+    corners = ((box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1))
+    return "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in corners) + "Z"
+
+
+def upright(scene: Scene, x: float, low: float, high: float) -> None:
+    """Draws an upright dimension line between two page heights; arrows of a short one stand outside."""
+    if abs(high - low) >= TIGHT:
+        middle = (x, (low + high) / 2)
+        scene.arrow(middle, (x, low), BLACK, 1.0, 9)
+        scene.arrow(middle, (x, high), BLACK, 1.0, 9)
+        return
+    scene.line([(x, low), (x, high)], BLACK, 1.0)
+    scene.arrow((x, low + OUTSIDE), (x, low), BLACK, 1.0, 9)
+    scene.arrow((x, high - OUTSIDE), (x, high), BLACK, 1.0, 9)

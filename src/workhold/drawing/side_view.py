@@ -1,0 +1,270 @@
+"""What there is in a view of a set-up from the side: spans across the view, and what the part hides.
+
+Only what is known is drawn. Of a drawing the part is a prism. Of a solid the outline holds up to the pegs'
+head room; above it the view knows the part's height alone, and how far its level upper faces reach.
+
+Glossary
+--------
+across : along the view's horizontal axis, from left to right, in mm.
+hidden : behind the part, as seen by the viewer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.drawing.bench import Bench, contact_of
+from workhold.drawing.scene import View
+from workhold.drawing.sheet_heights import SheetHeights
+from workhold.fixels.contacts import CLAMP_TIP
+from workhold.geometry.loop import checked_vertices, loop_segments
+from workhold.geometry.segment import Box, Point
+from workhold.model.recounted import ChosenSupports
+from workhold.model.solid import Band
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["SideContact", "SidePad", "SideView", "side_view"]
+
+Span = tuple[float, float]
+# Points along the outline stand at most so far apart, as a share of the part's extent.
+FINE = 1 / 400
+
+
+@frozen
+class ViewWay:
+    """A direction to look in, and what it is called.
+
+    Parameters
+    ----------
+    words : such as "from below".
+    seen_along : the direction of the plan along which the viewer looks.
+    right : unit vector in the plan that points to the right of the view.
+    towards : unit vector towards the viewer.
+    """
+
+    words: str
+    seen_along: str
+    right: Point
+    towards: Point
+
+    def across(self, point: Point) -> float:
+        """Where a point of the plan is across the view."""
+        return point[0] * self.right[0] + point[1] * self.right[1]
+
+    def span(self, box: Box) -> Span:
+        """How far a box of the plan reaches across the view."""
+        ends = [self.across(corner) for corner in ((box.x0, box.y0), (box.x1, box.y1))]
+        return min(ends), max(ends)
+
+
+# The view that stands below the plan in first-angle order comes first: it is taken where all else is equal.
+WAYS = (
+    ViewWay("from the lower side of the plan", "+y", (1.0, 0.0), (0.0, -1.0)),
+    ViewWay("from the right side of the plan", "−x", (0.0, 1.0), (1.0, 0.0)),
+)
+
+
+@frozen
+class SideContact:
+    """A peg, or the tip of a clamp, in the view.
+
+    Parameters
+    ----------
+    name : its hole.
+    at, radius : across the view.
+    touches : where it touches the part, across the view.
+    band : the heights at which it presses; None where nobody knows.
+    is_hidden : whether the part stands before it.
+    hole : of a clamp with a known hole, where that is across the view; None of pegs.
+    is_clamp : whether it is the tip of a clamp.
+    """
+
+    name: str
+    at: float
+    radius: float
+    touches: float
+    band: Band | None
+    is_hidden: bool
+    hole: float | None
+    is_clamp: bool
+
+
+@frozen
+class SidePad:
+    """A support in the view: its hole's name, and where it stands across."""
+
+    name: str
+    at: float
+
+
+@frozen
+class SideView:
+    """What there is in the view.
+
+    Parameters
+    ----------
+    way : from where it is taken.
+    heights : of everything.
+    part : how far the part's outline reaches.
+    upper : how far it is known to reach above ``heights.known_up_to``.
+    feet : spans over which it lies; the whole outline where no level face below is known.
+    plates, walls : spans of these.
+    contacts : pegs and clamps.
+    pads, pad_radius : the supports.
+    clamp, tip_radius : the clamp from above; None without one.
+    """
+
+    way: ViewWay
+    heights: SheetHeights
+    part: Span
+    upper: Span
+    feet: tuple[Span, ...]
+    plates: tuple[Span, ...]
+    walls: tuple[Span, ...]
+    contacts: tuple[SideContact, ...]
+    pads: tuple[SidePad, ...] = ()
+    pad_radius: float = 0.0
+    clamp: float | None = None
+    tip_radius: float = 0.0
+
+    @property
+    def extent(self) -> Box:
+        """Everything, across and by height in mm."""
+        spans = [self.part, self.upper, *self.plates, *self.walls]
+        spans += [(one.at - one.radius, one.at + one.radius) for one in self.contacts]
+        spans += [
+            (one.hole - one.radius, one.hole + one.radius) for one in self.contacts if one.hole is not None
+        ]
+        low = -self.heights.supported_by - self.heights.plate_thickness
+        high = max(self.heights.thickness, self.heights.peg_top)
+        return Box(min(a for a, _ in spans), low, max(b for _, b in spans), high)
+
+
+def side_view(
+    bench: Bench,
+    workpiece: Workpiece,
+    heights: SheetHeights,
+    supports: ChosenSupports | None = None,
+) -> SideView:
+    """The view in which most pegs stand apart, by the widest least distance, with no wall before the part."""
+    way = max(WAYS, key=lambda one: (sees_past_walls(bench, one), *apart(bench, one), -WAYS.index(one)))
+    pose, (x0, x1) = bench.fixture.pose, way.span(bench.shown.part)
+    pads, request = ((), None) if supports is None else (supports.pads, supports.supports.request)
+    placed = [SidePad(name, way.across(point_of(pose.apply(pad.x, pad.y)))) for name, pad in pads]
+    solid = workpiece.solid
+    tops = spans_of(solid.top, bench, way) if solid is not None else []
+    return SideView(
+        way=way,
+        heights=heights,
+        part=(x0, x1),
+        upper=(min([x0, *(a for a, _ in tops)]), max([x1, *(b for _, b in tops)])),
+        feet=tuple((spans_of(solid.bottom, bench, way) if solid is not None else []) or [(x0, x1)]),
+        plates=tuple(merged(way.span(one.plate) for one in bench.shown.carriers)),
+        walls=tuple(way.span(one.bar) for one in bench.shown.walls),
+        contacts=tuple(contacts(bench, way, heights)),
+        pads=tuple(placed),
+        pad_radius=0.0 if request is None else request.pad_radius,
+        clamp=None if supports is None else way.across(point_of(pose.apply(*supports.clamp.at))),
+        tip_radius=0.0 if request is None else request.tip_radius,
+    )
+
+
+def sees_past_walls(bench: Bench, way: ViewWay) -> bool:
+    """Whether no wall covers most of the part."""
+    low, high = way.span(bench.shown.part)
+    walls = [way.span(wall.bar) for wall in bench.shown.walls]
+    return all(min(high, b) - max(low, a) < 0.5 * (high - low) for a, b in walls)
+
+
+def point_of(values: tuple[float, float]) -> Point:
+    """A point as plain numbers."""
+    return float(values[0]), float(values[1])
+
+
+def apart(bench: Bench, way: ViewWay) -> tuple[int, float]:
+    """How many pegs stand beside their neighbours rather than over them, and the least distance of these."""
+    pegs = [bench.fixture.pegs[k] for k in bench.placed]
+    places = sorted(
+        (way.across((peg.x, peg.y)), bench.toolkit.carrier(peg.carrier).peg_radius) for peg in pegs
+    )
+    gaps = [right - left - r - s for (left, r), (right, s) in pairwise(places)]
+    clear = [gap for gap in gaps if gap > 0]
+    return len(clear), round(min(clear, default=0.0), 6)
+
+
+def merged(spans: Iterable[Span]) -> list[Span]:
+    """Spans without overlaps, from left to right.
+
+    >>> merged([(5, 9), (0, 3), (2, 4)])
+    [(0, 4), (5, 9)]
+    """
+    out: list[Span] = []
+    for low, high in sorted(spans):
+        if out and low <= out[-1][1]:
+            out[-1] = out[-1][0], max(out[-1][1], high)
+        else:
+            out.append((low, high))
+    return out
+
+
+def spans_of(loops: Iterable[Sequence[Sequence[float]]], bench: Bench, way: ViewWay) -> list[Span]:
+    """Spans of level faces, given as loops in the part's coordinates, without overlaps."""
+    found = []
+    for number, loop in enumerate(loops):
+        vertices = checked_vertices(
+            [list(vertex) for vertex in loop], f"face {number}", lambda side: f"side {side}"
+        )
+        placed = [bench.fixture.pose.carry(segment) for segment in loop_segments(vertices)]
+        places = [
+            way.across(segment.at(share * segment.half_extent)) for segment in placed for share in SHARES
+        ]
+        found.append((min(places), max(places)))
+    return merged(found)
+
+
+SHARES = tuple(np.linspace(-1.0, 1.0, 33).tolist())
+
+
+def contacts(bench: Bench, way: ViewWay, heights: SheetHeights) -> Iterable[SideContact]:
+    """Pegs and clamps as they are seen."""
+    size = max(bench.shown.part.width, bench.shown.part.height)
+    step = max(size * FINE, 1e-9)
+    outlines = bench.outlines(View(1.0, 0.0, 0.0), step)
+    holes = {clamp.tip: clamp.hole for clamp in bench.shown.clamps}
+    for index in bench.placed:
+        peg = bench.fixture.pegs[index]
+        carrier = bench.toolkit.carrier(peg.carrier)
+        touches, _ = contact_of(carrier.contact, (peg.x, peg.y), bench.faces[index])
+        hole = holes.get(peg)
+        yield SideContact(
+            name=peg.hole,
+            at=way.across((peg.x, peg.y)),
+            radius=carrier.peg_radius,
+            touches=way.across(touches),
+            band=heights.bands[index],
+            is_hidden=any(stands_before(outline, (peg.x, peg.y), way) for outline in outlines),
+            hole=None if hole is None else way.across(hole),
+            is_clamp=carrier.contact is CLAMP_TIP,
+        )
+
+
+def stands_before(outline: NDArray[np.float64], at: Point, way: ViewWay) -> bool:
+    """Whether a loop of the part lies between a point and the viewer.
+
+    Parameters
+    ----------
+    outline : (N, 2) points along it with y downward, as on a page, in mm.
+    """
+    x, y = outline[:, 0], -outline[:, 1]
+    across = x * way.right[0] + y * way.right[1] - way.across(at)
+    near = (x - at[0]) * way.towards[0] + (y - at[1]) * way.towards[1]
+    # Where the ray crosses, the outline changes sides.
+    before, after = across[:-1], across[1:]
+    crosses = (before < 0) != (after < 0)
+    share = np.where(crosses, before / np.where(crosses, before - after, 1.0), 0.0)
+    return bool((crosses & (near[:-1] + share * (near[1:] - near[:-1]) > 0)).any())

@@ -1,0 +1,156 @@
+"""The blocks of a setup sheet about the part: which side of it is up, and how it was drawn.
+
+A part turned over shows the mirror image of its outline. Where that is the outline itself, nothing
+distinguishes the sides. Else two marks do that look like no others: the way from one to the other,
+counter-clockwise about the middle, is less than half a turn on one side only. Turning the part round does not
+change that.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from math import atan2, hypot, pi
+
+from attrs import frozen
+
+from workhold.drawing.bench import LOWEST, draw_inset
+from workhold.drawing.panel import TextColumn
+from workhold.drawing.scene import Box, LengthUnit
+from workhold.drawing.sheet_writing import BODY, Sheet, fact_or_field, heading
+from workhold.geometry.segment import Arc, Point
+from workhold.geometry.symmetry import is_own_mirror_image, middle_of
+from workhold.model.fixture import Fixture
+from workhold.model.setup import hole_centers
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["Mark", "distinguishing_marks", "marks_of", "side_words", "write_part", "write_side"]
+
+# Of the larger one: lengths and radii of two marks that differ by less look the same.
+SEEN = 0.025
+# The sine of the angle between two marks, seen from the middle, is at least this; and of the part's diagonal
+# each is so far from the middle.
+APART, AWAY = 0.3, 0.08
+# So many of the longest marks are compared.
+MOST_MARKS = 60
+EIGHTHS = ("right", "upper right", "top", "upper left", "left", "lower left", "bottom", "lower right")
+# Height of the picture of the part as drawn by its width, and at most, page units.
+TALLEST_INSET, HIGHEST_INSET, INSET_ROOM = 0.75, 230.0, 56.0
+
+
+def write_side(column: TextColumn, sheet: Sheet) -> None:
+    """Writes the part's thickness, and which side is up."""
+    heading(column, "Part and its upper side")
+    thickness = sheet.details.thickness if sheet.heights is None else sheet.heights.thickness
+    fact_or_field(column, "thickness", None if thickness is None else sheet.lengths.words(thickness))
+    column.paragraph(side_words(sheet.workpiece, sheet.fixture, sheet.lengths), BODY)
+
+
+def write_part(column: TextColumn, sheet: Sheet) -> None:
+    """Draws the part as it was drawn."""
+    x0, y0, x1, y1 = sheet.workpiece.bounds
+    height = INSET_ROOM + min(HIGHEST_INSET, column.width * min(TALLEST_INSET, (y1 - y0) / (x1 - x0)))
+    height = max(height, LOWEST)
+    column.y += 10
+    box = Box(column.x, column.y, column.x + column.width, column.y + height)
+    draw_inset(column.scene, box, sheet.workpiece, sheet.fixture, sheet.toolkit, sheet.zero.point)
+    column.y += height
+
+
+@frozen
+class Mark:
+    """A hole or a face of the outer outline; lengths in mm.
+
+    Parameters
+    ----------
+    hole : its number, counted from 1; 0 for a face.
+    place : its middle, from that of the part's outside dimensions, in the part's coordinates.
+    length : of its outline.
+    radius : of a round hole or an arc; 0 for what is straight or has several faces.
+    bend : 1 where it bulges out of the part, -1 into it, 0 where it is straight; 2 for holes.
+    """
+
+    hole: int
+    place: Point
+    length: float
+    radius: float
+    bend: int
+
+    def is_like(self, other: Mark) -> bool:
+        """Whether the two look the same."""
+        sizes = ((self.length, other.length), (self.radius, other.radius))
+        return self.bend == other.bend and all(abs(a - b) <= SEEN * max(a, b) for a, b in sizes)
+
+    def words(self, lengths: LengthUnit) -> str:
+        """What it is."""
+        if self.hole:
+            return f"hole {self.hole}" + (f", Ø {lengths.short(2 * self.radius, 4)}," if self.radius else "")
+        if self.radius:
+            return (
+                f"the {'rounding' if self.bend > 0 else 'hollow'} of radius {lengths.short(self.radius, 4)}"
+            )
+        return f"the straight edge {lengths.short(self.length, 4)} long"
+
+
+def marks_of(workpiece: Workpiece) -> list[Mark]:
+    """The holes, and after them the faces of the outer outline, the longest first of either."""
+    outer, (x, y) = workpiece.outer_count, workpiece.center
+    segments = {face.number: face.segment for face in workpiece.faces}
+    holes, number = [], outer
+    for count, (loop, at) in enumerate(zip(workpiece.hole_segments, hole_centers(workpiece), strict=True), 1):
+        face = segments.get(number)
+        radius = face.radius if isinstance(face, Arc) and face.is_full else 0.0
+        holes.append(Mark(count, (at[0] - x, at[1] - y), sum(segment.length for segment in loop), radius, 2))
+        number += len(loop)
+    faces = []
+    for segment in (segments[number] for number in segments if number < outer):
+        radius, bend = (segment.radius, int(segment.sign)) if isinstance(segment, Arc) else (0.0, 0)
+        at = middle_of(segment)
+        faces.append(Mark(0, (at[0] - x, at[1] - y), segment.length, radius, bend))
+    ordered = [sorted(several, key=lambda mark: -mark.length) for several in (holes, faces)]
+    return (ordered[0] + ordered[1])[:MOST_MARKS]
+
+
+def distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
+    """The two marks, each like no other, that are plainest to see; None where there are no two.
+
+    They span the largest triangle with the middle. A triangle counts twice with one hole and three times with
+    two.
+    """
+    marks = marks_of(workpiece)
+    x0, y0, x1, y1 = workpiece.bounds
+    away = AWAY * hypot(x1 - x0, y1 - y0)
+    single = [
+        mark
+        for mark in marks
+        if hypot(*mark.place) >= away and not any(mark.is_like(other) for other in marks if other is not mark)
+    ]
+    best: tuple[float, tuple[Mark, Mark]] | None = None
+    for one, other in combinations(single, 2):
+        area = abs(one.place[0] * other.place[1] - one.place[1] * other.place[0])
+        if area < APART * hypot(*one.place) * hypot(*other.place):
+            continue
+        plain = area * (1 + (one.hole > 0) + (other.hole > 0))
+        if best is None or plain > best[0]:
+            best = plain, (one, other)
+    return best and best[1]
+
+
+def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
+    """Sentences on which side is up in a fixture and how to see it."""
+    if is_own_mirror_image([face.segment for face in workpiece.faces]):
+        return (
+            "The outline is its own mirror image: either side up looks alike and lies in the same pegs. If "
+            "the sides differ, mark the upper one first."
+        )
+    marks = distinguishing_marks(workpiece)
+    if marks is None:
+        return (
+            "The outline differs from its mirror image, but by nothing that is plain to see: mark the upper "
+            "side first, and hold the part beside the plan."
+        )
+    (x, y), places = fixture.pose.apply(*workpiece.center), []
+    for mark in marks:
+        there = fixture.pose.apply(mark.place[0] + workpiece.center[0], mark.place[1] + workpiece.center[1])
+        eighth = round(atan2(float(there[1] - y), float(there[0] - x)) / (pi / 4)) % 8
+        places.append(f"{mark.words(lengths)} at the {EIGHTHS[eighth]}")
+    return f"Lying as in the plan, it has {places[0]} and {places[1]}. Turned over, it never has."

@@ -1,0 +1,369 @@
+"""A program from its file: text, blocks, moves, tools, and the notes on how it was read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from math import isfinite
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from attrs import evolve, frozen
+
+from workhold.errors import InputError
+from workhold.files.program.codes import code_of
+from workhold.files.program.interpreter import Interpreter
+from workhold.files.program.modes import UNITS
+from workhold.files.program.tool_fields import SHAPE, is_bare, tool_of_fields
+from workhold.files.program.tool_tables import commented_tools, read_tools
+from workhold.files.program.words import ProgramText, program_text
+from workhold.limits import real
+from workhold.model.cutting_tool import Tool
+from workhold.model.moves import Moves
+from workhold.model.program import Program
+from workhold.units import Unit
+
+__all__ = ["ReadProgram", "read_program", "read_program_with_calls"]
+
+# Bytes; 100,000 lines have 3 MB.
+LARGEST_FILE = 64_000_000
+# How many lines a note names.
+NAMED = 5
+ToolsGiven = str | Path | Mapping[int, Any] | None
+ZZero = float | Literal["top", "bottom"]
+
+
+@frozen
+class ReadProgram:
+    """A program, and which tools come into the spindle.
+
+    Parameters
+    ----------
+    program : what was read.
+    calls : (line, number of the tool) in their order.
+    lines : how many lines the file has.
+    """
+
+    program: Program
+    calls: tuple[tuple[int, int], ...]
+    lines: int
+
+
+def read_program(
+    path: str | Path,
+    tools: ToolsGiven = None,
+    *,
+    zero: tuple[float, float] = (0.0, 0.0),
+    z_zero: ZZero = "top",
+    thickness: float | None = None,
+    clearance: float = 1.0,
+    rapid: Literal["straight", "box"] = "straight",
+    unit: str | None = None,
+) -> Program:
+    """Reads a program, see :meth:`workhold.model.program.Program.read`.
+
+    Raises
+    ------
+    InputError
+        Naming the file and the line of what cannot be read.
+    """
+    return read_program_with_calls(
+        path,
+        tools,
+        zero=zero,
+        z_zero=z_zero,
+        thickness=thickness,
+        clearance=clearance,
+        rapid=rapid,
+        unit=unit,
+    ).program
+
+
+def read_program_with_calls(
+    path: str | Path,
+    tools: ToolsGiven = None,
+    *,
+    zero: tuple[float, float] = (0.0, 0.0),
+    z_zero: ZZero = "top",
+    thickness: float | None = None,
+    clearance: float = 1.0,
+    rapid: Literal["straight", "box"] = "straight",
+    unit: str | None = None,
+) -> ReadProgram:
+    """Reads a program and says which tools it calls.
+
+    Raises
+    ------
+    InputError
+        Naming the file and the line of what cannot be read.
+    """
+    path = Path(path)
+    height = height_of(z_zero, thickness)
+    if unit is not None and unit not in ("mm", "inch"):
+        raise InputError(f"the unit '{unit[:20]}' is not one of a program: give mm or inch.")
+    try:
+        content = read_bytes(path)
+        listing = program_text(decoded(content))
+        control = run(listing, None if unit is None else UNITS[unit])
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    first = first_unit(listing, unit)
+    found, notes = tools_used(path, control, listing, tools, first)
+    program = Program(
+        name=path.name,
+        sha256=sha256(content).hexdigest(),
+        unit="inch" if first is UNITS["20"] else "mm",
+        zero=(real(zero[0]), real(zero[1])),
+        z_zero=height,
+        clearance=clearance,
+        rapid=rapid,
+        tools=found,
+        skipped=sorted({*control.skipped, *control.path.unplaced}),
+        notes=[*notes_on(control, listing), *notes],
+    )
+    # Where it runs is checked by now.
+    program = evolve(program, moves=moves_of(control, found, np.array([*program.zero, height])))
+    return ReadProgram(program, tuple(control.calls), content.count(b"\n") + 1)
+
+
+def height_of(z_zero: ZZero, thickness: float | None) -> float:
+    """The height of the program's Z0 in mm above the plane on which the part lies.
+
+    Raises
+    ------
+    InputError
+        Where the part's top is meant and nobody knows how high it is.
+    """
+    if z_zero == "bottom":
+        return 0.0
+    if z_zero == "top":
+        if thickness is None or not (isfinite(real(thickness)) and thickness > 0):
+            raise InputError(
+                "the program's Z0 is the top of the part, and how thick the part is, is not known: give its "
+                "thickness, or z_zero as a height."
+            )
+        return real(thickness)
+    height = real(z_zero)
+    if not isfinite(height):
+        raise InputError("z_zero is not a height: give top, bottom, or a length above the part's lower side.")
+    return height
+
+
+def read_bytes(path: Path) -> bytes:
+    """The content of a program's file.
+
+    Raises
+    ------
+    InputError
+        Without the file's name: when it cannot be read, or is too large.
+    """
+    try:
+        if not path.exists():
+            raise InputError("there is no file of that name.")
+        if not path.is_file():
+            raise InputError("this is not a file: give a program.")
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise InputError(
+                f"the file has {size / 1e6:.0f} MB, more than the {LARGEST_FILE / 1e6:g} MB of a program: "
+                "split it."
+            )
+        return path.read_bytes()
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"the file cannot be read ({reason.lower()}).") from error
+
+
+def decoded(content: bytes) -> str:
+    """The text of a program; comments may be in an encoding of western languages.
+
+    Raises
+    ------
+    InputError
+        For a file that is no text.
+    """
+    if b"\0" in content:
+        raise InputError("the file is no text: give a program of RS-274 (G-code).")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
+
+
+def run(listing: ProgramText, unit: Unit | None) -> Interpreter:
+    """Reads all blocks.
+
+    Raises
+    ------
+    InputError
+        Beginning with the line's number; for a program that moves nothing as well.
+    """
+    changes = any(
+        letter == "M" and code_of(text) == "6" for block in listing.blocks for letter, text in block.words
+    )
+    control = Interpreter(changes)
+    control.modes.unit = unit
+    for block in listing.blocks:
+        try:
+            control.read(block)
+        except InputError as error:
+            raise InputError(f"line {block.line}: {error}") from error
+    if not control.path.rows:
+        raise InputError(
+            "there is no move in it (G0 to G3, or a drill cycle): give a program of RS-274 (G-code)."
+        )
+    return control
+
+
+def first_unit(listing: ProgramText, unit: str | None) -> Unit:
+    """The unit in which a program begins, in which its comments speak of tools."""
+    codes = (code_of(text) for block in listing.blocks for letter, text in block.words if letter == "G")
+    return UNITS[next((code for code in codes if code in ("20", "21")), unit or "mm")]
+
+
+def moves_of(control: Interpreter, tools: Mapping[int, Tool], shift: np.ndarray[Any, Any]) -> Moves:
+    """The moves in the part's coordinates; those before any call have the only tool that is given."""
+    moves = Moves.of_rows(control.path.rows)
+    tool = np.where(moves.tool < 0, min(tools), moves.tool)
+    return Moves(
+        moves.line,
+        tool,
+        moves.cutting,
+        moves.start + shift,
+        moves.end + shift,
+        moves.bulge,
+        moves.feed,
+        moves.spindle,
+    )
+
+
+def tools_used(
+    path: Path, control: Interpreter, listing: ProgramText, given: ToolsGiven, unit: Unit
+) -> tuple[dict[int, Tool], list[str]]:
+    """The tools that move, with notes on what is not known of them.
+
+    Raises
+    ------
+    InputError
+        Naming the tools that are called and those of which no diameter is known.
+    """
+    notes: list[str] = []
+    if given is None:
+        try:
+            known = commented_tools(listing.comments, unit, control.calls)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from error
+    elif isinstance(given, Mapping):
+        known = {number: of_python(number, value, unit) for number, value in given.items()}
+    else:
+        known, said = read_tools(given, unit)
+        if not said:
+            notes.append(
+                f"The table of tools does not say its unit, and is read in {unit.name} as the program."
+            )
+    used = sorted({row[1] for row in control.path.rows})
+    if used[0] < 0:
+        # Nothing is called before the first move: the tool in the spindle is the table's 0, or its only one.
+        if len(used) == 1 and len(known) == 1:
+            number = next(iter(known))
+            notes.append(
+                f"The program calls no tool before it moves; T{number}, the only one given, is taken."
+            )
+        else:
+            number = 0
+        used[0] = number
+    missing = sorted(set(used) - set(known))
+    if missing:
+        raise InputError(f"{path}: {lacking(sorted(set(used)), missing)}")
+    bare = [f"T{number}" for number in sorted(set(used)) if is_bare(known[number])]
+    if bare:
+        notes.append(f"The holder of {listed(bare)} is not known, and not looked at.")
+    return {number: known[number] for number in sorted(set(used))}, notes
+
+
+def of_python(number: int, value: Any, unit: Unit) -> Tool:
+    """A tool that is one, a diameter in the program's unit, or fields.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if isinstance(value, Tool):
+        return value
+    fields = value if isinstance(value, Mapping) else {"diameter": value}
+    return tool_of_fields(int(number), fields, f"T{number}", unit)
+
+
+def lacking(used: Sequence[int], missing: Sequence[int]) -> str:
+    """What is missing of tools, with the form in which to give them."""
+    names = [f"T{number}" for number in missing]
+    if used == [0]:
+        called = "the program moves without calling a tool, and what is in the spindle (T0)"
+    else:
+        called = f"the program calls {listed([f'T{number}' for number in used])}, and the diameter of "
+        called += listed(names)
+    return (
+        f"{called} is not known: give a file of tools with a line for each, such as "
+        f"{SHAPE.format(number=missing[0])}."
+    )
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words as a list in a sentence.
+
+    >>> listed(["T1", "T2", "T3"])
+    'T1, T2 and T3'
+    """
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def lines_named(lines: Sequence[int]) -> str:
+    """Lines as a list that stays short.
+
+    >>> lines_named([3]), lines_named([1, 2, 3, 4, 5, 6, 7])
+    ('Line 3', 'Lines 1, 2, 3, 4, 5 and 2 more')
+    """
+    unlike = list(dict.fromkeys(lines))
+    if len(unlike) == 1:
+        return f"Line {unlike[0]}"
+    shown = [str(line) for line in unlike[:NAMED]]
+    more = len(unlike) - NAMED
+    return f"Lines {listed([*shown, f'{more} more']) if more > 0 else listed(shown)}"
+
+
+def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
+    """What of the reading a user has to know, in sentences."""
+    notes = []
+    if control.path.arrivals:
+        notes.append(
+            f"{lines_named(control.path.arrivals)}: the tool comes from a place that the program does not "
+            "say, and only where it arrives counts."
+        )
+    if control.skipped:
+        notes.append(
+            f"{lines_named(control.skipped)}: a move to a place of the machine's own (G28, G30, G53) is left "
+            "out."
+        )
+    if control.path.unplaced:
+        notes.append(
+            f"{lines_named(control.path.unplaced)}: a rapid move in increments (G91) begins at a place that "
+            "the program does not say, and is left out."
+        )
+    if not control.distance_said:
+        notes.append("The program does not say G90 or G91; its places are read as after G90.")
+    if not control.changes and control.calls:
+        notes.append("The program has no M6; T alone is read as the change to that tool.")
+    if "length" in control.remarked:
+        notes.append(f"{lines_named(control.remarked['length'])}: G43 takes the length of another tool.")
+    if listing.optional:
+        notes.append(f"{lines_named(listing.optional)}: a line that a switch can leave out (/) is read.")
+    unfed = [row[0] for row in control.path.rows if row[2] and row[6] <= 0.0]
+    if unfed:
+        notes.append(f"{lines_named(unfed)}: a cutting move has no feed, and its time is not counted.")
+    if listing.behind:
+        notes.append(f"{lines_named(listing.behind)}: what stands behind the end of the program is not read.")
+    return notes

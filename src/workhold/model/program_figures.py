@@ -1,0 +1,93 @@
+"""What a program comes to: lengths, times and heights by tool, and the box in which its tips move."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.model.moves import Moves, along
+from workhold.model.program import Program
+
+__all__ = ["ToolFigures", "tip_box", "tool_figures"]
+
+Floats = NDArray[np.float64]
+
+
+@frozen
+class ToolFigures:
+    """What one tool does; lengths in mm, heights above the plane on which the part lies.
+
+    Parameters
+    ----------
+    tool : its number.
+    first_line : where it moves first.
+    cutting, rapid : lengths of its cutting and of its rapid moves.
+    seconds : that its cutting moves take at their feeds, without accelerating and without dwells.
+    untimed : length of cutting moves without a feed.
+    lowest, highest : heights of its tip.
+    lowest_cut : of its tip at a cutting move; None where it does not cut.
+    """
+
+    tool: int
+    first_line: int
+    cutting: float
+    rapid: float
+    seconds: float
+    untimed: float
+    lowest: float
+    highest: float
+    lowest_cut: float | None
+
+
+def tool_figures(program: Program) -> tuple[ToolFigures, ...]:
+    """The figures of each tool, in the order in which they move first."""
+    moves, length = program.moves, program.moves.length
+    heights = np.stack([moves.start[:, 2], moves.end[:, 2]], axis=1)
+    found = []
+    for number in dict.fromkeys(moves.tool.tolist()):
+        own = moves.tool == number
+        cut, timed = own & moves.cutting, own & moves.cutting & (moves.feed > 0)
+        found.append(
+            ToolFigures(
+                tool=number,
+                first_line=int(moves.line[own][0]),
+                cutting=float(length[cut].sum()),
+                rapid=float(length[own & ~moves.cutting].sum()),
+                seconds=float((length[timed] / moves.feed[timed]).sum() * 60.0),
+                untimed=float(length[cut & ~timed].sum()),
+                lowest=float(heights[own].min()),
+                highest=float(heights[own].max()),
+                lowest_cut=float(heights[cut].min()) if cut.any() else None,
+            )
+        )
+    return tuple(found)
+
+
+def tip_box(moves: Moves) -> tuple[Floats, Floats]:
+    """The smallest and the greatest x, y and z of the tip over all moves, of which there are some, in mm."""
+    points = [moves.start, moves.end, *extremes(moves)]
+    every = np.concatenate(points)
+    return every.min(axis=0), every.max(axis=0)
+
+
+def extremes(moves: Moves) -> Sequence[Floats]:
+    """(K, 3) points of arcs where a coordinate is greatest or least, other than their ends."""
+    arc = np.flatnonzero(moves.bulge)
+    start, end, bulge = moves.start[arc], moves.end[arc], moves.bulge[arc]
+    chord = end[:, :2] - start[:, :2]
+    # The direction at the start lies half the sweep to the right of the chord, for a positive sweep.
+    sweep = 4.0 * np.arctan(bulge)
+    heading = np.arctan2(chord[:, 1], chord[:, 0]) - sweep / 2
+    found = []
+    for quarter in range(4):
+        # The path runs along an axis where its heading is a multiple of a quarter turn.
+        ahead = (quarter * np.pi / 2 - heading) * np.sign(sweep)
+        share = np.mod(ahead, 2 * np.pi) / np.abs(sweep)
+        inside = share < 1.0
+        at = along(start[inside, :2], end[inside, :2], bulge[inside], share[inside])
+        height = start[inside, 2] + share[inside] * (end - start)[inside, 2]
+        found.append(np.column_stack([at, height]))
+    return found

@@ -1,0 +1,138 @@
+"""How near the tools of a program come to what holds the part: to pegs, clamps with their bodies, and walls.
+
+An element of a fixture is a disc, a capsule or a half plane up to the height of the pegs. Its clearance is
+the least distance of the axis of a tool's cylinder to it, less the cylinder's radius, over all that the
+program sweeps at heights up to that.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.contact.swept import Swept, swept_below
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.symmetry import rotated
+from workhold.model.program import Program
+from workhold.model.result import FixtureTable, Result, peg_places
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["NearestMove", "Passing", "element_name", "nearest_moves", "passing_of"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@frozen(eq=False)
+class NearestMove:
+    """Where the tools of a program come nearest to each of N fixtures.
+
+    Parameters
+    ----------
+    clearance : (N,) in mm, infinite where nothing is swept at such heights.
+    line, tool : (N,) of the program, -1 there.
+    contact : (N,) number of the contact that it comes near to: of a peg, a clamp, or an end on a wall.
+    """
+
+    clearance: Array
+    line: IntArray
+    tool: IntArray
+    contact: IntArray
+
+
+def nearest_moves(
+    table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, program: Program, peg_height: float
+) -> NearestMove:
+    """Where the tools of a program come nearest to each fixture of a table; ``peg_height`` in mm."""
+    count, swept = len(table), swept_below(program, peg_height)
+    found = NearestMove(np.full(count, inf), *(np.full(count, -1) for _ in range(3)))
+    x, y = peg_places(table, toolkit, workpiece)
+    bolts = toolkit.places(table.arrangement, table.column, table.row, np.zeros(count))
+    carriers = toolkit.peg_carriers(table.arrangement)
+
+    def seen(points: tuple[Array, Array], rows: IntArray, k: int) -> Array:
+        """Places (R, 2) of a contact of some rows in the part's coordinates."""
+        dx, dy = (values[rows, k] - table.position[rows, axis] for axis, values in enumerate(points))
+        return np.stack(rotated(dx, dy, -table.theta[rows]), axis=1)
+
+    for k in range(toolkit.peg_count):
+        for number, carrier in enumerate(toolkit.carriers):
+            rows = np.flatnonzero(carriers[:, k] == number)
+            if not carrier.contact.is_placed:
+                take(found, rows, k, swept, *beside_wall(table, rows, swept))
+                continue
+            centers = seen((x, y), rows, k)
+            behind = seen(bolts, rows, k) if carrier.has_body_behind else centers
+            reach, span = swept.nearest(centers, behind)
+            take(found, rows, k, swept, reach - carrier.peg_radius, span)
+            if carrier.body_radius > carrier.peg_radius:
+                below = swept_below(program, 0.0)
+                reach, span = below.nearest(centers, centers)
+                take(found, rows, k, below, reach - carrier.body_radius, span)
+    return found
+
+
+@frozen
+class Passing:
+    """Where the tools of a program come nearest to one fixture.
+
+    Parameters
+    ----------
+    distance : from the nearest of what holds the part, in mm.
+    line, tool : of the program.
+    element : what it is near to, such as "peg L-A1".
+    """
+
+    distance: float
+    line: int
+    tool: int
+    element: str
+
+
+def passing_of(result: Result, index: int) -> Passing | None:
+    """Where the tools of a result's program come nearest to the fixture of an index.
+
+    None without a program, and where no tool comes down to the height of pegs.
+    """
+    if result.query.passed is None:
+        return None
+    table, toolkit = result.table.take(slice(index, index + 1)), result.toolkit
+    near = nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
+    if near.line[0] < 0:
+        return None
+    name = element_name(table, toolkit, 0, int(near.contact[0]))
+    return Passing(float(near.clearance[0]), int(near.line[0]), int(near.tool[0]), name)
+
+
+def element_name(table: FixtureTable, toolkit: Toolkit, row: int, contact: int) -> str:
+    """What a contact of a fixture of a table stands on, such as "peg L-A1", "clamp row 3" or "fence"."""
+    arrangement = toolkit.arrangements[int(table.arrangement[row])]
+    carrier = toolkit.carriers[arrangement.carriers[contact]]
+    if not carrier.contact.is_placed:
+        return carrier.noun
+    place = carrier.place_name(int(table.column[row, contact]), int(table.row[row, contact]))
+    return f"{carrier.peg} {place}" if carrier.has_lattice else place
+
+
+def beside_wall(table: FixtureTable, rows: IntArray, swept: Swept) -> tuple[Array, IntArray]:
+    """Least reach (R,) to a wall of some rows of a table, and the spans (R,) that it is to."""
+    # Of each hull edge on the wall there is one pose but for the place along it.
+    poses = np.stack([table.theta[rows], -table.position[rows, 1]], axis=1)
+    different, inverse = np.unique(poses, axis=0, return_inverse=True)
+    near = [swept.above(theta, height) for theta, height in different.tolist()]
+    reach, span = np.array([one for one, _ in near]), np.array([one for _, one in near], np.int64)
+    inverse = inverse.ravel()
+    return reach[inverse], span[inverse]
+
+
+def take(
+    found: NearestMove, rows: IntArray, contact: int, swept: Swept, clearance: Array, span: IntArray
+) -> None:
+    """Takes over clearances (R,) of a contact of some rows where they are less than those known."""
+    less = (clearance < found.clearance[rows]) & (span >= 0)
+    chosen, spans = rows[less], span[less]
+    found.clearance[chosen], found.contact[chosen] = clearance[less], contact
+    found.line[chosen], found.tool[chosen] = swept.line[spans], swept.tool[spans]

@@ -1,0 +1,372 @@
+"""How near a program's tools come to what holds the part, by a walk along its moves with bounds.
+
+The moves of the tip are walked, not what the search makes of them. A stretch of a move lies within its
+sagitta of its chord. So the distance of the axis from an element is that of the chord to within the sagitta.
+Stretches that cannot hold the least distance are left. Others are halved, and so are those on which a
+cylinder comes down to the pegs or leaves them. Numbers are doubles: their rounding is far below what decides,
+``tolerances.AGREEMENT``.
+
+Glossary
+--------
+element : a disc or a capsule, as the piece its middle line is with a radius, or a half plane.
+stretch : a part of a move, between two shares of it, with one cylinder of its tool.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from math import inf, radians
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.fixels.carrier import Carrier
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.program import Program
+from workhold.model.quality import PROGRAM_FIGURE
+from workhold.model.query import Query
+from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.tolerances import AGREEMENT
+
+__all__ = ["Element", "Nearest", "ToolWalk", "program_fault", "walk_of"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# mm. To this the least distance is worked out, and how far heights may be off.
+FINE, HAIR = 1e-7, 1e-9
+MOST_HALVINGS = 200
+
+
+@frozen
+class Element:
+    """Something that holds the part, in the part's coordinates and mm.
+
+    Parameters
+    ----------
+    name : as messages call it.
+    place : what its place is called.
+    start, end : ends of its middle line; of a half plane a point on its border, and the unit vector away
+        from it.
+    radius : around the middle line; 0 for a half plane.
+    height : up to which it reaches.
+    is_half_plane : whether it is one.
+    """
+
+    name: str
+    place: str
+    start: tuple[float, float]
+    end: tuple[float, float]
+    radius: float
+    height: float
+    is_half_plane: bool = False
+
+
+@frozen
+class Nearest:
+    """The least distance less radii in mm, between two bounds, and the line of the program it is on."""
+
+    low: float
+    high: float
+    line: int
+
+
+@frozen(eq=False)
+class Stretches:
+    """N stretches.
+
+    Parameters
+    ----------
+    move : (N,) numbers of moves.
+    first, last : (N,) shares of the move.
+    under, radius : (N,) height of the cylinder's lower end above the tip, and its radius.
+    """
+
+    move: IntArray
+    first: Array
+    last: Array
+    under: Array
+    radius: Array
+
+    def take(self, chosen: NDArray[np.bool_] | IntArray) -> Stretches:
+        """The stretches of a mask or of numbers."""
+        rest = (self.first, self.last, self.under, self.radius)
+        return Stretches(self.move[chosen], *(values[chosen] for values in rest))
+
+    def halves(self) -> Stretches:
+        """Both halves of each."""
+        middle = (self.first + self.last) / 2
+        both = [np.concatenate([v, v]) for v in (self.move, self.under, self.radius)]
+        first, last = np.concatenate([self.first, middle]), np.concatenate([middle, self.last])
+        return Stretches(both[0], first, last, both[1], both[2])
+
+
+@frozen(eq=False)
+class ToolWalk:
+    """The moves of a program as they are walked.
+
+    Parameters
+    ----------
+    program : it.
+    center, radius, turn, sweep : (M, 2) and (M,) of round moves, the angle where they start, and what they
+        turn.
+    is_round, is_box : (M,) whether a move is an arc, and whether any way in the box of its ends counts.
+    """
+
+    program: Program
+    center: Array
+    radius: Array
+    turn: Array
+    sweep: Array
+    is_round: NDArray[np.bool_]
+    is_box: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, program: Program) -> ToolWalk:
+        """The walk along a program."""
+        moves = program.moves
+        start, end, bulge = moves.start[:, :2], moves.end[:, :2], moves.bulge
+        chord = end - start
+        is_round = (bulge != 0.0) & (chord != 0.0).any(axis=1)
+        safe = np.where(is_round, bulge, 1.0)
+        left = np.stack([-chord[:, 1], chord[:, 0]], axis=1)
+        # The tangent of half the half sweep is the bulge, so its cotangent places the centre.
+        center = (start + end) / 2 + left * ((1.0 - safe * safe) / (4.0 * safe))[:, None]
+        arm = start - center
+        changes = (moves.start != moves.end).sum(axis=1)
+        is_box = (program.rapid == "box") & ~moves.cutting & (changes > 1)
+        return cls(
+            program,
+            center,
+            np.hypot(*arm.T),
+            np.arctan2(arm[:, 1], arm[:, 0]),
+            4.0 * np.arctan(np.where(is_round, bulge, 0.0)),
+            is_round,
+            np.asarray(is_box),
+        )
+
+    def stretches(self) -> Stretches:
+        """Every move with every cylinder of its tool, whole."""
+        parts = []
+        for number, tool in self.program.tools.items():
+            moved = np.flatnonzero(self.program.moves.tool == number)
+            for cylinder in tool.cylinders:
+                ones = np.ones(len(moved))
+                parts.append(Stretches(moved, 0.0 * ones, ones, cylinder.low * ones, cylinder.radius * ones))
+        columns = ("move", "first", "last", "under", "radius")
+        joined = [np.concatenate([getattr(part, name) for part in parts] or [[]]) for name in columns]
+        return Stretches(joined[0].astype(np.int64), *joined[1:])
+
+    def at(self, move: IntArray, share: Array) -> Array:
+        """Places (N, 2) of the axis at shares of moves."""
+        moves = self.program.moves
+        start, end = moves.start[move, :2], moves.end[move, :2]
+        straight = start + share[:, None] * (end - start)
+        angle = self.turn[move] + share * self.sweep[move]
+        bent = self.center[move] + self.radius[move, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return np.asarray(np.where(self.is_round[move, None], bent, straight))
+
+    def nearest(self, element: Element, line: object = None, tool: object = None) -> Nearest:
+        """Where the tools come nearest to an element; infinite where none comes down to its height.
+
+        Parameters
+        ----------
+        line, tool : of the program, the moves to look at; None for all.
+        """
+        found, at = inf, -1
+        waiting, low, moves = self.stretches(), inf, self.program.moves
+        if line is not None:
+            waiting = waiting.take((moves.line[waiting.move] == line) & (moves.tool[waiting.move] == tool))
+        start, rise = (
+            self.program.moves.start[:, 2],
+            (self.program.moves.end - self.program.moves.start)[:, 2],
+        )
+        for _ in range(MOST_HALVINGS):
+            move = waiting.move
+            one, other = (start[move] + t * rise[move] + waiting.under for t in (waiting.first, waiting.last))
+            boxed = self.is_box[move]
+            # In a box everything counts as long as its lower height does.
+            least, most = np.minimum(one, other), np.where(boxed, -inf, np.maximum(one, other))
+            there = least <= element.height + HAIR
+            waiting, move, boxed = waiting.take(there), move[there], boxed[there]
+            least, most = least[there], most[there]
+            if not len(move):
+                break
+            off, sagitta = self.distances(waiting, element, boxed)
+            off -= waiting.radius + element.radius
+            whole = most <= element.height
+            # Of a stretch that is not low all along, its lower end is.
+            sure = np.where(whole, off + sagitta, inf)
+            ends = np.where(one[there] <= other[there], waiting.first, waiting.last)
+            at_end = self.from_element(self.at(move, ends), element) - waiting.radius - element.radius
+            sure = np.where(~whole & (least <= element.height), at_end, sure)
+            best = int(sure.argmin())
+            if sure[best] < found:
+                found, at = float(sure[best]), int(moves.line[move[best]])
+            done = (whole & (sagitta <= FINE / 4)) | (waiting.last - waiting.first < 1e-15)
+            below = off - sagitta
+            low = min(low, float(below[done].min(initial=inf)))
+            kept = ~done & (below < found - FINE)
+            # What is let go is no lower than what is known, less what is asked for.
+            low = min(low, float(below[~done & ~kept].min(initial=inf)))
+            waiting = waiting.take(kept).halves()
+            if not len(waiting.move):
+                break
+        return Nearest(min(low, found), found, at)
+
+    def distances(
+        self, stretches: Stretches, element: Element, boxed: NDArray[np.bool_]
+    ) -> tuple[Array, Array]:
+        """Distances (N,) of the chords of stretches from an element, and their sagittas (N,)."""
+        move = stretches.move
+        one, other = self.at(move, stretches.first), self.at(move, stretches.last)
+        sweep = np.abs(self.sweep[move]) * (stretches.last - stretches.first)
+        sagitta = np.where(
+            self.is_round[move],
+            np.where(sweep < np.pi, 2.0 * self.radius[move] * np.sin(np.minimum(sweep, np.pi) / 4) ** 2, inf),
+            0.0,
+        )
+        # An arc of half a turn or more is within its radius of its chord's ends.
+        sagitta = np.where(np.isinf(sagitta), 2.0 * self.radius[move], sagitta)
+        off = self.chord_distances(one, other, element)
+        for k in np.flatnonzero(boxed).tolist():
+            start, end = self.program.moves.start[move[k], :2], self.program.moves.end[move[k], :2]
+            off[k] = self.box_distance(start, end, element)
+        return off, sagitta
+
+    def from_element(self, points: Array, element: Element) -> Array:
+        """Distances (N,) of points from an element's middle line, or from a half plane."""
+        return self.chord_distances(points, points, element)
+
+    def chord_distances(self, one: Array, other: Array, element: Element) -> Array:
+        """Distances (N,) of straight pieces from an element's middle line, or from a half plane."""
+        start, end = np.array(element.start), np.array(element.end)
+        if element.is_half_plane:
+            return np.asarray(np.maximum(np.minimum((one - start) @ end, (other - start) @ end), 0.0))
+        ends = [point_to_piece(one, start, end), point_to_piece(other, start, end)]
+        ends += [pieces_to_point(one, other, start), pieces_to_point(one, other, end)]
+        least = np.minimum.reduce(ends)
+        return np.where(do_cross(one, other, start, end), 0.0, least)
+
+    def box_distance(self, one: Array, other: Array, element: Element) -> float:
+        """Distance from the box of two corners to an element's middle line, or to a half plane."""
+        (x0, y0), (x1, y1) = np.minimum(one, other), np.maximum(one, other)
+        corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+        sides = float(self.chord_distances(corners, np.roll(corners, -1, axis=0), element).min())
+        inside = x0 <= element.start[0] <= x1 and y0 <= element.start[1] <= y1
+        return 0.0 if inside and not element.is_half_plane else sides
+
+
+def point_to_piece(points: Array, start: Array, end: Array) -> Array:
+    """Distances (N,) of points from one straight piece, which may be a point."""
+    along = end - start
+    long = float(along @ along)
+    share = np.clip((points - start) @ along / long, 0.0, 1.0) if long > 0.0 else np.zeros(len(points))
+    return np.asarray(np.hypot(*(points - start - share[:, None] * along).T))
+
+
+def pieces_to_point(one: Array, other: Array, point: Array) -> Array:
+    """Distances (N,) of straight pieces, which may be points, from one point."""
+    along = other - one
+    long = (along * along).sum(axis=1)
+    share = ((point - one) * along).sum(axis=1) / np.where(long > 0.0, long, 1.0)
+    return np.asarray(np.hypot(*(point - one - np.clip(share, 0.0, 1.0)[:, None] * along).T))
+
+
+def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.bool_]:
+    """Which straight pieces (N,) have the ends of one on either side of them, and their own on either side of
+    it."""
+
+    def side(a: Array, b: Array, c: Array) -> Array:
+        return np.asarray((b - a)[..., 0] * (c - a)[..., 1] - (b - a)[..., 1] * (c - a)[..., 0])
+
+    apart = side(start, end, one) * side(start, end, other) < 0.0
+    return np.asarray(apart & (side(one, other, start) * side(one, other, end) < 0.0))
+
+
+@lru_cache(maxsize=8)
+def walk_of(program: Program) -> ToolWalk:
+    """The walk along a program."""
+    return ToolWalk.of(program)
+
+
+def program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
+    """What is wrong with a fixture and the program, in one sentence without a full stop; empty where nothing
+    is."""
+    said = fixture.quality.get(PROGRAM_FIGURE.key)
+    if query.passed is None:
+        return "" if said is None else f"its {PROGRAM_FIGURE.words} is given, and there is no program"
+    program, height = query.passed
+    walk, least = walk_of(program), Nearest(inf, inf, -1)
+    for element in elements_of(fixture, hardware, height):
+        near = walk.nearest(element)
+        if near.high < program.clearance - AGREEMENT:
+            return (
+                f"line {near.line} of the program brings a tool within {near.high:.6g} mm of {element.name}, "
+                f"and {program.clearance:g} mm are to be kept"
+            )
+        high, line = (near.high, near.line) if near.high < least.high else (least.high, least.line)
+        least = Nearest(min(least.low, near.low), high, line)
+    if (said is None) != (least.high == inf):
+        return (
+            f"its {PROGRAM_FIGURE.words} is {'missing' if said is None else 'given, and no tool comes down'}"
+        )
+    if said is not None and not least.low - AGREEMENT <= said <= least.high + AGREEMENT:
+        return f"its {PROGRAM_FIGURE.words} is {said:.12g} in the file and comes to {least.high:.9g}"
+    return passing_fault(fixture, walk, list(elements_of(fixture, hardware, height)), least)
+
+
+def passing_fault(fixture: Fixture, walk: ToolWalk, elements: Sequence[Element], least: Nearest) -> str:
+    """What is wrong with what a file says of the nearest move, in a sentence; empty where nothing is."""
+    said = fixture.passing
+    if said is None:
+        return ""
+    keys = ("distance", "line", "tool", "element")
+    if not isinstance(said, dict) or any(key not in said for key in keys):
+        return f"its {PROGRAM_FIGURE.words} does not have {', '.join(keys[:-1])} and {keys[-1]}"
+    if said["distance"] != fixture.quality.get(PROGRAM_FIGURE.key):
+        return f"its {PROGRAM_FIGURE.words} is given twice, and differs"
+    named = [one for one in elements if one.place == said["element"]]
+    near = min((walk.nearest(one, said["line"], said["tool"]).low for one in named), default=inf)
+    if near > least.high + AGREEMENT:
+        return (
+            f"T{said['tool']} does not come nearest in line {said['line']} of the program, to the "
+            f"{said['element']}"
+        )
+    return ""
+
+
+def elements_of(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iterator[Element]:
+    """Everything that holds a part, as it is written."""
+    angle = radians(fixture.pose.theta_deg)
+    cosine, sine = np.cos(angle), np.sin(angle)
+
+    def seen(x: float, y: float) -> tuple[float, float]:
+        dx, dy = x - fixture.pose.x, y - fixture.pose.y
+        return float(cosine * dx + sine * dy), float(cosine * dy - sine * dx)
+
+    for wall in hardware.walls:
+        # Up in the toolkit is this way in the part.
+        yield Element(
+            f"the {wall.noun}", wall.noun, seen(0.0, 0.0), (float(sine), float(cosine)), 0.0, height, True
+        )
+    for name, peg in hardware.placed(fixture):
+        carrier = hardware.carriers[peg.carrier]
+        place = f"{carrier.peg} {peg.hole}" if carrier.has_lattice else peg.hole
+        whole = Element(
+            name, place, seen(peg.x, peg.y), seen(*behind(peg, carrier)), carrier.peg_radius, height
+        )
+        yield whole
+        if carrier.body_radius > carrier.peg_radius:
+            yield evolve(whole, radius=carrier.body_radius, height=0.0)
+
+
+def behind(peg: Peg, carrier: Carrier) -> tuple[float, float]:
+    """The other end of a peg's middle line: of a clamp that is bolted in a hole this hole, else its own
+    place."""
+    if not carrier.has_body_behind:
+        return peg.x, peg.y
+    (x, y), (pitch_x, pitch_y) = carrier.offset, carrier.pitch
+    return x + peg.column * pitch_x, y + peg.row * pitch_y

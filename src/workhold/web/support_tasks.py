@@ -1,0 +1,272 @@
+"""The task of workers that finds supports under a fixture and a clamp from above, and its answer.
+
+Glossary
+--------
+set : three supports with the clamp over them.
+box : what of a body shows from the front and from the right, as its extents in mm in the toolkit's frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+
+from workhold.errors import InputError
+from workhold.fixels.carrier import column_letters, hole_name, letter_of
+from workhold.geometry.segment import bounding_box
+from workhold.model.bodies import BodySizes, FixtureBody
+from workhold.model.fixture import Fixture
+from workhold.model.query import Query
+from workhold.model.recounted import ChosenSupports, recounted
+from workhold.model.requirements import zone_of
+from workhold.model.support_request import SupportRequest
+from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
+from workhold.units import unit_named
+from workhold.web.support_bodies import sizes_with, supported_bodies
+from workhold.web.support_forms import SupportsForm
+from workhold.web.worker import Order
+
+__all__ = ["SupportsOrder", "chosen_bodies", "chosen_supports", "find_supports"]
+
+
+@frozen(eq=False)
+class SupportsOrder:
+    """What to find supports for.
+
+    Parameters
+    ----------
+    fixture : the planar fixture.
+    query : its part and toolkit, with the loads of its search.
+    form : what is asked.
+    """
+
+    fixture: Fixture
+    query: Query
+    form: SupportsForm
+
+
+def find_supports(payload: SupportsOrder, order: Order) -> dict[str, Any]:
+    """Finds the best sets of three supports, and describes them with what shows from the side."""
+    return supports_answer(found_supports(payload), payload.form.unit)
+
+
+def found_supports(asked: SupportsOrder) -> Supports:
+    """Finds the best sets of three supports.
+
+    Raises
+    ------
+    InputError
+        For a thickness that nobody knows, pads too large for the holes, and a jaw force too small.
+    """
+    from workhold.supports.listing import supports_of
+
+    form = asked.form
+    loads = None if form.loads is None else [load.load() for load in form.loads]
+    request = request_of(asked)
+    return supports_of(asked.fixture, asked.query, request, loads, form.jaw_force, form.best)
+
+
+def request_of(asked: SupportsOrder) -> SupportRequest:
+    """Makes the request for supports of a form, with what the part's solid knows.
+
+    Raises
+    ------
+    InputError
+        For a thickness that nobody knows.
+    """
+    form = asked.form
+    usual = SupportRequest.of(
+        asked.query.workpiece,
+        form.thickness,
+        pad_radius=form.pad_radius,
+        tip_radius=form.tip_radius,
+        toolkit=asked.query.toolkit,
+    )
+    return evolve(
+        usual,
+        band=form.band,
+        pad_margin=form.pad_margin,
+        bottom_zones=[zone_of(loop) for loop in form.bottom_zones],
+        top_zones=[zone_of(loop) for loop in form.top_zones],
+        inside=usual.tip_radius if form.inside is None else form.inside,
+        reach=form.reach,
+        point=form.point,
+    )
+
+
+def chosen_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
+    """Finds the supports that are asked for, and chooses the set of a number from 1; None where none hold.
+
+    Raises
+    ------
+    InputError
+        When there are fewer, and as :func:`found_supports`.
+    """
+    found = found_supports(asked)
+    return ChosenSupports.of(found, number) if found.triples else None
+
+
+def chosen_bodies(chosen: ChosenSupports, sizes: BodySizes) -> tuple[FixtureBody, ...]:
+    """Makes the bodies of a fixture with the chosen set, in holes that have names."""
+    found, built = chosen.supports, chosen.recounted
+    at, _, _ = shown_clamp(found, chosen.triple)
+    return supported_bodies(built.fixture, found.query, found.request, chosen.pads, at, sizes)
+
+
+def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
+    """Describes the best sets; places are in mm in the toolkit's frame.
+
+    ``positions`` is how many holes may hold a support, ``count`` how many sets there are, null where not all
+    were looked at. ``bands`` are the heights at which each peg may press. ``notes`` are sentences in
+    ``unit``.
+    """
+    request, listed = found.request, found.triples
+    sizes = sizes_with(found.query, request)
+    return {
+        "thickness": request.thickness,
+        "peg_height": sizes.top,
+        "pad_radius": request.pad_radius,
+        "tip_radius": request.tip_radius,
+        "jaw_force": found.jaw_force if found.loads else None,
+        "with_loads": bool(found.loads),
+        "positions": found.positions,
+        "count": found.count,
+        "bands": request.peg_bands(len(found.fixture.pegs)).tolist(),
+        "sets": [set_answer(found, triple) for triple in listed],
+        "boxes": [list(boxes_of(found, triple, sizes)) for triple in listed],
+        "notes": notes_of(found, unit),
+    }
+
+
+def shown_clamp(found: Supports, triple: Triple) -> tuple[tuple[float, float], float, ClampFigures]:
+    """The clamp's point in the part's coordinates and its tipping arm in mm, with its other figures.
+
+    Without loads and a point asked for, it stands where the arm is longest.
+    """
+    clamp = triple.clamp
+    if found.loads or triple.given is not None:
+        return clamp.at, clamp.arm, clamp
+    return triple.arm_at, triple.arm, clamp
+
+
+def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
+    """Describes one set of three; forces are null without loads.
+
+    ``travel`` is what the jaws are opened to where the set asks for more than the fixture alone, else null.
+    ``nearest`` is the point of the triangle's border that is nearest to the clamp. ``built`` has the holes of
+    pegs and supports in plates that can take them all, as on the sheet, where these are others, else null.
+    """
+    fixture, toolkit = found.fixture, found.query.toolkit
+    at, arm, clamp = shown_clamp(found, triple)
+    corners = np.array([(pad.x, pad.y) for pad in triple.supports])
+    names = [carrier.name for carrier in toolkit.carriers]
+    loaded = bool(found.loads)
+    moves = triple.travel is not None and abs(triple.travel - fixture.jaw_separation) > 1e-6
+
+    def placed(x: float, y: float) -> list[float]:
+        return [float(value) for value in fixture.pose.apply(x, y)]
+
+    return {
+        "holes": [pad_name(pad) for pad in triple.supports],
+        "carriers": [names.index(pad.carrier) for pad in triple.supports],
+        "pads": [placed(pad.x, pad.y) for pad in triple.supports],
+        "at": placed(*at),
+        "at_part": list(at),
+        "nearest": placed(*nearest_of_border(corners, np.array(at))),
+        "clamp_force": clamp.clamp_needed if loaded else None,
+        "support_force": clamp.support_force if loaded else None,
+        "arm": arm,
+        "standing": triple.standing,
+        "overhang": triple.overhang,
+        "travel": triple.travel if moves else None,
+        "marginal": triple.marginal,
+        "built": built_answer(found, triple),
+    }
+
+
+def built_answer(found: Supports, triple: Triple) -> dict[str, list[str]] | None:
+    """Names the holes in which a set is built where they are not those of the list; None where they are."""
+    try:
+        anew = recounted(found.fixture, found.query.toolkit, triple)
+    except InputError:
+        return None
+    pegs = [peg.hole for peg in anew.fixture.pegs]
+    pads = [hole_name(pad.carrier, pad.column, pad.row) for pad in anew.supports]
+    if pegs == [peg.hole for peg in found.fixture.pegs] and pads == [
+        pad_name(pad) for pad in triple.supports
+    ]:
+        return None
+    return {"pegs": pegs, "supports": pads}
+
+
+def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, float]:
+    """The point of a triangle's border (3, 2) that is nearest to a point (2,)."""
+    starts, ways = corners, np.roll(corners, -1, axis=0) - corners
+    shares = ((point - starts) * ways).sum(axis=1) / (ways**2).sum(axis=1)
+    feet = starts + np.clip(shares, 0.0, 1.0)[:, None] * ways
+    x, y = feet[np.argmin(np.hypot(*(feet - point).T))]
+    return float(x), float(y)
+
+
+def pad_name(pad: SupportPad) -> str:
+    """The hole of a support; one before column A or row 1 by its numbers."""
+    letter = letter_of(pad.carrier)
+    if pad.column >= 0 and pad.row >= 0:
+        name = f"{column_letters(pad.column)}{pad.row + 1}"
+    else:
+        name = f"({pad.column + 1},{pad.row + 1})"
+    return f"{letter}-{name}" if letter else name
+
+
+def notes_of(found: Supports, unit: str) -> list[str]:
+    """Says what is not seen in the figures, and what has to be set otherwise than for the fixture alone."""
+    given, listed = unit_named(unit), found.triples
+    notes = []
+    if not listed:
+        few = "no hole" if not found.positions else f"{found.positions} holes"
+        notes.append(
+            f"No three supports hold the part up with the clamp between them; {few} could hold a support. "
+            "Smaller pads or a smaller tip may help, or another fixture."
+        )
+    if found.loads and listed and found.jaw_force > 0:
+        notes.append(f"All for a closing force of {found.jaw_force:.0f} N, without friction.")
+    moved = {one.travel for one in listed if one.travel is not None}
+    if any(abs(one - found.fixture.jaw_separation) > 1e-6 for one in moved):
+        opened = ", ".join(given.text(one) for one in sorted(moved))
+        notes.append(
+            f"With supports the jaws stand elsewhere in their holes, opened to {opened}; columns are counted "
+            "as for the fixture."
+        )
+    solid = found.query.workpiece.solid
+    lacking = [] if solid is None else [name for name in ("bottom", "top") if not getattr(solid, name)]
+    if lacking:
+        notes.append(
+            f"No level face of the part is known at its {' and '.join(lacking)}, which is taken to be flat "
+            "as far as the outline goes: keep pads and clamp off the rest."
+        )
+    return notes
+
+
+def boxes_of(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
+    """Lists the boxes of all bodies of a fixture with a set of supports; none where pegs have no body."""
+    at, _, _ = shown_clamp(found, triple)
+    pads = [(pad_name(pad), pad) for pad in triple.supports]
+    try:
+        bodies = supported_bodies(found.fixture, found.query, found.request, pads, at, sizes)
+    except InputError:
+        return
+    for body in bodies:
+        for slab in body.slabs:
+            sides = np.array([bounding_box(segment) for segment in slab.outer])
+            x0, y0 = sides[:, :2].min(axis=0).tolist()
+            x1, y1 = sides[:, 2:].max(axis=0).tolist()
+            yield {
+                "name": body.name,
+                "kind": str(body.kind),
+                "x": [x0, x1],
+                "y": [y0, y1],
+                "z": [slab.low, slab.high],
+            }

@@ -1,0 +1,191 @@
+"""From a part to its sheet in one command, on supports, and the sheet of a part's second side."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import pypdfium2
+import pytest
+from typer.testing import Result as Outcome
+
+import workhold
+from workhold import Plate, Restrictions, Workpiece
+from workhold.model.solid import SolidOutline
+
+Run = Callable[..., Outcome]
+CORNERS = [(0.0, 0.0), (80.0, 4.0), (76.0, 50.0), (6.0, 44.0)]
+KIT = ("--toolkit", "clamp-plate-20mm")
+
+
+def side(axis: str, faces: list[tuple[int, ...]], mirrored: bool) -> Workpiece:
+    """A prism 20 mm high as seen from one of its sides."""
+    corners = [(-x, y, 0.0) for x, y in reversed(CORNERS)] if mirrored else [(x, y, 0.0) for x, y in CORNERS]
+    loop = [corners]
+    solid = SolidOutline(axis, 20.0, 8.0, 0.5, 1.0, [(0.0, 8.0)] * 4, faces, loop, loop)
+    return Workpiece.from_loops("prism", [corners], solid=solid)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a drawing, and with results of both sides of a solid."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plate.json").write_text(
+        json.dumps({"name": "plate", "units": "mm", "loops": [[[x, y, 0] for x, y in CORNERS]]})
+    )
+    plate = Plate(pitch=20, peg_radius=3)
+    first, second = side("z", [(1,), (2,), (3,), (4,)], False), side("-z", [(3,), (2,), (1,), (4,)], True)
+    workhold.save(workhold.design(first, plate, best=8, restrictions=Restrictions(avoid=(2,))), "op10.json")
+    workhold.save(workhold.design(second, plate, best=8, restrictions=Restrictions(avoid=(0,))), "op20.json")
+    return tmp_path
+
+
+def words_in(path: str) -> str:
+    """The text of a PDF."""
+    document = pypdfium2.PdfDocument(Path(path).read_bytes())
+    return " ".join(" ".join(page.get_textpage().get_text_bounded() for page in document).split())
+
+
+def test_from_a_part_to_its_sheet_in_one_command(run: Run, folder: Path) -> None:
+    """The first choice is on paper, on its supports; the sheet names the result file by its hash."""
+    words = ("design", "plate.json", *KIT, "--best", 5, "--supports", "--thickness", 14)
+    shown = run(*words, "--sheet", "a.pdf", "--out", "r.json")
+    assert shown.exit_code == 0, shown.stderr
+    result = workhold.open("r.json")
+    text = words_in("a.pdf")
+    rank = int(shown.stdout.split("The setup sheet of fixture ")[1].split()[0])
+    assert "was written to a.pdf." in shown.stdout and f"Fixture {rank} of {len(result)}" in text
+    assert sha256(Path("r.json").read_bytes()).hexdigest()[:12] in text
+    assert "Supports and the clamp on top" in text and "+14.000 top of the part" in text
+    # The same sheet, but for its day, comes from the result.
+    assert run("sheet", "r.json", rank, "-o", "b.pdf", "--supports", "--thickness", 14).exit_code == 0
+    assert words_in("b.pdf") == text
+
+
+def test_sheet_without_supports_or_result_file(run: Run, folder: Path) -> None:
+    """The sheet alone; its file may be a picture, and --json says that it was written."""
+    shown = run("design", "plate.json", *KIT, "--best", 2, "--sheet", "a.svg", "--json")
+    assert json.loads(shown.stdout)["sheet"] == "a.svg" and Path("a.svg").read_text().count("Fixture 1 of 2")
+    assert "Supports and the clamp" not in Path("a.svg").read_text()
+    assert "sheet" not in json.loads(run("design", "plate.json", *KIT, "--best", 2, "--json").stdout)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--sheet", "a.txt"), "--sheet a.txt names no setup sheet: let the name end in .pdf, .svg or .png."),
+        (("--sheet", "mine.pdf"), "mine.pdf was not written by workhold: give another name, or --force"),
+        (("--sheet", "none/a.pdf"), "none"),
+        (
+            ("--sheet", "x.pdf", "--out", "x.pdf"),
+            "--sheet and --out are both x.pdf: give them different names.",
+        ),
+    ],
+)
+def test_what_cannot_be_written_is_refused_before_the_search(
+    run: Run, folder: Path, searched: dict[str, Any], words: tuple[str, ...], sentence: str
+) -> None:
+    """Nothing is searched, and what was there stays."""
+    Path("mine.pdf").write_text("my own")
+    shown = run("design", "plate.json", *KIT, *words)
+    assert shown.exit_code == 2 and sentence in shown.stderr
+    assert searched["asked"] is None and Path("mine.pdf").read_text() == "my own"
+
+
+def test_no_fixture_leaves_no_file(run: Run, folder: Path) -> None:
+    """In words; a sheet of an earlier run stays as it was."""
+    shown = run("design", "plate.json", *KIT, "--avoid", "0,1,2", "--sheet", "a.pdf")
+    assert shown.exit_code == 0, shown.stderr
+    assert "As there is no fixture, a.pdf was not written." in shown.stdout and not Path("a.pdf").exists()
+    assert run("design", "plate.json", *KIT, "--avoid", "0,1,2", "--sheet", "a.pdf", "--json").exit_code == 0
+    assert not Path("a.pdf").exists()
+
+
+def test_sheet_of_the_second_side(run: Run, folder: Path) -> None:
+    """It says how the part is turned, what the first side cuts, and which faces both touch."""
+    shown = run("sheet", "op20.json", 1, "-o", "op20.pdf", "--first-setup", "op10.json", "--supports")
+    assert shown.exit_code == 0, shown.stderr
+    text = words_in("op20.pdf")
+    for wanted in (
+        "Second set-up of the same part",
+        "The part is turned over about the y axis of the first drawing, by half a turn.",
+        "Face 0 of this outline must not be touched: the first set-up cuts them (in the solid 3).",
+        "touched in both set-ups, in the first by its best fixture.",
+        "supports in",
+        "pegs above the plate 18.000 mm",
+    ):
+        assert wanted in text
+    assert "z of the file points up." in words_in_sheet(run, "op10.json")
+
+
+def words_in_sheet(run: Run, result: str) -> str:
+    """The words of the sheet of the first fixture."""
+    assert run("sheet", result, 1, "-o", "again.pdf").exit_code == 0
+    return words_in("again.pdf")
+
+
+def test_sheet_of_a_set_of_supports(run: Run, folder: Path) -> None:
+    """Of a file of supports, N is the set of three; loads and sizes are those of the file."""
+    load = ("--load", "force=90 at=30,20 z=4..18 axial=-30..60")
+    assert run("supports", "op10.json", 1, "--pad-radius", 3, *load, "--out", "s.json").exit_code == 0
+    listed = json.loads(Path("s.json").read_text())["triples"]
+    for number in (1, 3):
+        shown = run("sheet", "s.json", number, "-o", "s.pdf")
+        assert shown.exit_code == 0, shown.stderr
+        text, best = words_in("s.pdf"), listed[number - 1]["best"]
+        assert f"Supports {number} of {len(listed)}" in text and "round pads Ø 6 mm" in text
+        assert f"X {best['at'][0]:.3f}, Y {best['at'][1]:.3f} mm".replace("-", "−") in text
+        assert "load 1: 90 N at x 30.000, y 20.000 mm" in text
+    for words, sentence in (
+        (("s.json", len(listed) + 1), f"there is no set {len(listed) + 1} of supports"),
+        (("s.json", 1, "--thickness", 12), "s.json says what --thickness would"),
+        (("s.json", 1, "--load", "force=5 at=1,1"), "s.json has the loads"),
+    ):
+        shown = run("sheet", *words, "-o", "t.pdf")
+        assert shown.exit_code == 2 and sentence in shown.stderr and not Path("t.pdf").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("r.json", "-o", "a.pdf", "--supports"), "how thick the part is, is not known: give --thickness."),
+        (("op10.json", "-o", "a.dxf", "--supports"), "supports are of a sheet on paper, not of a.dxf"),
+        (("op10.json", "-o", "a.csv", "--first-setup", "op20.json"), "--first-setup is of a sheet on paper"),
+        (("op10.json", "-o", "a.pdf", "--support-height", "8"), "--support-height is of supports"),
+        (("r.json", "-o", "a.pdf", "--first-setup", "op10.json"), "plate has no faces of a solid"),
+        (("op10.json", "-o", "op20.json", "--first-setup", "op20.json"), "-o op20.json names no kind"),
+        (("op10.json", "-o", "a.pdf", "--supports", "--thickness", "0"), "--thickness"),
+    ],
+)
+def test_what_a_sheet_in_space_cannot_be(
+    run: Run, folder: Path, words: tuple[str, ...], sentence: str
+) -> None:
+    """One sentence, exit code 2, and no file."""
+    assert run("design", "plate.json", *KIT, "--best", 1, "--out", "r.json").exit_code == 0
+    shown = run("sheet", words[0], 1, *words[1:])
+    assert shown.exit_code == 2 and sentence in shown.stderr and shown.stderr.count("\n") == 1
+    assert not list(folder.glob("a.*"))
+
+
+def test_no_supports_are_said_to_be_none(run: Run, folder: Path) -> None:
+    """A part too small for three pads has a sheet without them from design, and a sentence from sheet."""
+    Path("small.json").write_text(
+        json.dumps(
+            {"name": "small", "units": "mm", "loops": [[[0, 0, 0], [90, 2, 0], [88, 11, 0], [1, 10, 0]]]}
+        )
+    )
+    words = ("design", "small.json", *KIT, "--best", 3, "--supports", "--thickness", 9)
+    shown = run(*words, "--sheet", "a.pdf", "--out", "r.json")
+    assert shown.exit_code == 0, shown.stderr
+    assert "no three supports of the usual sizes hold the part, so the sheet has none." in shown.stderr
+    assert "Supports and the clamp on top" not in words_in("a.pdf")
+    assert "+9.000 top of the part" in words_in("a.pdf")
+    shown = run("sheet", "r.json", 1, "-o", "b.pdf", "--supports", "--thickness", 9)
+    assert (
+        shown.exit_code == 2
+        and "under fixture 1 no three supports" in shown.stderr
+        and not Path("b.pdf").exists()
+    )

@@ -1,0 +1,218 @@
+"""Supports and the clamp on top on the sheet: where they stand, with what force, and what to take for them."""
+
+from __future__ import annotations
+
+from math import ceil, hypot
+
+import pytest
+from space_examples import HEIGHT, NAMES, SOLID, chosen, printed, result_of, sheet
+from svg_reading import by_class, texts, to_model
+
+from body_examples import BLOCK
+from workhold.drawing.scene import LengthUnit
+from workhold.drawing.supports_block import counting_words
+from workhold.drawing.two_sides import side_up_words
+from workhold.model.first_side import FirstSide
+from workhold.model.hardware import hardware_of
+from workhold.model.recounted import ChosenSupports
+from workhold.model.setup import part_zero
+from workhold.units import INCH, MILLIMETRE
+
+WITH = [name for name in NAMES if chosen(name) is not None]
+
+
+def test_there_are_supports_to_look_at() -> None:
+    """Nearly every kind of toolkit has some under the block."""
+    assert len(WITH) >= 6
+
+
+def supports_of_sheet(name: str, loaded: bool = False) -> ChosenSupports:
+    """The supports under the block in a toolkit."""
+    found = chosen(name, loaded)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("name", WITH)
+def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> None:
+    """Each sign is at the place of a hole, whose name stands on the plan; the clamp is where it presses."""
+    found, toolkit = supports_of_sheet(name), result_of(name).toolkit
+    page = sheet(result_of(name, False), thickness=HEIGHT, supports=found)[0]
+    (group,) = by_class(page, "supports")
+    pose, travel = found.recounted.fixture.pose, found.recounted.fixture.jaw_separation
+    places = [
+        to_model(group, float(one.attrib["cx"]), float(one.attrib["cy"])) for one in by_class(page, "support")
+    ]
+    (labels,) = by_class(page, "labels")
+    written = [element.text for element in labels.iter() if element.tag.endswith("text")]
+    for (hole, pad), place in zip(found.pads, places, strict=True):
+        there = toolkit.carrier(pad.carrier).place(pad.column, pad.row, travel)
+        assert place == pytest.approx(there, abs=2e-3) and hole in written
+    (tip,) = by_class(page, "top-clamp")
+    at = to_model(group, float(tip.attrib["cx"]), float(tip.attrib["cy"]))
+    assert at == pytest.approx(pose.apply(*found.clamp.at), abs=2e-3) and "clamp on top" in written
+    # The clamp is within the triangle that is drawn, its arm from the nearest side.
+    assert len(by_class(page, "support-triangle")) == 3
+    arms = []
+    for k in range(3):
+        (x0, y0), (x1, y1) = places[k], places[(k + 1) % 3]
+        arms.append(abs((x1 - x0) * (at[1] - y0) - (y1 - y0) * (at[0] - x0)) / hypot(x1 - x0, y1 - y0))
+    assert min(arms) == pytest.approx(found.clamp.arm, abs=5e-3)
+    # Pegs of the sheet stand in the same plates, whose holes all have names.
+    pegs = [(peg.x, peg.y) for peg in found.recounted.fixture.placed]
+    (own,) = by_class(page, "pegs")
+    drawn = [to_model(own, float(one.attrib["cx"]), float(one.attrib["cy"])) for one in own if one.get("cx")]
+    for place in drawn:
+        assert any(place == pytest.approx(peg, abs=2e-3) for peg in pegs)
+
+
+@pytest.mark.parametrize("unit", [MILLIMETRE, INCH])
+@pytest.mark.parametrize("zero", [None, "centre", "hole 1"])
+def test_clamp_is_told_from_the_zero_that_the_sheet_uses(zero: str | None, unit: object) -> None:
+    """X and Y in the PDF are the clamp's place less part zero, beside its place from hole A1."""
+    found, result = supports_of_sheet("plate"), result_of("plate", False)
+    words = printed(sheet(result, thickness=HEIGHT, supports=found, zero=zero, unit=unit))
+    assert unit in (MILLIMETRE, INCH)
+    lengths = LengthUnit.suiting(INCH if unit is INCH else MILLIMETRE, 10.0)
+    start = part_zero(BLOCK, zero).point
+    x, y = (place - origin for place, origin in zip(found.clamp.at, start, strict=True))
+    assert f"clamp presses at X {lengths.number(x)}, Y {lengths.words(y)}" in words
+    there = found.recounted.fixture.pose.apply(*found.clamp.at)
+    assert f"x {lengths.number(float(there[0]))}, y {lengths.words(float(there[1]))}" in words
+    assert f"press the part down at X {lengths.number(x)}, Y {lengths.number(y)}" in words
+    assert f"tipping arm {lengths.words(found.clamp.arm)}" in words
+
+
+@pytest.mark.parametrize("name", WITH)
+def test_clamp_is_drawn_where_it_needs_the_least_force(name: str) -> None:
+    """Under loads that is not where its arm is the longest."""
+    found = chosen(name, True)
+    if found is None:
+        pytest.skip("no three hold the part")
+    page = sheet(result_of(name, False, True), thickness=HEIGHT, supports=found)[0]
+    (group,), (tip,) = by_class(page, "supports"), by_class(page, "top-clamp")
+    at = to_model(group, float(tip.attrib["cx"]), float(tip.attrib["cy"]))
+    assert at == pytest.approx(found.recounted.fixture.pose.apply(*found.triple.best.at), abs=2e-3)
+
+
+@pytest.mark.parametrize("name", WITH)
+def test_forces_are_those_of_the_loads(name: str) -> None:
+    """Clamp force wanted, largest support force and tipping moment stand in the PDF, rounded to the safe side."""
+    found = chosen(name, True)
+    if found is None:
+        pytest.skip("no three hold the part")
+    clamp = found.clamp
+    assert clamp.support_force is not None and clamp.clamp_needed > 0
+    words = printed(sheet(result_of(name, False, True), thickness=HEIGHT, supports=found))
+    needed = ceil(clamp.clamp_needed - 1e-6)
+    assert f"clamp force wanted at least {needed} N" in words
+    assert f"largest force on a support {ceil(clamp.support_force - 1e-6)} N" in words
+    assert (
+        f"With that force the clamp alone holds up to {clamp.clamp_needed * clamp.arm:.0f} N mm of tipping."
+        in words
+    )
+    assert f"mm with at least {needed} N, inside the triangle" in words
+
+
+def test_without_loads_the_moment_is_told_for_a_round_force() -> None:
+    """100 N times the arm; whether the part stands by itself is said, and how much the side clamp lifts."""
+    found = supports_of_sheet("plate")
+    pages = sheet(result_of("plate", False), thickness=HEIGHT, supports=found, jaw_force=500.0)
+    words = printed(pages)
+    assert (
+        f"With each 100 N the clamp alone holds up to {100 * found.clamp.arm:.0f} N mm of tipping." in words
+    )
+    if found.clamp.lift > 0:
+        assert f"clamp force wanted at least {ceil(500 * found.clamp.lift - 1e-6)} N" in words
+    standing = found.triple.standing
+    sentence = f"its area is {standing:.3f} mm inside" if standing > 0 else "Unclamped it does not stand"
+    assert sentence in words
+    inches = printed(sheet(result_of("plate", False), thickness=HEIGHT, supports=found, unit=INCH))
+    assert (
+        f"With each 100 lbf the clamp alone holds up to {100 * found.clamp.arm / 25.4:.3g} lbf in" in inches
+    )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_hardware_is_counted(name: str) -> None:
+    """Pegs, clamps, bolts, supports and walls of the set-up, each with its size, as the PDF has them."""
+    result, found = result_of(name, False), chosen(name)
+    toolkit, pegs = result.toolkit, result[0].placed
+    size = None if found is None else (4.0, 7.0)
+    items = hardware_of(result[0], toolkit, 31.0, size, None if found is None else 5.0)
+    tips = [peg for peg in pegs if toolkit.carrier(peg.carrier).on is not None]
+    assert sum(one.count for one in items if one.length == 31.0) == len(pegs) - len(tips)
+    assert (
+        sum(one.count for one in items if one.note) == len(tips) + (found is not None) + (name == "flats") * 4
+    )
+    radii = {toolkit.carrier(peg.carrier).peg_radius for peg in pegs}
+    sizes = {one.diameter for one in items if one.length == 31.0 or one.name in ("clamp", "clamps")}
+    assert sizes == {2 * radius for radius in radii}
+    assert sum(one.count for one in items if one.name.startswith("bolt")) == len(tips)
+    assert sum(one.count for one in items if one.name == "supports") == (3 if found else 0)
+    assert any(one.name in ("fence", "flat jaw") for one in items) == (name in ("fence", "flat-jaw"))
+    words = printed(sheet(result, thickness=HEIGHT, peg_length=31.0, supports=found, support_height=7.0))
+    for one in items:
+        diameter = "–" if one.diameter is None else f"{one.diameter:.6g}"
+        length = "–" if one.length is None else f"{one.length:.3f}"
+        assert f"{one.count} {one.name} {diameter} {length}" in words
+
+
+def test_holes_with_other_names_are_said_to_be_so() -> None:
+    """Where jaws stand nearer for supports between the pegs, the sheet has the new opening and says by how much."""
+    found = supports_of_sheet("vise")
+    listed, new = found.supports.fixture, found.recounted.fixture
+    assert new.jaw_separation != listed.jaw_separation
+    words = printed(sheet(result_of("vise", False), thickness=HEIGHT, supports=found))
+    less = listed.jaw_separation - new.jaw_separation
+    assert f"the opening is {less:.3f} mm narrower than the fixture was listed with" in words
+    assert f"S = {new.jaw_separation:.3f} mm" in words
+    assert f"S = {listed.jaw_separation:.3f} mm" not in words
+    for peg in new.pegs:
+        assert (
+            f"{peg.hole} {peg.carrier} {peg.touched} {peg.x:.3f} {peg.y:.3f}".replace("-0.000", "0.000")
+            in words
+        )
+    assert counting_words
+
+
+FIRST = FirstSide(
+    "-z", "z", "turned over about the y axis of the first drawing, by half a turn", (0, 3), (4, 7), (2,)
+)
+
+
+def test_second_side_says_what_the_first_did() -> None:
+    """Which side is up, how it was turned, which faces are cut and which are touched in both."""
+    words = printed(sheet(result_of("plate"), first_side=FIRST))
+    for wanted in (
+        "Second set-up of the same part",
+        "Second side up: −z of the file points up, z did before.",
+        "The part is turned over about the y axis of the first drawing, by half a turn.",
+        "Faces 0 and 3 of this outline must not be touched: the first set-up cuts them (in the solid 4 and 7).",
+        "Face 2 of the solid is touched in both set-ups",
+    ):
+        assert wanted in words
+    assert "−z of the file points up." in printed(sheet(result_of("plate")))
+    assert SOLID.solid is not None
+    lonely = FirstSide("z", "z", "the same side up", (), (), ())
+    assert side_up_words(SOLID.solid, lonely) == [
+        "The same side is up as in the first set-up: −z of the file.",
+        "The first set-up names no face that it cuts.",
+        "No face is touched in both set-ups: what one locates on, the other does not.",
+    ]
+    out_of_reach = FirstSide("-z", "z", "turned", (), (5,), (1, 2))
+    assert side_up_words(SOLID.solid, out_of_reach)[1:] == [
+        "What the first set-up cuts (faces 5 of the solid) is not in reach of the pegs here.",
+        "Faces 1 and 2 of the solid are touched in both set-ups, in the first by its best fixture.",
+    ]
+
+
+def test_signs_are_explained_where_they_stand() -> None:
+    """The legend has supports and the clamp on top only with them."""
+    result = result_of("plate", False)
+    bare = [word for page in sheet(result) for word in texts(page)]
+    full = [
+        word for page in sheet(result, thickness=HEIGHT, supports=chosen("plate")) for word in texts(page)
+    ]
+    for sign in ("support below the part", "clamp on top, presses down"):
+        assert sign not in bare and sign in full

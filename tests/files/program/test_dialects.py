@@ -1,0 +1,66 @@
+"""Programs in the manner of posts and machinists: what is read of each stands here, reckoned by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from program_examples import PROGRAMS
+
+from workhold.errors import InputError
+from workhold.model.program import Program
+from workhold.model.program_figures import tool_figures
+
+# Moves, lines left out, and the cutting length of each tool in mm.
+QUARTER = np.pi / 2 * 6
+HELIX = 4 * np.hypot(np.pi * 5, 1.5)
+READ = {
+    "haas.nc": (28, (8, 32, 48, 49), {1: 4 + 13 + 40 + 60 + 40 + 60 + 5 * QUARTER, 3: 4 * 19}),
+    "fanuc.nc": (24, (7, 24, 38, 39), {2: 3 + HELIX + 20 + 1.5 * np.pi * 5, 5: 4 * 22}),
+    "grbl.nc": (7, (6,), {1: 2 + 3 + 2 * np.pi + 19.05}),
+    "freecad_linuxcnc.ngc": (13, (), {17: 5 + 2 * np.hypot(np.pi * 3, 0.5) + 2 * 7}),
+    "freecad_grbl.ngc": (8, (), {3: 4.6 + 2 * 1.5 * np.pi + 57 + 23}),
+    "linuxcnc.ngc": (
+        9,
+        (),
+        {1: 25.4 * (0.225 + 1.5 + np.pi + np.hypot(np.pi / 2, 0.125) + 0.5)},
+    ),
+    "mach3.tap": (14, (), {4: 12 + 2 * 5 * np.pi + 20 + 2 * 6}),
+    "increments.nc": (26, (), {7: 5 * 12 + 5 + 5 * np.pi / 2 + 5 * 1.5 * np.pi}),
+}
+
+
+@pytest.mark.parametrize("name", READ)
+def test_a_program_is_read(name: str) -> None:
+    """Every line of it."""
+    tools = {3: 6.0} if name == "freecad_grbl.ngc" else dict.fromkeys((1, 4, 7, 17), 6.0)
+    given = None if name in ("haas.nc", "fanuc.nc", "grbl.nc") else tools
+    program = Program.read(PROGRAMS / name, given, z_zero=0)
+    moves, skipped, cutting = READ[name]
+    assert program.skipped == skipped
+    assert {one.tool: one.cutting for one in tool_figures(program)} == pytest.approx(cutting)
+    assert len(program.moves) == moves
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("heidenhain.h", "line 1: this is Heidenhain's plain language"),
+        ("siemens.mpf", "line 2: .*tools as numbers"),
+    ],
+)
+def test_other_languages_are_refused_plainly(name: str, words: str) -> None:
+    """With what to post instead."""
+    with pytest.raises(InputError, match=words):
+        Program.read(PROGRAMS / name, {1: 6.0}, z_zero=0)
+
+
+def test_comments_in_a_western_encoding_are_passed_over(tmp_path: Path) -> None:
+    """A program from a Windows computer, with a byte order mark or without."""
+    text = (PROGRAMS / "haas.nc").read_text()
+    plain = Program.read(PROGRAMS / "haas.nc", z_zero=0)
+    for encoding in ("cp1252", "utf-8", "utf-8-sig"):
+        path = tmp_path / "haas.nc"
+        path.write_bytes(text.replace("Contour1", "Außenkontur Ø6").replace("\n", "\r\n").encode(encoding))
+        assert Program.read(path, z_zero=0).pieces == plain.pieces

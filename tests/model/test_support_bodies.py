@@ -1,0 +1,119 @@
+"""Supports and the clamp on top as bodies: pads between plate and part, in holes that the plates have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from attrs import evolve
+
+from supports.random_supports import TOOLKITS
+from workhold import Vise, Workpiece, design
+from workhold.errors import InputError
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Arc
+from workhold.model.bodies import BodyKind, BodySizes, FixtureBody
+from workhold.model.support_bodies import bodies_with_supports, triple_of_rank, written_out
+from workhold.model.support_triples import Supports
+
+KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
+
+
+PLATE = Workpiece.from_loops("plate", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
+
+
+def found_in(toolkit: Toolkit, part: Workpiece = KITE) -> Supports:
+    """The supports of the best fixture that has some."""
+    every = design(part, toolkit, best=10).supports(15, each=40, pad_radius=3, tip_radius=4, inside=3)
+    return next(one for one in every if one.triples)
+
+
+CASES = [*((KITE, toolkit) for toolkit in TOOLKITS), (PLATE, Vise(pitch=20, columns=5, peg_radius=3))]
+
+
+def circles(body: FixtureBody) -> list[tuple[tuple[float, float], float, float, float]]:
+    """Centre, radius and heights of the round slabs of a body."""
+    out = []
+    for slab in body.slabs:
+        (one,) = slab.outer
+        assert isinstance(one, Arc)
+        out.append((one.center, one.radius, slab.low, slab.high))
+    return out
+
+
+@pytest.mark.parametrize(
+    ("part", "toolkit"), CASES, ids=lambda one: getattr(one, "kind", one.__class__.__name__)
+)
+def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolkit: Toolkit) -> None:
+    """Written out, all holes are on the plates and not blocked, and all stays where it was on the part."""
+    found = found_in(toolkit, part)
+    if part is PLATE:
+        assert {triple.travel for triple in found.triples} - {found.fixture.jaw_separation}
+    for triple in found.triples:
+        fixture, pads = written_out(found, triple)
+        carriers = {one.name: one for one in toolkit.carriers}
+        for pad, before in zip(pads, triple.supports, strict=True):
+            carrier = carriers[pad.carrier]
+            place = carrier.place(pad.column, pad.row, fixture.jaw_separation)
+            assert place == pytest.approx(fixture.pose.apply(pad.x, pad.y), abs=1e-9)
+            assert (pad.x, pad.y) == (before.x, before.y)
+        for peg, old in zip(fixture.pegs, found.fixture.pegs, strict=True):
+            assert fixture.pose.inverse.apply(peg.x, peg.y) == pytest.approx(
+                found.fixture.pose.inverse.apply(old.x, old.y), abs=1e-9
+            )
+            if len(toolkit.plates) == 2:
+                place = carriers[peg.carrier].place(peg.column, peg.row, fixture.jaw_separation)
+                assert place == pytest.approx((peg.x, peg.y), abs=1e-9)
+        if len(toolkit.plates) == 2:
+            assert fixture.jaw_separation == triple.travel
+            for one in (*fixture.pegs, *pads):
+                carrier = carriers[one.carrier]
+                assert 0 <= one.column < carrier.column_count and one.row >= 0
+                assert carrier.rows is None or one.row < carrier.rows
+                assert not carrier.is_blocked(one.column, one.row)
+
+
+def test_heights_and_radii_of_the_bodies() -> None:
+    """The part lies at 0 on pads; plates lie below, their holes around the pins; the screw presses on top."""
+    found = found_in(Vise(pitch=15, columns=4, peg_radius=2.5))
+    triple = found.triples[0]
+    fixture, pads = written_out(found, triple)
+    sizes = BodySizes.of(KITE, 15, plate_thickness=8, support_height=5)
+    bodies = bodies_with_supports(found, triple, sizes)
+    kinds = {kind: [body for body in bodies if body.kind is kind] for kind in BodyKind}
+    assert [(slab.low, slab.high) for slab in kinds[BodyKind.PART][0].slabs] == [(0, 15)]
+    assert {(slab.low, slab.high) for body in kinds[BodyKind.PLATE] for slab in body.slabs} == {(-13, -5)}
+    assert {(slab.low, slab.high) for body in kinds[BodyKind.PEG] for slab in body.slabs} == {(-13, 15)}
+    holes = [
+        hole[0].center
+        for body in kinds[BodyKind.PLATE]
+        for hole in body.slabs[0].holes
+        if isinstance(hole[0], Arc)
+    ]
+    for pad, body in zip(pads, kinds[BodyKind.SUPPORT], strict=True):
+        pin, cap = circles(body)
+        center = pytest.approx(fixture.pose.apply(pad.x, pad.y))
+        assert pin == (center, 2.5, -13, -5) and cap == (center, 3.0, -5, 0)
+        assert body.name == f"support {pad.hole}" and any(pytest.approx(hole) == pin[0] for hole in holes)
+        assert (body.opens is None) == (pad.carrier == "left")
+    (clamp,) = kinds[BodyKind.CLAMP]
+    at = pytest.approx(fixture.pose.apply(*triple.clamp_at))
+    tip, spindle, knob = circles(clamp)
+    assert tip[:3] == (at, 4.0, 15) and tip[3] == spindle[2] and spindle[3] == knob[2]
+
+
+def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path) -> None:
+    """One sentence each; a GLB file holds the supports by name."""
+    found = found_in(TOOLKITS[0])
+    with pytest.raises(InputError, match="pads of radius 0 have no body"):
+        bodies_with_supports(evolve(found, request=evolve(found.request, pad_radius=0)), found.triples[0])
+    with pytest.raises(InputError, match="there is no set 41 of supports: 40 are listed"):
+        triple_of_rank(found, 41)
+    with pytest.raises(InputError, match="support height -1 is not a length"):
+        BodySizes.of(KITE, 15, support_height=-1)
+    path = tmp_path / "kite.glb"
+    found.fixture.save_glb(path, supports=found, best=2)
+    _, pads = written_out(found, found.triples[1])
+    assert all(f"support {pad.hole}".encode() in path.read_bytes() for pad in pads)
+    found.fixture.save_glb(path)
+    assert b"support" not in path.read_bytes()

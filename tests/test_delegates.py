@@ -1,0 +1,92 @@
+"""Methods of the model that end in layers above it work whatever was imported first, and cost nothing before."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import workhold
+from workhold import delegates
+
+# Where methods end in delegates.
+ROOMS = [Path(delegates.__file__).parent / room for room in ("model", "fixels")]
+MAKING = """
+import workhold
+from workhold.files.result.reader import read_result
+from workhold.model.requirements import Tolerance
+from workhold.fixels.vise import Vise
+
+result = read_result("wedge.json")
+"""
+# What each method writes or returns, and a word or a number that shows that it did.
+METHODS = {
+    "Workpiece.draw": "print('<svg' in result.workpiece.draw())",
+    "Fixture.draw": "print('<svg' in result[0].draw('f.svg'))",
+    "Fixture.save_sheet": "result[0].save_sheet('sheet.pdf'); print(open('sheet.pdf', 'rb').read(4) == b'%PDF')",
+    "Result.draw": "print('<svg' in result.draw())",
+    "Result.to_pandas": "print(len(result.to_pandas()) == len(result))",
+    "Result.to_arrow": "print(result.to_arrow().num_rows == len(result))",
+    "Toolkit.preset": "print(Vise.preset('plate-20mm', rows=4).rows == 4)",
+    "Toolkit.presets": "print('plate-20mm' in Vise.presets())",
+    "Tolerance.preset": "print(Tolerance.preset('plate-20mm') != Tolerance())",
+    "save": "workhold.save(result, 'r.csv'); print(len(open('r.csv').readlines()) > len(result))",
+}
+# Modules of rooms below and above the model, and of the model; each costs a process that imports everything.
+ORDERS = (
+    "workhold",
+    "workhold.model.result, workhold.model.workpiece",
+    "workhold.presenting.papers",
+    "workhold.kernels",
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a result."""
+    made = tmp_path_factory.mktemp("delegates")
+    wedge = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+    workhold.save(
+        workhold.design(wedge, workhold.Vise(pitch=15, columns=1, peg_radius=2), best=2), made / "wedge.json"
+    )
+    return made
+
+
+@pytest.mark.parametrize("first", ORDERS)
+def test_every_method_works_whatever_was_imported_first(first: str, folder: Path) -> None:
+    """Of a process that imports some modules first, each method answers."""
+    code = "\n".join([f"import {first}", MAKING, *METHODS.values()])
+    outcome = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=folder, check=False
+    )
+    assert outcome.stderr == ""
+    assert dict(zip(METHODS, outcome.stdout.split(), strict=True)) == dict.fromkeys(METHODS, "True")
+
+
+def test_the_package_alone_imports_next_to_nothing() -> None:
+    """Of its own modules only the version and the register of delegates, and no library."""
+    code = "import sys; before = set(sys.modules); import workhold; print(*sorted(set(sys.modules) - before))"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
+    own = [name for name in loaded if name.partition(".")[0] == "workhold"]
+    assert own == ["workhold", "workhold.delegates", "workhold.version"]
+    assert {name.partition(".")[0] for name in loaded} <= {"workhold", *sys.stdlib_module_names}
+
+
+def test_what_the_model_asks_for_is_what_is_handed_over() -> None:
+    """Each name that a method asks for is found, no other is handed over, and no module of the model imports by name."""
+    calls = [
+        node
+        for room in ROOMS
+        for path in room.glob("*.py")
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    ]
+    asked = {ast.literal_eval(call.args[0]) for call in calls if getattr(call.func, "id", "") == "delegate"}
+    assert asked == set(workhold.DELEGATES) == set(delegates.IMPORTERS)
+    assert all(callable(delegates.delegate(name)) for name in asked)
+    assert "import_module" not in {getattr(call.func, "id", "") for call in calls}
