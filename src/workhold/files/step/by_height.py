@@ -50,6 +50,8 @@ __all__ = [
 
 # Heights of the pegs that the table looks at, at most.
 MOST_ROWS = 60
+# Edges of a solid times heights that the table looks at, at most: of parts with many faces it has fewer rows.
+MOST_EDGES = 20_000
 
 
 @frozen
@@ -179,7 +181,7 @@ def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing 
     """
     chosen = chosen_solid(solids, view.part_number)
     try:
-        drawing = guarded(lambda: drawn(chosen.shape, view), ValueError)
+        drawing = guarded(lambda: drawn(chosen.shape, view, is_advised=False), ValueError)
     except InputError as error:
         silhouette = read_solid(solids, view.axis, None, view.part_number, None)
         if guarded(lambda: is_prism(standing(along(chosen.shape, axis_named(view.axis))))):
@@ -249,8 +251,12 @@ def shapes_usual(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Dra
     return usual_drawing(solids, view) if solids else None
 
 
-def drawn(shape: Any, view: HeightView) -> HeightDrawing:
+def drawn(shape: Any, view: HeightView, *, is_advised: bool = True) -> HeightDrawing:
     """The outline of a solid, with remarks on what may be touched and on a height that offers more.
+
+    Parameters
+    ----------
+    is_advised : whether a refusal names a height that helps, for which many are looked at.
 
     Raises
     ------
@@ -264,7 +270,8 @@ def drawn(shape: Any, view: HeightView) -> HeightDrawing:
     try:
         outline = solid.outline(view.peg_height, room, least)
     except InputError as error:
-        raise InputError(f"along {axis}: {error}; {advice(solid, room, least)}.") from error
+        helps = f"; {advice(solid, room, least)}" if is_advised else ""
+        raise InputError(f"along {axis}: {error}{helps}.") from error
     loops = [vertices_of(loop) for loop in outline.loops]
     areas = [signed_area(loop_segments(loop)) for loop in loops]
     order = sorted(range(len(loops)), key=lambda k: -areas[k])
@@ -311,8 +318,9 @@ def height_table(solid: StandingSolid, room: float, least: float) -> list[Height
     levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
     levels |= {round(z - room, 6) for z in levels} | {round(solid.height, 6)}
     heights = sorted(z for z in levels if least < z <= solid.height + SAME_HEIGHT)
-    if len(heights) > MOST_ROWS:
-        heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, MOST_ROWS)]
+    most = min(MOST_ROWS, max(2, MOST_EDGES // len(solid.edges)))
+    if len(heights) > most:
+        heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
     rows: list[HeightRow] = []
     for low, high in pairwise([0.0, *heights]):
         try:
