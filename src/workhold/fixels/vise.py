@@ -118,8 +118,13 @@ class Vise(Toolkit):
     def __attrs_post_init__(self) -> None:
         settle(self, noun=NOUN, peg="peg")
 
-    @cached_property
+    @property
     def carriers(self) -> tuple[Carrier, Carrier]:
+        """The jaws, which are made once."""
+        return self.jaws
+
+    @cached_property
+    def jaws(self) -> tuple[Carrier, Carrier]:
         """The left jaw, and the right jaw, whose travel is the jaw separation."""
         left = lattice_carrier(
             self,
