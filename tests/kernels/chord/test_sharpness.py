@@ -27,6 +27,7 @@ from rounding import ROUNDED, Rounded, error_of
 from sharpness import Constant, changed, check_sharpness
 from strategies import random_row
 from workhold.conventions import EXACT
+from workhold.kernels.base.feature import is_shallow
 from workhold.kernels.chord import coincidences, evaluation, intervals
 from workhold.kernels.chord.coincidences import NONE, are_concentric, coincidence
 from workhold.kernels.chord.columns import BACKWARD_ERROR, COINCIDENCE, KAPPA, MIDDLE
@@ -291,6 +292,7 @@ def of_arcs(form: Kernel) -> Kernel:
     names = {
         "add_event": changed(intervals.add_event),
         "are_one_chord_apart": intervals.are_one_chord_apart.py_func,
+        "touching_side": changed(coincidences.touching_side, is_shallow=is_shallow.py_func),
     }
     return changed(
         intervals.add_arc_tangencies, add_gap=changed(form, **names, **ROUNDED), **names, **ROUNDED

@@ -266,18 +266,21 @@ def test_the_second_side_keeps_off_what_the_first_cuts(walk: Walk, block: str) -
 
 
 def test_a_side_that_cannot_be_held_is_told(walk: Walk, tmp_path: Path) -> None:
-    """Where the outline of the other side falls apart the first one stays, with a sentence; another height helps."""
-    page = walk.page
-    feet = fused(box(90, 60, 10), box(30, 60, 15, (0, 0, 10)), box(30, 60, 15, (60, 0, 10)))
-    held(walk, str(write_step(tmp_path / "feet.step", feet)))
+    """Where nothing of the other side is upright the first one stays, with a sentence; another height helps."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    page, upward = walk.page, gp_Ax2(gp_Pnt(45, 30, 10), gp_Dir(0, 0, 1))
+    capped = fused(box(90, 60, 10), BRepPrimAPI_MakeCone(upward, 25.0, 10.0, 20.0).Shape())
+    held(walk, str(write_step(tmp_path / "capped.step", capped)))
     page.click("#second-side")
-    walk.seen("#turn-trouble:has-text('separate pieces')")
+    walk.seen("#turn-trouble:has-text('no upright face')")
     assert state(walk)["sides"] is None and state(walk)["part"]["solid"]["axis"] == "z"
-    page.fill("#turn-height", "20")
+    page.fill("#turn-height", "30")
     page.click("#second-side")
     walk.until("state.sides?.shown === 1")
     walk.searched()
-    assert state(walk)["part"]["solid"]["peg_height"] == 20
+    assert state(walk)["part"]["solid"]["peg_height"] == 30
 
 
 def test_another_file_has_no_second_side(walk: Walk, block: str) -> None:
