@@ -179,7 +179,7 @@ def test_supports_lift_everything() -> None:
         "1 clamp on top 5 –",
     ):
         assert wanted in words
-    assert f"{lift.pads[0][0]} " in words
+    assert f"{lift.pads[0].hole} " in words
     with pytest.raises(InputError, match="pegs 6 mm high end below the part"):
         sheet(result_of("plate", False), thickness=HEIGHT, peg_height=6.0, supports=lift, support_height=6.0)
 

@@ -45,9 +45,9 @@ def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> No
     ]
     (labels,) = by_class(page, "labels")
     written = [element.text for element in labels.iter() if element.tag.endswith("text")]
-    for (hole, pad), place in zip(found.pads, places, strict=True):
+    for pad, place in zip(found.pads, places, strict=True):
         there = toolkit.carrier(pad.carrier).place(pad.column, pad.row, travel)
-        assert place == pytest.approx(there, abs=2e-3) and hole in written
+        assert place == pytest.approx(there, abs=2e-3) and pad.hole in written
     (tip,) = by_class(page, "top-clamp")
     at = to_model(group, float(tip.attrib["cx"]), float(tip.attrib["cy"]))
     assert at == pytest.approx(pose.apply(*found.clamp.at), abs=2e-3) and "clamp on top" in written

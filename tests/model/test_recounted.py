@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import pytest
 from attrs import evolve
 from plate_examples import on_plate
@@ -12,7 +14,7 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
-from workhold.model.recounted import ChosenSupports, Recounted, recounted
+from workhold.model.recounted import FARTHEST, ChosenSupports, Recounted, moves, recounted
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import SupportPad, Triple
 from workhold.supports.listing import supports_of
@@ -115,7 +117,7 @@ def test_sets_that_there_are_not_are_refused() -> None:
     found = supports_of(result[0], result.query, REQUEST, best=2)
     assert ChosenSupports.of(found, 2).triple == found.triples[1]
     for number in (0, 3):
-        with pytest.raises(InputError, match=f"no set {number} of supports: there is sets 1 to 2"):
+        with pytest.raises(InputError, match=f"there is no set {number} of supports: 2 are listed"):
             ChosenSupports.of(found, number)
     with pytest.raises(InputError, match="there is no set of three"):
         ChosenSupports.of(evolve(found, triples=()))
@@ -126,3 +128,10 @@ def test_sets_that_there_are_not_are_refused() -> None:
     with pytest.raises(InputError, match="have no holes"):
         recounted(result[0], evolve(toolkit, columns=5, rows=5), far)
     assert isinstance(found.query, Query)
+
+
+def test_moves_are_those_with_the_fewest_steps_first() -> None:
+    """All columns and rows up to the farthest, in order of steps, and of columns and rows among equal ones."""
+    ways = range(-FARTHEST, FARTHEST + 1)
+    every = sorted(product(ways, ways), key=lambda move: (abs(move[0]) + abs(move[1]), move))
+    assert list(moves(CASES["endless plate"])) == every

@@ -12,9 +12,10 @@ from workhold import Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
-from workhold.model.bodies import BodyKind, BodySizes, FixtureBody
-from workhold.model.support_bodies import bodies_with_supports, triple_of_rank, written_out
-from workhold.model.support_triples import Supports
+from workhold.model.bodies import SUPPORT_HEIGHT, BodyKind, BodySizes, FixtureBody
+from workhold.model.recounted import ChosenSupports, Recounted, recounted
+from workhold.model.support_bodies import bodies_with_supports, supported_sizes
+from workhold.model.support_triples import Supports, Triple
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
 
@@ -26,6 +27,11 @@ def found_in(toolkit: Toolkit, part: Workpiece = KITE) -> Supports:
     """The supports of the best fixture that has some."""
     every = design(part, toolkit, best=10).supports(15, each=40, pad_radius=3, tip_radius=4, inside=3)
     return next(one for one in every if one.triples)
+
+
+def written_out(found: Supports, triple: Triple) -> Recounted:
+    """A set in holes that the plates have."""
+    return recounted(found.fixture, found.query.toolkit, triple)
 
 
 CASES = [*((KITE, toolkit) for toolkit in TOOLKITS), (PLATE, Vise(pitch=20, columns=5, peg_radius=3))]
@@ -50,7 +56,8 @@ def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolk
     if part is PLATE:
         assert {triple.travel for triple in found.triples} - {found.fixture.jaw_separation}
     for triple in found.triples:
-        fixture, pads = written_out(found, triple)
+        built = written_out(found, triple)
+        fixture, pads = built.fixture, built.supports
         carriers = {one.name: one for one in toolkit.carriers}
         for pad, before in zip(pads, triple.supports, strict=True):
             carrier = carriers[pad.carrier]
@@ -76,10 +83,10 @@ def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolk
 def test_heights_and_radii_of_the_bodies() -> None:
     """The part lies at 0 on pads; plates lie below, their holes around the pins; the screw presses on top."""
     found = found_in(Vise(pitch=15, columns=4, peg_radius=2.5))
-    triple = found.triples[0]
-    fixture, pads = written_out(found, triple)
+    chosen = ChosenSupports.of(found)
+    triple, fixture, pads = chosen.triple, chosen.recounted.fixture, chosen.pads
     sizes = BodySizes.of(KITE, 15, plate_thickness=8, support_height=5)
-    bodies = bodies_with_supports(found, triple, sizes)
+    bodies = bodies_with_supports(chosen, sizes)
     kinds = {kind: [body for body in bodies if body.kind is kind] for kind in BodyKind}
     assert [(slab.low, slab.high) for slab in kinds[BodyKind.PART][0].slabs] == [(0, 15)]
     assert {(slab.low, slab.high) for body in kinds[BodyKind.PLATE] for slab in body.slabs} == {(-13, -5)}
@@ -97,7 +104,7 @@ def test_heights_and_radii_of_the_bodies() -> None:
         assert body.name == f"support {pad.hole}" and any(pytest.approx(hole) == pin[0] for hole in holes)
         assert (body.opens is None) == (pad.carrier == "left")
     (clamp,) = kinds[BodyKind.CLAMP]
-    at = pytest.approx(fixture.pose.apply(*triple.clamp_at))
+    at = pytest.approx(fixture.pose.apply(*triple.clamp.at))
     tip, spindle, knob = circles(clamp)
     assert tip[:3] == (at, 4.0, 15) and tip[3] == spindle[2] and spindle[3] == knob[2]
 
@@ -106,14 +113,22 @@ def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path
     """One sentence each; a GLB file holds the supports by name."""
     found = found_in(TOOLKITS[0])
     with pytest.raises(InputError, match="pads of radius 0 have no body"):
-        bodies_with_supports(evolve(found, request=evolve(found.request, pad_radius=0)), found.triples[0])
+        bodies_with_supports(ChosenSupports.of(evolve(found, request=evolve(found.request, pad_radius=0))))
     with pytest.raises(InputError, match="there is no set 41 of supports: 40 are listed"):
-        triple_of_rank(found, 41)
+        ChosenSupports.of(found, 41)
     with pytest.raises(InputError, match="support height -1 is not a length"):
         BodySizes.of(KITE, 15, support_height=-1)
     path = tmp_path / "kite.glb"
     found.fixture.save_glb(path, supports=found, best=2)
-    _, pads = written_out(found, found.triples[1])
+    pads = ChosenSupports.of(found, 2).pads
     assert all(f"support {pad.hole}".encode() in path.read_bytes() for pad in pads)
     found.fixture.save_glb(path)
     assert b"support" not in path.read_bytes()
+
+
+def test_pegs_are_as_high_above_the_plates_as_is_asked() -> None:
+    """Pegs count from the plates, which lie below the part by the height of the supports."""
+    found = found_in(TOOLKITS[0])
+    sizes = supported_sizes(found, peg_height=17.0, support_height=6.0)
+    assert (sizes.top, sizes.floor, sizes.thickness) == (11.0, -6.0, 15.0)
+    assert supported_sizes(found).floor == -SUPPORT_HEIGHT

@@ -151,7 +151,7 @@ def test_chosen_supports_are_bodies(server: RunningServer, place: str) -> None:
         for body, at in zip(pads, one["pads"], strict=True):
             assert middle(body) - moved == pytest.approx(np.array(at), abs=0.05)
             assert body.heights == pytest.approx((-20, 0), abs=1e-4)
-        [clamp] = [body for body in bodies if body.name == "clamp from above"]
+        [clamp] = [body for body in bodies if body.name == "clamp on top"]
         assert middle(clamp) - moved == pytest.approx(np.array(one["at"]), abs=0.05)
         assert (part.heights[0], clamp.heights[0]) == pytest.approx((0, 12), abs=1e-4)
         [plate] = [body for body in bodies if body.kind == "plate"]

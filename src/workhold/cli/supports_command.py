@@ -166,20 +166,18 @@ def write_standing(found: Supports, glb: str | None, step: str | None, raised: f
     InputError
         When there is no set.
     """
-    from workhold.model.bodies import BodySizes
-    from workhold.model.support_bodies import SUPPORT_HEIGHT, triple_of_rank
+    from workhold.model.recounted import ChosenSupports
+    from workhold.model.support_bodies import supported_sizes
 
-    high = SUPPORT_HEIGHT if raised is None else raised
-    sizes = BodySizes.of(found.query.workpiece, found.request.thickness, support_height=high)
-    first = triple_of_rank(found, 1)
+    first, sizes = ChosenSupports.of(found), supported_sizes(found, support_height=raised)
     if glb is not None:
         from workhold.files.glb.writer import supports_glb
 
-        write_bytes(glb, supports_glb(found, first, sizes))
+        write_bytes(glb, supports_glb(first, sizes))
     if step is not None:
         from workhold.files.step.writer import supports_step
 
-        write_bytes(step, supports_step(found, first, sizes))
+        write_bytes(step, supports_step(first, sizes))
 
 
 def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
@@ -325,13 +323,11 @@ def row_of(triple: Triple, unit: Unit, with_loads: bool) -> list[str]:
     forces = []
     if with_loads:
         forces = [f"{clamp.clamp_needed:.0f}", f"{clamp.support_force or 0.0:.0f}"]
-    at = clamp.at if with_loads or triple.given else triple.arm_at
-    arm = clamp.arm if with_loads or triple.given else triple.arm
     return [
         " ".join(pad.hole for pad in triple.supports),
-        f"({unit.number(at[0])}, {unit.number(at[1])})",
+        f"({unit.number(clamp.at[0])}, {unit.number(clamp.at[1])})",
         *forces,
-        unit.number(arm),
+        unit.number(clamp.arm),
         unit.number(triple.standing),
     ]
 

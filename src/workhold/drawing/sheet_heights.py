@@ -12,15 +12,12 @@ from attrs import field, frozen
 from workhold.drawing.sheet_facts import SheetDetails
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.bodies import THICKNESS
+from workhold.model.bodies import SUPPORT_HEIGHT, THICKNESS
 from workhold.model.fixture import Fixture
 from workhold.model.solid import Band
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["SUPPORT_HEIGHT", "SheetHeights", "heights_of"]
-
-# Of supports in mm, where nobody says.
-SUPPORT_HEIGHT = 10.0
+__all__ = ["SheetHeights", "heights_of"]
 
 
 @frozen
@@ -103,9 +100,7 @@ def heights_of(
             f"pegs {details.peg_height:g} mm high end below the part, which lies {lift:g} mm above the "
             "plates: give a larger peg height, or lower supports."
         )
-    length = details.peg_length
-    if length is None:
-        length = top + lift + plate
+    if details.peg_length is None:
         assumed.add("peg_length")
     return SheetHeights(
         thickness=thickness,
@@ -113,7 +108,7 @@ def heights_of(
         head_room=None if solid is None else solid.head_room,
         supported_by=lift,
         plate_thickness=plate,
-        peg_length=length,
+        peg_length=top + lift + plate if details.peg_length is None else details.peg_length,
         bands=bands_of_pegs(fixture, workpiece, details, thickness, top),
         assumed=frozenset(assumed),
     )

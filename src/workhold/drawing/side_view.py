@@ -155,7 +155,7 @@ def side_view(
     way = max(WAYS, key=lambda one: (sees_past_walls(bench, one), *apart(bench, one), -WAYS.index(one)))
     pose, (x0, x1) = bench.fixture.pose, way.span(bench.shown.part)
     pads, request = ((), None) if supports is None else (supports.pads, supports.supports.request)
-    placed = [SidePad(name, way.across(point_of(pose.apply(pad.x, pad.y)))) for name, pad in pads]
+    placed = [SidePad(pad.hole, way.across(point_of(pose.apply(pad.x, pad.y)))) for pad in pads]
     solid = workpiece.solid
     tops = spans_of(solid.top, bench, way) if solid is not None else []
     return SideView(

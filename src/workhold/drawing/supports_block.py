@@ -20,7 +20,7 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
     assert chosen is not None
     request, clamp = chosen.supports.request, chosen.clamp
     heading(column, "Supports and the clamp on top")
-    column.fact("supports in", listed([name for name, _ in chosen.pads]), bold=True)
+    column.fact("supports in", listed([pad.hole for pad in chosen.pads]), bold=True)
     column.fact("round pads", f"Ø {lengths.short(2 * request.pad_radius)}", bold=True)
     at = [place - zero for place, zero in zip(clamp.at, sheet.zero.point, strict=True)]
     column.fact("clamp presses at", f"X {lengths.number(at[0])}, Y {lengths.words(at[1])}", bold=True)
@@ -133,7 +133,7 @@ def support_steps(sheet: Sheet, steps: list[str]) -> list[str]:
         if chosen.supports.loads
         else ""
     )
-    put = f"{steps[0]} Put supports in {listed([name for name, _ in chosen.pads])}."
+    put = f"{steps[0]} Put supports in {listed([pad.hole for pad in chosen.pads])}."
     where = f"X {x}, Y {y} {lengths.sign}"
     press = f"Then press the part down at {where}{force}, inside the triangle of the supports."
     return [put, *steps[1:], press]

@@ -51,9 +51,9 @@ class PlannedSupports:
             return float(there[0]), float(there[1])
 
         return cls(
-            names=tuple(name for name, _ in chosen.pads),
-            places=tuple(placed(pad.x, pad.y) for _, pad in chosen.pads),
-            holes=tuple((pad.carrier, pad.column, pad.row) for _, pad in chosen.pads),
+            names=tuple(pad.hole for pad in chosen.pads),
+            places=tuple(placed(pad.x, pad.y) for pad in chosen.pads),
+            holes=tuple((pad.carrier, pad.column, pad.row) for pad in chosen.pads),
             pad_radius=request.pad_radius,
             clamp=placed(*chosen.clamp.at),
             tip_radius=request.tip_radius,

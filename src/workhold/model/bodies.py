@@ -27,12 +27,23 @@ from workhold.model.fixture import Fixture
 from workhold.model.shown import MOST_HOLES, Shown, ShownCarrier, shown
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["COLOURS", "THICKNESS", "FixtureBody", "BodyKind", "BodySizes", "Slab", "fixture_bodies"]
+__all__ = [
+    "COLOURS",
+    "SUPPORT_HEIGHT",
+    "THICKNESS",
+    "BodyKind",
+    "BodySizes",
+    "FixtureBody",
+    "Slab",
+    "fixture_bodies",
+]
 
 Loop = tuple[Segment, ...]
 
 # Of the part and of the plates, in mm, where nobody says.
 THICKNESS = 10.0
+# Of supports above the plates, in mm, where nobody says.
+SUPPORT_HEIGHT = 10.0
 LONGEST_NAME = 120
 # A hole that would touch a side of its plate or another hole is made this much smaller, in mm, so that no
 # body touches itself.

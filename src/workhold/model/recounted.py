@@ -8,12 +8,11 @@ part, its pegs and its supports keep their places to one another.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
 
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import Carrier, hole_name
+from workhold.fixels.carrier import Carrier
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
@@ -70,10 +69,13 @@ def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple) -> Recounted:
 
 def moves(toolkit: Toolkit) -> Iterator[Hole]:
     """Columns and rows by which part and pegs may stand further on, the fewest first."""
-    ways = range(-FARTHEST, FARTHEST + 1)
     # A wall stays where it is.
-    rows = (0,) if toolkit.datum.fixes_rows or toolkit.ends_on_walls else ways
-    yield from sorted(product(ways, rows), key=lambda move: (abs(move[0]) + abs(move[1]), move))
+    most_rows = 0 if toolkit.datum.fixes_rows or toolkit.ends_on_walls else FARTHEST
+    for steps in range(FARTHEST + most_rows + 1):
+        for columns in range(-min(steps, FARTHEST), min(steps, FARTHEST) + 1):
+            rows = steps - abs(columns)
+            if rows <= most_rows:
+                yield from ((columns, row) for row in sorted({-rows, rows}))
 
 
 def shift_of(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
@@ -191,17 +193,13 @@ class ChosenSupports:
         InputError
             When there is none.
         """
-        count = len(supports.triples)
-        if not 0 < number <= count:
-            there = f"sets 1 to {count}" if count else "no set of three"
-            raise InputError(f"there is no set {number} of supports: there is {there}.")
-        triple = supports.triples[number - 1]
+        triple = supports.ranked(number)
         return cls(supports, number, recounted(supports.fixture, supports.query.toolkit, triple))
 
     @property
     def triple(self) -> Triple:
         """The set with its figures, its holes as they were listed."""
-        return self.supports.triples[self.number - 1]
+        return self.supports.ranked(self.number)
 
     @property
     def clamp(self) -> ClampFigures:
@@ -209,6 +207,6 @@ class ChosenSupports:
         return self.triple.clamp
 
     @property
-    def pads(self) -> tuple[tuple[str, SupportPad], ...]:
-        """The supports with the names of their holes."""
-        return tuple((hole_name(pad.carrier, pad.column, pad.row), pad) for pad in self.recounted.supports)
+    def pads(self) -> tuple[SupportPad, ...]:
+        """The supports in holes that have names."""
+        return self.recounted.supports

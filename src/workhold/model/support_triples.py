@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from attrs import evolve, frozen
 
-from workhold.fixels.carrier import hole_name
+from workhold.errors import InputError
+from workhold.fixels.carrier import hole_name, letter_of
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
@@ -62,12 +63,8 @@ class SupportPad:
         """
         if min(self.column, self.row) >= 0:
             return hole_name(self.carrier, self.column, self.row)
-        letter = hole_name(self.carrier, 0, 0).partition("-")
-        return (
-            f"{letter[0]}-({self.column + 1},{self.row + 1})"
-            if letter[1]
-            else f"({self.column + 1},{self.row + 1})"
-        )
+        letter = letter_of(self.carrier)
+        return f"{letter}{'-' if letter else ''}({self.column + 1},{self.row + 1})"
 
 
 @frozen
@@ -97,15 +94,11 @@ class Triple:
     given: ClampFigures | None
 
     @property
-    def clamp_at(self) -> Point:
-        """Where the clamp stands: at the point asked for, else where it needs least."""
-        if self.given is not None:
-            return self.given.at
-        return self.best.at
-
-    @property
     def clamp(self) -> ClampFigures:
-        """The clamp at the point asked for, where it may stand there, else at its best."""
+        """The clamp at the point asked for, where it may stand there, else at its best.
+
+        Where it needs no force its best place has the largest tipping arm.
+        """
         return self.given or self.best
 
 
@@ -140,6 +133,20 @@ class Supports:
     def complete(self) -> bool:
         """Whether every valid triple is listed."""
         return self.count == len(self.triples)
+
+    def ranked(self, rank: int) -> Triple:
+        """The set of three of a rank from 1.
+
+        Raises
+        ------
+        InputError
+            When there is none.
+        """
+        count = len(self.triples)
+        if not 1 <= rank <= count:
+            there = f"{count} are listed" if count else "there is no set of three"
+            raise InputError(f"there is no set {rank} of supports: {there}.")
+        return self.triples[rank - 1]
 
     def best(self, count: int) -> Supports:
         """A copy with the first triples only."""

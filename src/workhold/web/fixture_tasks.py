@@ -32,9 +32,8 @@ from workhold.seating.clamping import ByHand, by_hand
 from workhold.seating.pattern import Pattern
 from workhold.units import unit_named
 from workhold.web.forms import LARGEST, Form, Number
-from workhold.web.support_bodies import sizes_with
 from workhold.web.support_forms import ChosenSupportsForm
-from workhold.web.support_tasks import SupportsOrder, chosen_bodies, chosen_supports
+from workhold.web.support_tasks import SupportsOrder, chosen_supports
 from workhold.web.worker import Order
 
 __all__ = [
@@ -202,13 +201,13 @@ def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
     """Writes the fixture in three dimensions."""
     from workhold.files.glb.writer import bodies_glb, fixture_glb
     from workhold.model.bodies import BodySizes
+    from workhold.model.support_bodies import bodies_with_supports, supported_sizes
 
     result, wishes = order.result, order.wishes
     chosen = order.chosen_supports()
     if chosen is not None:
         lengths = {name: wishes[name] for name in ("peg_length", "peg_height")}
-        sizes = sizes_with(result.query, chosen.supports.request, **lengths)
-        made = chosen_bodies(chosen, sizes)
+        made = bodies_with_supports(chosen, supported_sizes(chosen.supports, **lengths))
         return bodies_glb(made, f"{made[0].name} set-up"), None
     heights = {name: wishes[name] for name in ("thickness", "peg_length", "peg_height")}
     sizes = BodySizes.of(result.workpiece, **heights)

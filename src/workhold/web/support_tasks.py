@@ -15,21 +15,20 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import column_letters, hole_name, letter_of
 from workhold.geometry.segment import bounding_box
-from workhold.model.bodies import BodySizes, FixtureBody
+from workhold.model.bodies import BodySizes
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.recounted import ChosenSupports, recounted
 from workhold.model.requirements import zone_of
+from workhold.model.support_bodies import bodies_on_supports, supported_sizes
 from workhold.model.support_request import SupportRequest
-from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
+from workhold.model.support_triples import Supports, Triple
 from workhold.units import unit_named
-from workhold.web.support_bodies import sizes_with, supported_bodies
 from workhold.web.support_forms import SupportsForm
 from workhold.web.worker import Order
 
-__all__ = ["SupportsOrder", "chosen_bodies", "chosen_supports", "find_supports"]
+__all__ = ["SupportsOrder", "chosen_supports", "find_supports"]
 
 
 @frozen(eq=False)
@@ -109,13 +108,6 @@ def chosen_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
     return ChosenSupports.of(found, number) if found.triples else None
 
 
-def chosen_bodies(chosen: ChosenSupports, sizes: BodySizes) -> tuple[FixtureBody, ...]:
-    """Makes the bodies of a fixture with the chosen set, in holes that have names."""
-    found, built = chosen.supports, chosen.recounted
-    at, _, _ = shown_clamp(found, chosen.triple)
-    return supported_bodies(built.fixture, found.query, found.request, chosen.pads, at, sizes)
-
-
 def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
     """Describes the best sets; places are in mm in the toolkit's frame.
 
@@ -124,7 +116,7 @@ def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
     ``unit``.
     """
     request, listed = found.request, found.triples
-    sizes = sizes_with(found.query, request)
+    sizes = supported_sizes(found)
     return {
         "thickness": request.thickness,
         "peg_height": sizes.top,
@@ -141,17 +133,6 @@ def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
     }
 
 
-def shown_clamp(found: Supports, triple: Triple) -> tuple[tuple[float, float], float, ClampFigures]:
-    """The clamp's point in the part's coordinates and its tipping arm in mm, with its other figures.
-
-    Without loads and a point asked for, it stands where the arm is longest.
-    """
-    clamp = triple.clamp
-    if found.loads or triple.given is not None:
-        return clamp.at, clamp.arm, clamp
-    return triple.arm_at, triple.arm, clamp
-
-
 def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
     """Describes one set of three; forces are null without loads.
 
@@ -160,7 +141,7 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
     pegs and supports in plates that can take them all, as on the sheet, where these are others, else null.
     """
     fixture, toolkit = found.fixture, found.query.toolkit
-    at, arm, clamp = shown_clamp(found, triple)
+    clamp = triple.clamp
     corners = np.array([(pad.x, pad.y) for pad in triple.supports])
     names = [carrier.name for carrier in toolkit.carriers]
     loaded = bool(found.loads)
@@ -170,15 +151,15 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
         return [float(value) for value in fixture.pose.apply(x, y)]
 
     return {
-        "holes": [pad_name(pad) for pad in triple.supports],
+        "holes": [pad.hole for pad in triple.supports],
         "carriers": [names.index(pad.carrier) for pad in triple.supports],
         "pads": [placed(pad.x, pad.y) for pad in triple.supports],
-        "at": placed(*at),
-        "at_part": list(at),
-        "nearest": placed(*nearest_of_border(corners, np.array(at))),
+        "at": placed(*clamp.at),
+        "at_part": list(clamp.at),
+        "nearest": placed(*nearest_of_border(corners, np.array(clamp.at))),
         "clamp_force": clamp.clamp_needed if loaded else None,
         "support_force": clamp.support_force if loaded else None,
-        "arm": arm,
+        "arm": clamp.arm,
         "standing": triple.standing,
         "overhang": triple.overhang,
         "travel": triple.travel if moves else None,
@@ -194,10 +175,9 @@ def built_answer(found: Supports, triple: Triple) -> dict[str, list[str]] | None
     except InputError:
         return None
     pegs = [peg.hole for peg in anew.fixture.pegs]
-    pads = [hole_name(pad.carrier, pad.column, pad.row) for pad in anew.supports]
-    if pegs == [peg.hole for peg in found.fixture.pegs] and pads == [
-        pad_name(pad) for pad in triple.supports
-    ]:
+    pads = [pad.hole for pad in anew.supports]
+    listed = [peg.hole for peg in found.fixture.pegs], [pad.hole for pad in triple.supports]
+    if (pegs, pads) == listed:
         return None
     return {"pegs": pegs, "supports": pads}
 
@@ -209,16 +189,6 @@ def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, fl
     feet = starts + np.clip(shares, 0.0, 1.0)[:, None] * ways
     x, y = feet[np.argmin(np.hypot(*(feet - point).T))]
     return float(x), float(y)
-
-
-def pad_name(pad: SupportPad) -> str:
-    """The hole of a support; one before column A or row 1 by its numbers."""
-    letter = letter_of(pad.carrier)
-    if pad.column >= 0 and pad.row >= 0:
-        name = f"{column_letters(pad.column)}{pad.row + 1}"
-    else:
-        name = f"({pad.column + 1},{pad.row + 1})"
-    return f"{letter}-{name}" if letter else name
 
 
 def notes_of(found: Supports, unit: str) -> list[str]:
@@ -252,10 +222,8 @@ def notes_of(found: Supports, unit: str) -> list[str]:
 
 def boxes_of(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
     """Lists the boxes of all bodies of a fixture with a set of supports; none where pegs have no body."""
-    at, _, _ = shown_clamp(found, triple)
-    pads = [(pad_name(pad), pad) for pad in triple.supports]
     try:
-        bodies = supported_bodies(found.fixture, found.query, found.request, pads, at, sizes)
+        bodies = bodies_on_supports(found, triple, found.fixture, triple.supports, sizes)
     except InputError:
         return
     for body in bodies:

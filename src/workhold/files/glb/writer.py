@@ -21,8 +21,9 @@ from workhold.files.glb.meshes import Mesh, body_mesh
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.fixture import Fixture
-from workhold.model.support_bodies import SUPPORT_HEIGHT, bodies_with_supports, triple_of_rank
-from workhold.model.support_triples import Supports, Triple
+from workhold.model.recounted import ChosenSupports
+from workhold.model.support_bodies import bodies_with_supports, supported_sizes
+from workhold.model.support_triples import Supports
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["bodies_glb", "fixture_glb", "save_glb", "supports_glb", "write_fixture_glb"]
@@ -68,7 +69,7 @@ def fixture_glb(
     return bodies_glb(bodies, f"{bodies[0].name} set-up")
 
 
-def supports_glb(supports: Supports, triple: Triple, sizes: BodySizes | None = None) -> bytes:
+def supports_glb(chosen: ChosenSupports, sizes: BodySizes | None = None) -> bytes:
     """The bytes of the GLB file of a fixture on a set of three supports, with the clamp on top.
 
     Parameters
@@ -80,7 +81,7 @@ def supports_glb(supports: Supports, triple: Triple, sizes: BodySizes | None = N
     InputError
         For pegs and pads of radius 0, which have no body.
     """
-    bodies = bodies_with_supports(supports, triple, sizes)
+    bodies = bodies_with_supports(chosen, sizes)
     return bodies_glb(bodies, f"{bodies[0].name} set-up")
 
 
@@ -98,9 +99,8 @@ def save_glb(
         sizes = BodySizes.of(result.workpiece, thickness)
         write_fixture_glb(fixture, result.workpiece, result.toolkit, path, sizes)
         return
-    high = supports.request.thickness if thickness is None else thickness
-    sizes = BodySizes.of(result.workpiece, high, support_height=SUPPORT_HEIGHT)
-    write_bytes(path, supports_glb(supports, triple_of_rank(supports, best), sizes))
+    sizes = supported_sizes(supports, thickness=thickness)
+    write_bytes(path, supports_glb(ChosenSupports.of(supports, best), sizes))
 
 
 def bodies_glb(bodies: Sequence[FixtureBody], name: str) -> bytes:

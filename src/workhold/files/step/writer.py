@@ -27,9 +27,9 @@ from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.dowels import JawPlate, plate_places
 from workhold.model.fixture import Fixture, Pose
+from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import PartZero, part_zero
-from workhold.model.support_bodies import bodies_with_supports, written_out
-from workhold.model.support_triples import Supports, Triple
+from workhold.model.support_bodies import bodies_with_supports
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["plates_step", "setup_step", "supports_step", "write_plates_step", "write_setup_step"]
@@ -102,7 +102,7 @@ def setup_step(
 
 
 def supports_step(
-    supports: Supports, triple: Triple, sizes: BodySizes | None = None, zero: PartZero | None = None
+    chosen: ChosenSupports, sizes: BodySizes | None = None, zero: PartZero | None = None
 ) -> bytes:
     """The bytes of the STEP assembly of a fixture on a set of three supports, with the clamp on top.
 
@@ -116,9 +116,9 @@ def supports_step(
     InputError
         For pegs and pads of radius 0, which have no body, and when the extra ``step`` is not installed.
     """
-    query, (fixture, _) = supports.query, written_out(supports, triple)
-    bodies = bodies_with_supports(supports, triple, sizes)
-    return bodies_step(bodies, query.toolkit, (zero or part_zero(query.workpiece)).point, fixture.pose)
+    query, bodies = chosen.supports.query, bodies_with_supports(chosen, sizes)
+    point = (zero or part_zero(query.workpiece)).point
+    return bodies_step(bodies, query.toolkit, point, chosen.recounted.fixture.pose)
 
 
 def bodies_step(bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose) -> bytes:
