@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 from workhold.errors import InputError
 
-__all__ = ["json_value", "read_text", "toml_table"]
+__all__ = ["json_value", "read_limited", "read_text", "toml_table"]
 
 # Floats end at 1.8e308.
 MOST_DIGITS = 308
@@ -32,20 +32,36 @@ def read_text(path: Path, largest: int, what: str) -> str:
     InputError
         Without the file's name: when it cannot be read, is too large, or is no text.
     """
+    content = read_limited(path, largest, f"one that describes {what}", f"of a file that describes {what}")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8.") from error
+
+
+def read_limited(path: Path, largest: int, wanted: str, whose: str) -> bytes:
+    """The content of a file.
+
+    Parameters
+    ----------
+    largest : bytes that the file may have.
+    wanted : what to give instead of a folder, such as "a program".
+    whose : whose limit that is and what helps, such as "of a program: split it".
+
+    Raises
+    ------
+    InputError
+        Without the file's name: when it cannot be read, or is too large.
+    """
     try:
         if not path.exists():
             raise InputError("there is no file of that name.")
         if not path.is_file():
-            raise InputError(f"this is not a file: give one that describes {what}.")
+            raise InputError(f"this is not a file: give {wanted}.")
         size = path.stat().st_size
         if size > largest:
-            raise InputError(
-                f"the file has {size / 1e6:.0f} MB, more than the {largest / 1e6:g} MB of a file that "
-                f"describes {what}."
-            )
-        return path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8.") from error
+            raise InputError(f"the file has {size / 1e6:.0f} MB, more than the {largest / 1e6:g} MB {whose}.")
+        return path.read_bytes()
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise

@@ -18,6 +18,7 @@ from workhold.files.program.modes import UNITS
 from workhold.files.program.tool_fields import SHAPE, is_bare, tool_of_fields
 from workhold.files.program.tool_tables import commented_tools, read_tools
 from workhold.files.program.words import ProgramText, program_text
+from workhold.files.text import read_limited
 from workhold.limits import real
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import Moves
@@ -50,34 +51,19 @@ class ReadProgram:
     lines: int
 
 
-def read_program(
-    path: str | Path,
-    tools: ToolsGiven = None,
-    *,
-    zero: tuple[float, float] = (0.0, 0.0),
-    z_zero: ZZero = "top",
-    thickness: float | None = None,
-    clearance: float = 1.0,
-    rapid: Literal["straight", "box"] = "straight",
-    unit: str | None = None,
-) -> Program:
+def read_program(path: str | Path, tools: ToolsGiven = None, **how: Any) -> Program:
     """Reads a program, see :meth:`workhold.model.program.Program.read`.
+
+    Parameters
+    ----------
+    how : the other parameters of :func:`read_program_with_calls`.
 
     Raises
     ------
     InputError
         Naming the file and the line of what cannot be read.
     """
-    return read_program_with_calls(
-        path,
-        tools,
-        zero=zero,
-        z_zero=z_zero,
-        thickness=thickness,
-        clearance=clearance,
-        rapid=rapid,
-        unit=unit,
-    ).program
+    return read_program_with_calls(path, tools, **how).program
 
 
 def read_program_with_calls(
@@ -103,7 +89,7 @@ def read_program_with_calls(
     if unit is not None and unit not in ("mm", "inch"):
         raise InputError(f"the unit '{unit[:20]}' is not one of a program: give mm or inch.")
     try:
-        content = read_bytes(path)
+        content = read_limited(path, LARGEST_FILE, "a program", "of a program: split it")
         listing = program_text(decoded(content))
         control = run(listing, None if unit is None else UNITS[unit])
     except InputError as error:
@@ -148,33 +134,6 @@ def height_of(z_zero: ZZero, thickness: float | None) -> float:
     if not isfinite(height):
         raise InputError("z_zero is not a height: give top, bottom, or a length above the part's lower side.")
     return height
-
-
-def read_bytes(path: Path) -> bytes:
-    """The content of a program's file.
-
-    Raises
-    ------
-    InputError
-        Without the file's name: when it cannot be read, or is too large.
-    """
-    try:
-        if not path.exists():
-            raise InputError("there is no file of that name.")
-        if not path.is_file():
-            raise InputError("this is not a file: give a program.")
-        size = path.stat().st_size
-        if size > LARGEST_FILE:
-            raise InputError(
-                f"the file has {size / 1e6:.0f} MB, more than the {LARGEST_FILE / 1e6:g} MB of a program: "
-                "split it."
-            )
-        return path.read_bytes()
-    except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"the file cannot be read ({reason.lower()}).") from error
 
 
 def decoded(content: bytes) -> str:
