@@ -220,8 +220,7 @@ def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: 
             f"--not-on-faces-cut-in needs the faces of one solid in both, and {lacking} has none: read both "
             "from the STEP file, with --peg-height."
         )
-    cut = {face for number in query.restrictions.avoid for face in other.faces[number]}
-    avoid = [number for number, faces in enumerate(own.faces) if cut.intersection(faces)]
+    avoid = own.segments_under(other.faces_over(query.restrictions.avoid))
     return evolve(restrictions, avoid=(*restrictions.avoid, *avoid))
 
 

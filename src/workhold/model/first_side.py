@@ -58,11 +58,12 @@ def first_side(fixture: Fixture, query: Query, before: Query, located: Fixture |
         For parts whose faces have no numbers of a solid.
     """
     own, other = solid_of(query.workpiece), solid_of(before.workpiece)
-    cut = {face for number in before.restrictions.avoid for face in other.faces[number]}
+    cut = other.faces_over(before.restrictions.avoid)
+    under = own.segments_under(cut)
     avoided = [
         face.number
         for face in query.workpiece.faces
-        if own.bands[face.number] is not None and cut.intersection(*[set(own.faces[face.number])])
+        if own.bands[face.number] is not None and face.number in under
     ]
     here = touched(fixture, query.workpiece, own)
     there = set[int]() if located is None else touched(located, before.workpiece, other)
@@ -94,8 +95,9 @@ def touched(fixture: Fixture, workpiece: Workpiece, solid: SolidOutline) -> set[
     numbers = {peg.face for peg in fixture.pegs} | {
         peg.beside for peg in fixture.pegs if peg.beside is not None
     }
-    segments = [k for face in workpiece.faces if numbers.intersection(face.segments) for k in face.segments]
-    return {number for k in segments for number in solid.faces[k]}
+    return solid.faces_over(
+        k for face in workpiece.faces if numbers.intersection(face.segments) for k in face.segments
+    )
 
 
 def standing_matrix(axis: str) -> NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from math import isfinite
 from typing import Any
 
@@ -92,6 +92,14 @@ class SolidOutline:
         for band in self.bands:
             if band is not None and not (isfinite(band[0]) and 0.0 <= band[0] <= band[1] < 1e9):
                 raise InputError(f"the band {band[0]:g} to {band[1]:g} mm is none: give its lower end first.")
+
+    def faces_over(self, segments: Iterable[int]) -> set[int]:
+        """Numbers of the solid's faces over some segments of the workpiece."""
+        return {face for segment in segments for face in self.faces[segment]}
+
+    def segments_under(self, faces: Set[int]) -> list[int]:
+        """Numbers of the segments with one of these faces of the solid over them."""
+        return [segment for segment, over in enumerate(self.faces) if not faces.isdisjoint(over)]
 
     @classmethod
     def of_entries(cls, solid: Mapping[str, Any], workpiece: Mapping[str, Any]) -> SolidOutline:
