@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from workhold import load
-from workhold.drawing.program_picture import COLOURS, draw_program, shaded
+from workhold.drawing.path_drawn import COLOURS, shaded
+from workhold.drawing.program_picture import draw_program
 from workhold.drawing.render import svg_to_png
 from workhold.model.program import Program
 from workhold.units import INCH

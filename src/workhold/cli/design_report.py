@@ -85,6 +85,7 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
         When the folder cannot be written.
     """
     from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
+    from workhold.drawing.path_drawn import planned_path
     from workhold.listing.identity import entries
 
     try:
@@ -100,7 +101,8 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
         return []
     pictures = {}
     for place, (index, fixture) in enumerate(zip(indices, fixtures, strict=True), 1):
-        svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {index + 1}", unit=unit)
+        held, path = (fixture, result.workpiece, result.toolkit), planned_path(result, index)
+        svg = draw_fixture(*held, title=f"Fixture {index + 1}", unit=unit, path=path)
         pictures[picture_name(place)] = svg
     pictures[THUMBNAILS] = best_at_a_glance(result, shown, unit)
     return write_pictures(pictures, folder)

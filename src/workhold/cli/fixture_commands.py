@@ -342,10 +342,11 @@ def show(
         print_remark("the search for this result was interrupted; there may be better fixtures.")
     if picture is not None:
         from workhold.drawing.fixture_pictures import draw_fixture
+        from workhold.drawing.path_drawn import planned_path
 
-        svg = draw_fixture(
-            fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit
-        )
+        path = planned_path(result, rank - 1)
+        held = (fixture, result.workpiece, result.toolkit)
+        svg = draw_fixture(*held, title=f"Fixture {rank}", unit=shown_unit, path=path)
         write_picture(picture, svg)
     if model is not None:
         write_bodies(result, rank, model, height, shown_unit)

@@ -7,7 +7,7 @@ from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from attrs import asdict, evolve, fields, frozen
+from attrs import evolve, fields, frozen
 
 from workhold.cli.commands import option, print_remark
 from workhold.cli.options import PartWords
@@ -154,7 +154,8 @@ def passing_data(result: Result, rank: int) -> dict[str, Any]:
     from workhold.statics.program_clearance import passing_of
 
     near = passing_of(result, rank - 1)
-    return {} if near is None else {"program_clearance": asdict(near)}
+    names = ("distance", "line", "tool", "element")
+    return {} if near is None else {"program_clearance": {name: getattr(near, name) for name in names}}
 
 
 def passing_words(result: Result, rank: int, unit: Unit) -> list[str]:

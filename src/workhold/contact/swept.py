@@ -15,13 +15,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
-from math import inf
+from math import inf, tan
 
 import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
 from workhold.conventions import STRAIGHT
+from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -37,9 +38,9 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.swept import DEPTH, LEAF, SweptTree, nearest_swept
-from workhold.model.program import Program, SweptPiece
+from workhold.model.program import PathVertex, Program, SweptPiece
 
-__all__ = ["Swept", "span_boxes", "swept_below"]
+__all__ = ["Swept", "path_of", "span_boxes", "swept_below"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -207,6 +208,21 @@ def span_rows(spans: Array) -> Array:
         columns = np.array([X, Y, AXIS_X, AXIS_Y, REST_X, REST_Y])
         out[np.ix_(arcs, columns)] = np.hstack([center, axis, rest])
     return out
+
+
+def path_of(row: Array) -> tuple[PathVertex, ...]:
+    """The vertices of a span's path, from its row (10,) as kernels take it; one where it has no length."""
+    middle, axis, half = row[[X, Y]], row[[AXIS_X, AXIS_Y]], float(row[HALF_EXTENT])
+    if row[IS_ARC]:
+        ends = [
+            middle + row[RADIUS] * np.array(rotated(axis[0], axis[1], way * float(row[SIGN]) * half))
+            for way in (-1, 1)
+        ]
+        bulge = float(row[SIGN]) * tan(half / 2)
+    else:
+        ends, bulge = [middle - half * axis, middle + half * axis], 0.0
+    (x, y), (to_x, to_y) = (end.tolist() for end in ends)
+    return ((x, y, 0.0),) if half == 0.0 else ((x, y, bulge), (to_x, to_y, 0.0))
 
 
 def span_boxes(rows: Array) -> Array:

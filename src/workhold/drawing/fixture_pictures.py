@@ -18,7 +18,9 @@ from workhold.drawing.panel import (
     draw_title,
     plural,
 )
+from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
+from workhold.drawing.program_block import write_path
 from workhold.drawing.scene import (
     GREY,
     LANDSCAPE,
@@ -54,11 +56,11 @@ class Layout:
     drawing: Box
     panel: Box
 
-    def view(self, bench: Bench) -> View:
-        """The largest view of a bench that leaves room for the lettering."""
+    def view(self, extent: Box) -> View:
+        """The largest view of an extent (mm) that leaves room for the lettering."""
         box = self.drawing
         inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM - SCALE_BAR)
-        return View.fitting(bench.extent, inner)
+        return View.fitting(extent, inner)
 
 
 def layout_on(page: tuple[float, float]) -> Layout:
@@ -77,6 +79,7 @@ def draw_fixture(
     *,
     title: str | None = None,
     unit: Unit = MILLIMETRE,
+    path: PlannedPath | None = None,
 ) -> str:
     """Draws a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
 
@@ -87,6 +90,7 @@ def draw_fixture(
     ----------
     title : what to call the fixture, such as ``Fixture 3 of 70``.
     unit : of the lengths written.
+    path : of a program's tools, to draw as well.
 
     Returns
     -------
@@ -94,14 +98,15 @@ def draw_fixture(
         SVG text.
     """
     bench = bench_of(fixture, workpiece, toolkit)
+    extent = bench.extent if path is None else path.grown(bench.extent)
     lengths = LengthUnit.suiting(unit, bench.shown.pitch)
     landscape, portrait = layout_on(LANDSCAPE), layout_on(PORTRAIT)
-    layout = portrait if portrait.view(bench).scale > 1.15 * landscape.view(bench).scale else landscape
-    view = layout.view(bench)
+    layout = portrait if portrait.view(extent).scale > 1.15 * landscape.view(extent).scale else landscape
+    view = layout.view(extent)
     scene = Scene.page(layout.page, f"{workpiece.name}: {title or 'Fixture'}")
-    draw_plan(scene, bench, view, workpiece, layout.drawing, lengths)
+    draw_plan(scene, bench, view, workpiece, layout.drawing, lengths, path=path)
     scale_bar(scene, (layout.drawing.x0, layout.drawing.y1), view.scale, lengths)
-    draw_panel(scene, layout.panel, bench, view, workpiece, title, lengths)
+    draw_panel(scene, layout.panel, bench, view, workpiece, title, lengths, path)
     return scene.svg()
 
 
@@ -113,6 +118,7 @@ def draw_panel(
     workpiece: Workpiece,
     title: str | None,
     lengths: LengthUnit,
+    path: PlannedPath | None,
 ) -> None:
     """Writes the panel, with the part as drawn at its foot; ``view`` is that of the drawing beside it."""
     group, fixture = scene.group("panel"), bench.fixture
@@ -121,6 +127,9 @@ def draw_panel(
     draw_title(column, fixture, workpiece, bench.toolkit, title)
     draw_settings(column, fixture, bench.toolkit, lengths)
     draw_peg_table(column, fixture, bench.toolkit, lengths)
+    if path is not None:
+        write_path(column, path, lengths, GREY)
+        column.rule()
     draw_legend(column, bench.toolkit)
     if not most_holes(view, bench.shown):
         column.words("Only the holes near the pegs are drawn.", 11.5, fill=GREY)

@@ -34,7 +34,16 @@ TURN = re.compile(r"rotate\(([-\d.]+) ([-\d.]+) ([-\d.]+)\)")
 
 # Attributes that change nothing on the page, or that are read where they occur.
 SILENT = {"class", "data-model-to-page", "stroke-linejoin", "font-family"}
-STYLE = {"fill", "fill-rule", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap"}
+STYLE = {
+    "fill",
+    "fill-rule",
+    "fill-opacity",
+    "stroke",
+    "stroke-width",
+    "stroke-dasharray",
+    "stroke-linecap",
+    "stroke-opacity",
+}
 
 
 def svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
@@ -200,6 +209,8 @@ def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
         style.fill_opacity = float(attributes["fill-opacity"])
     if stroke != "none":
         style.stroke_width = float(attributes.get("stroke-width", "1"))
+    if "stroke-opacity" in attributes:
+        style.stroke_opacity = float(attributes["stroke-opacity"])
     if "stroke-dasharray" in attributes:
         style.stroke_dash_pattern = [float(word) for word in attributes["stroke-dasharray"].split()]
 

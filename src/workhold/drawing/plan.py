@@ -10,7 +10,14 @@ from typing import Literal
 from workhold.drawing.annotation import PAST_END, angle_mark, dimension, dimension_box
 from workhold.drawing.bench import Bench, draw_bench
 from workhold.drawing.carriers import block_arrow, labelled
-from workhold.drawing.plan_labels import ANGLE_RADIUS, ANGLE_REACH, LONGEST_ARROW, draw_labels
+from workhold.drawing.path_drawn import PlannedPath
+from workhold.drawing.plan_labels import (
+    ANGLE_RADIUS,
+    ANGLE_REACH,
+    LONGEST_ARROW,
+    Overlays,
+    draw_labels,
+)
 from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, text_width
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.fixels.carrier import column_letters
@@ -28,6 +35,8 @@ SETTING_SIZE = 17.0
 # farther a second one along the same way is, page units.
 ABOVE, BESIDE, FARTHER = 42.0, 33.0, 24.0
 RIM_WORD = 10.0
+# Of a plan's box, what of its upper and its lower end no path is drawn in.
+FREE = (62.0, 30.0)
 # Between the names of carriers, page units.
 CAPTION_GAP = 16.0
 # Size of the names of columns and rows without and with pegs.
@@ -44,6 +53,7 @@ def draw_plan(
     marks: Sequence[tuple[Point, str]] = (),
     angle: str | None = None,
     supports: PlannedSupports | None = None,
+    path: PlannedPath | None = None,
 ) -> None:
     """Draws a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels.
 
@@ -52,10 +62,13 @@ def draw_plan(
     angle : what to write at the part's turn; its size if not given.
     marks : points in the vise frame (mm) to mark, each with its name.
     supports : what stands under the part and presses on it, to draw as well.
+    path : of the program's tools, to draw as well.
     """
     frame = view.box(reduce(Box.union, (Box(*point, *point) for point, _ in marks), bench.extent))
     names = draw_hole_names(scene, bench, view, frame, supports)
     draw_bench(scene, bench, view, longest=LONGEST_ARROW)
+    if path is not None:
+        path.draw(scene, view, Box(bounds.x0, bounds.y0 + FREE[0], bounds.x1, bounds.y1 - FREE[1]))
     if supports is not None:
         draw_supports(scene, supports, view)
     names += draw_travel(scene, bench, view, frame, bounds, lengths)
@@ -64,7 +77,8 @@ def draw_plan(
     angle_mark(scene, center, bench.fixture.pose.theta_deg, ANGLE_RADIUS, ANGLE_REACH)
     marks = [(view(point), name) for point, name in marks]
     angle = f"θ = {bench.fixture.pose.theta_deg:.3f}°" if angle is None else angle
-    draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle, supports)
+    overlays = Overlays(supports, path)
+    draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle, overlays, lengths)
 
 
 def draw_hole_names(

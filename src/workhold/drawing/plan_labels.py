@@ -9,16 +9,18 @@ from collections.abc import Sequence
 from math import atan2, cos, hypot, pi, radians, sin
 
 import numpy as np
+from attrs import frozen
 
 from workhold.drawing.annotation import Label, LabelPlacer, Place, around, joined, leader_end
 from workhold.drawing.bench import PEG_FILL, Bench, draw_zero, force_arrow
 from workhold.drawing.carriers import avoid_clamp
-from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, text_width
+from workhold.drawing.path_drawn import PlannedPath
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, text_width
 from workhold.drawing.supports_drawn import PlannedSupports
 from workhold.geometry.segment import Point
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ANGLE_RADIUS", "ANGLE_REACH", "LONGEST_ARROW", "draw_labels"]
+__all__ = ["ANGLE_RADIUS", "ANGLE_REACH", "LONGEST_ARROW", "Overlays", "draw_labels"]
 
 LONGEST_ARROW = 62.0
 LABEL_SIZE, LABEL_HEIGHT = 15.0, 22.0
@@ -27,6 +29,20 @@ ANGLE_RADIUS, ANGLE_REACH = 24.0, 48.0
 MARK_RADIUS = 5.0
 # In denser lattices labels cannot help covering holes.
 MOST_HOLES_AVOIDED = 2000
+
+
+@frozen(eq=False)
+class Overlays:
+    """What a plan shows beside a fixture.
+
+    Parameters
+    ----------
+    supports : below the part, and the clamp on top; None for none.
+    path : of a program's tools; None for none.
+    """
+
+    supports: PlannedSupports | None = None
+    path: PlannedPath | None = None
 
 
 def draw_labels(
@@ -38,7 +54,8 @@ def draw_labels(
     names: list[Box],
     marks: Sequence[tuple[Point, str]],
     angle: str,
-    supports: PlannedSupports | None = None,
+    overlays: Overlays,
+    lengths: LengthUnit,
 ) -> None:
     """Labels pegs, touched faces, the part's turn and marked page points, where that hides nothing.
 
@@ -51,8 +68,11 @@ def draw_labels(
         placer.avoid_box(box)
     for (x, y), _ in marks:
         placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
+    supports, path = overlays.supports, overlays.path
     if supports is not None:
         supports.avoided(placer, view)
+    if path is not None:
+        path.avoided(placer, view)
     labelled_pegs, pegs = bench.placed, bench.fixture.pegs
     numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
     direction = -radians(bench.fixture.pose.theta_deg) / 2
@@ -69,6 +89,7 @@ def draw_labels(
                 turn_cost=4,
             ),
             *(mark_label(point, name) for point, name in marks),
+            *([] if path is None else path.labels(view, lengths)),
             *([] if supports is None else supports.labels(view)),
         ]
     )
@@ -82,8 +103,12 @@ def draw_labels(
     last = rest[1 + len(numbers) :]
     for (_, name), place in zip(marks, last, strict=False):
         draw_mark(group, place, name)
+    last = last[len(marks) :]
+    if path is not None and path.passing is not None:
+        path.draw_name(group, last[:1], lengths)
+        last = last[1:]
     if supports is not None:
-        supports.draw_names(group, last[len(marks) :], view)
+        supports.draw_names(group, last, view)
 
 
 def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View, center: Point) -> None:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from math import atan, ceil, hypot, pi
-
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import outline_path
 from workhold.drawing.panel import plural
+from workhold.drawing.path_drawn import COLOURS, SHADES, PagePaths, draw_paths, heights_cut, shaded
 from workhold.drawing.scene import (
     BLACK,
     GREY,
@@ -18,10 +14,8 @@ from workhold.drawing.scene import (
     LengthUnit,
     Scene,
     View,
-    number,
     shortened,
 )
-from workhold.model.moves import along
 from workhold.model.program import Program
 from workhold.model.program_figures import ToolFigures, tip_box, tool_figures
 from workhold.model.workpiece import Workpiece
@@ -30,12 +24,6 @@ from workhold.units import MILLIMETRE, Unit
 __all__ = ["draw_program"]
 
 EDGE, HEADER, FOOTER, SIDE = 32.0, 62.0, 30.0, 268.0
-# A colour for each tool, in the order in which they move; they begin again after the last.
-COLOURS = ("#1f6fb4", "#d1660d", "#2a8f4d", "#8a4fb0", "#c0392b", "#138a8a", "#8a6d1f", "#b8437f")
-# Shades of a tool's colour by height: mixed with white above, with black below.
-SHADES = 6
-LIGHT, DARK = 0.6, 0.45
-BAND = "0.13"
 PART = "#eceff2"
 LEGEND_ROW = 62.0
 MOST_LISTED = 8
@@ -68,11 +56,9 @@ def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: 
     if workpiece is not None:
         d = outline_path(workpiece.loop_segments, view)
         scene.group("part", view).path(d, BLACK, 1.2, PART, fill_rule="evenodd")
-    paths = scene.group("paths", view, stroke_linecap="round")
-    draw_bands(paths, program, figures, view)
-    draw_rapids(paths, program, view)
+    paths = scene.group("paths", view)
+    draw_paths(paths, program, PagePaths.of(program.moves, view))
     levels = heights_cut(program)
-    draw_cuts(paths, program, figures, view, levels)
     draw_zero(scene, view(program.zero))
     draw_legend(
         scene,
@@ -100,100 +86,6 @@ def bounds_of(program: Program, workpiece: Workpiece | None) -> Box:
         corners += [(x0, y0), (x1, y1)]
     xs, ys = zip(*corners, strict=True)
     return Box(float(min(xs)), float(min(ys)), float(max(xs)), float(max(ys)))
-
-
-def heights_cut(program: Program) -> tuple[float, float]:
-    """The least and the greatest height of the tip at cutting moves, in mm."""
-    cut = program.moves.cutting
-    heights = np.concatenate([program.moves.start[cut, 2], program.moves.end[cut, 2], [program.z_zero]])
-    return float(heights.min()), float(heights.max())
-
-
-def path_data(program: Program, rows: NDArray[np.int64], view: View) -> str:
-    """SVG path data of some moves; a move that goes on where the last one ended begins no new line."""
-    moves = program.moves
-    start, end, bulge = moves.start[rows, :2], moves.end[rows, :2], moves.bulge[rows]
-    middle = along(start, end, bulge, np.full(len(rows), 0.5))
-    found, last = [], None
-    for one, other, half, bent in zip(
-        start.tolist(), end.tolist(), middle.tolist(), bulge.tolist(), strict=True
-    ):
-        if one != last:
-            found.append("M{} {}".format(*map(number, view(one))))
-        last = other
-        if not bent:
-            found.append("L{} {}".format(*map(number, view(other))))
-            continue
-        sweep = 4 * abs(atan(bent))
-        radius = number(
-            hypot(other[0] - one[0], other[1] - one[1]) * (1 + bent * bent) / (4 * abs(bent)) * view.scale
-        )
-        # Half a turn is drawn in two pieces, of which the direction is clear.
-        ends = [other] if ceil(sweep / (0.9 * pi)) == 1 else [half, other]
-        for place in ends:
-            x, y = map(number, view(place))
-            found.append(f"A{radius} {radius} 0 0 {0 if bent > 0 else 1} {x} {y}")
-    return "".join(found)
-
-
-def draw_bands(paths: Scene, program: Program, figures: tuple[ToolFigures, ...], view: View) -> None:
-    """Draws what the flutes sweep at cutting moves, as broad lines that one can look through."""
-    for place, one in enumerate(figures):
-        rows = np.flatnonzero((program.moves.tool == one.tool) & program.moves.cutting)
-        if len(rows):
-            wide = program.tools[one.tool].diameter * view.scale
-            paths.path(
-                path_data(program, rows, view),
-                COLOURS[place % len(COLOURS)],
-                wide,
-                stroke_opacity=BAND,
-                **{"class": "band"},
-            )
-
-
-def draw_rapids(paths: Scene, program: Program, view: View) -> None:
-    """Draws rapid moves, dashed."""
-    flat = (program.moves.start[:, :2] != program.moves.end[:, :2]).any(axis=1)
-    rows = np.flatnonzero(~program.moves.cutting & flat)
-    if len(rows):
-        paths.path(path_data(program, rows, view), GREY, 1.0, stroke_dasharray="6 5", **{"class": "rapid"})
-
-
-def draw_cuts(
-    paths: Scene,
-    program: Program,
-    figures: tuple[ToolFigures, ...],
-    view: View,
-    levels: tuple[float, float],
-) -> None:
-    """Draws the axis at cutting moves, the higher ones first; upright moves are dots."""
-    moves = program.moves
-    middle = (moves.start[:, 2] + moves.end[:, 2]) / 2
-    low, high = levels
-    shade = np.clip(((middle - low) / max(high - low, 1e-9) * SHADES).astype(int), 0, SHADES - 1)
-    upright = (moves.start[:, :2] == moves.end[:, :2]).all(axis=1)
-    for level in range(SHADES - 1, -1, -1):
-        for place, one in enumerate(figures):
-            own = (moves.tool == one.tool) & moves.cutting & (shade == level)
-            colour = shaded(COLOURS[place % len(COLOURS)], level)
-            for rows, wide in ((np.flatnonzero(own & ~upright), 1.8), (np.flatnonzero(own & upright), 5.0)):
-                if len(rows):
-                    paths.path(path_data(program, rows, view), colour, wide, **{"class": f"cut-{one.tool}"})
-
-
-def shaded(colour: str, level: int) -> str:
-    """A colour at a level, from 0, the lowest and darkest.
-
-    >>> shaded("#808080", 0), shaded("#808080", SHADES - 1)
-    ('#464646', '#cccccc')
-    """
-    share = level / (SHADES - 1)
-    parts = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
-    if share < 0.5:
-        mixed = [part * (1 - DARK * (1 - 2 * share)) for part in parts]
-    else:
-        mixed = [part + (255 - part) * LIGHT * (2 * share - 1) for part in parts]
-    return "#" + "".join(f"{int(part):02x}" for part in mixed)
 
 
 def draw_zero(scene: Scene, at: tuple[float, float]) -> None:

@@ -15,13 +15,15 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
+from workhold.model.program import Program
 from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.model.setup import part_zero
+from workhold.model.setup import PartZero, part_zero
 from workhold.seating.clamping import by_hand
 from workhold.seating.solver import Solver
 from workhold.statics.loads import load_cases
+from workhold.statics.program_clearance import passing_of
 from workhold.statics.quality import measured_fixture
 from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
@@ -49,6 +51,11 @@ def result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
 def smallest_pitch(toolkit: Toolkit) -> float:
     """The smallest distance between neighbouring holes, in mm."""
     return min(min(carrier.pitch) for carrier in toolkit.carriers)
+
+
+def zero_of(program: Program) -> PartZero:
+    """Where a program counts from, which is what the machinist sets."""
+    return PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
 
 
 def result_details(
@@ -123,6 +130,7 @@ def result_details(
             known = Solver(workpiece, toolkit).of(fixture)
         except InputError as error:
             not_seated = f"{str(error)[:1].upper()}{str(error)[1:]}"
+    program = result.query.program
     details = SheetDetails(
         number=rank if number is None else number,
         count=len(result) if count is None else count,
@@ -136,11 +144,11 @@ def result_details(
         jaw_force=jaw_force,
         friction=friction,
         loads=load_cases(fixture, workpiece, toolkit, asked, jaw_force, friction, jaw),
-        zero=part_zero(workpiece, zero, unit),
+        zero=zero_of(program) if zero is None and program is not None else part_zero(workpiece, zero, unit),
         machine_position=machine_position,
         thickness=thickness,
         peg_length=peg_length,
-        peg_height=peg_height,
+        peg_height=result.query.peg_height if peg_height is None else peg_height,
         dowel=dowel,
         others=result.table.same_holes(rank - 1) if others is None else others,
         seating=known,
@@ -150,6 +158,8 @@ def result_details(
         support_height=support_height,
         plate_thickness=plate_thickness,
         first_side=first_side,
+        program=program,
+        passing=passing_of(result, rank - 1),
         listed_as=listed_as,
     )
     return fixture, details

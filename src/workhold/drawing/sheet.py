@@ -8,6 +8,7 @@ from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import Bench, bench_of
 from workhold.drawing.carriers import most_holes
 from workhold.drawing.panel import TextColumn
+from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.plan import draw_plan
 from workhold.drawing.scene import BLACK, UNITS_PER_MM, Box, LengthUnit, Scene, View, shortened, text_width
 from workhold.drawing.sheet_blocks import blocks_of
@@ -68,6 +69,10 @@ def draw_sheet(
     sheet = evolve(sheet, zero_shown=near.contains(zero_box), origin_shown=near.contains(origin_box))
     extent = bench.extent.union(zero_box) if sheet.zero_shown else bench.extent
     extent = extent.union(origin_box) if sheet.origin_shown else extent
+    path = None
+    if details.program is not None:
+        path = PlannedPath(details.program, fixture, details.passing)
+        extent = path.grown(extent)
     width, height = (UNITS_PER_MM * side for side in PAPERS[details.paper])
     layout = arranged((width, height), extent, *blocks_of(sheet), figure)
     scene = new_page(layout, sheet)
@@ -77,7 +82,7 @@ def draw_sheet(
     if sheet.origin_shown and all(peg.hole != sheet.datum.name for peg in fixture.pegs):
         marks.append(((0.0, 0.0), sheet.datum.mark))
     planned = None if details.supports is None else PlannedSupports.of(details.supports)
-    draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ", supports=planned)
+    draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ", supports=planned, path=path)
     words = f", scale {layout.scale.name}"
     if not most_holes(view, bench.shown):
         words += "; only the holes near the pegs are drawn"

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from workhold.drawing.hardware_table import write_hardware
 from workhold.drawing.panel import TextColumn, draw_legend, fixture_words, pegs_words
+from workhold.drawing.program_block import write_program
 from workhold.drawing.scene import BLACK, LengthUnit, shortened, text_width, wrapped
 from workhold.drawing.seats import write_seating, write_wrong_seats
 from workhold.drawing.sheet_setting import CLAMPS, OPENING, write_counting, write_pegs
@@ -157,6 +158,8 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     others: list[Writer] = [write_side, write_part, write_steps]
     if sheet.cautions:
         needed.append(write_cautions)
+    if sheet.details.program is not None:
+        needed.append(write_program)
     upright: list[Writer] = [] if sheet.details.supports is None else [write_supports]
     upright += [write_hardware] if sheet.heights is None else [write_heights, write_hardware]
     if sheet.workpiece.solid is not None:

@@ -15,6 +15,7 @@ from workhold.drawing.seating_words import SeatingSentences
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
+from workhold.model.program import Program
 from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Tolerance
 from workhold.model.seating import Seating
@@ -24,6 +25,7 @@ from workhold.seating.clamping import ByHand
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go
 from workhold.statics.loads import LoadCase
+from workhold.statics.program_clearance import Passing
 from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["PAPERS", "Caution", "SheetDetails", "caliper_check", "cautions_of", "edge_distances"]
@@ -63,6 +65,8 @@ class SheetDetails:
     support_height : of these supports, in mm; None where nobody said.
     plate_thickness : of the plates that pegs stand through, in mm; None where nobody said.
     first_side : the set-up before this one, which had another side of the part up; None where there was none.
+    program, passing : what the machine does while the part is held, and where its tools come nearest to what
+        holds it; None where that is not known.
     listed_as : what ``number`` counts.
     """
 
@@ -92,9 +96,13 @@ class SheetDetails:
     support_height: float | None = None
     plate_thickness: float | None = None
     first_side: FirstSide | None = None
+    program: Program | None = None
+    passing: Passing | None = None
     listed_as: str = "Fixture"
 
 
+# Two zeros this near to each other, in mm, are one.
+ZERO_OFF = 0.001
 UNFIT = "No fixture for a workshop: the part may lie anywhere, or one peg hardly holds. Choose another."
 
 
@@ -104,7 +112,8 @@ class Caution:
 
     Parameters
     ----------
-    kind : "unfit", "edge", "closure", "amplification", "location", "load", "capture", "reading" or "pose".
+    kind : "unfit", "zero", "edge", "closure", "amplification", "location", "load", "capture", "reading" or
+        "pose".
     sentence : for people; lengths in it are in mm or inch as asked for.
     """
 
@@ -184,6 +193,11 @@ def cautions_of(
     off = details.tolerance.peg + details.tolerance.face
     if is_unfit(margin, error, off):
         found.append(Caution("unfit", UNFIT))
+    program, zero = details.program, details.zero
+    if program is not None and zero is not None and dist(zero.point, program.zero) > ZERO_OFF:
+        x, y = (lengths.number(value) for value in program.zero)
+        words = f"The program's X0 Y0 is at x {x}, y {y} {lengths.sign} of the drawing, not this sheet's"
+        found.append(Caution("zero", f"{words}: set the machine's zero there, or post it anew."))
     for peg, distance in zip(fixture.pegs, distances, strict=True):
         if is_near_edge(distance):
             place = f"{peg.hole} touches {peg.touching} only {lengths.words(distance)} from its end"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
 from workhold.drawing.part_pictures import draw_features
+from workhold.drawing.path_drawn import planned_path
 from workhold.drawing.render import render
 from workhold.drawing.sheet_facts import PAPERS
 from workhold.errors import InputError
@@ -81,10 +82,11 @@ def fixture_picture(
     """Draws the fixture to set up from, see :meth:`workhold.Fixture.draw`."""
     listed = fixture.listing
     words = f"Fixture {listed.rank} of {listed.count}" if title is None else title
-    toolkit = listed.result.toolkit
-    return saved(
-        draw_fixture(fixture, listed.result.workpiece, toolkit, title=words, unit=unit_named(unit)), path
+    result, planned = listed.result, planned_path(listed.result, listed.row)
+    svg = draw_fixture(
+        fixture, result.workpiece, result.toolkit, title=words, unit=unit_named(unit), path=planned
     )
+    return saved(svg, path)
 
 
 def result_picture(result: Result, path: str | Path | None = None, *, unit: str = "mm") -> Picture:

@@ -13,10 +13,10 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.contact.swept import Swept, swept_below
+from workhold.contact.swept import Swept, path_of, swept_below
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated
-from workhold.model.program import Program
+from workhold.model.program import PathVertex, Program
 from workhold.model.result import FixtureTable, Result, peg_places
 from workhold.model.workpiece import Workpiece
 
@@ -35,12 +35,15 @@ class NearestMove:
     clearance : (N,) in mm, infinite where nothing is swept at such heights.
     line, tool : (N,) of the program, -1 there.
     contact : (N,) number of the contact that it comes near to: of a peg, a clamp, or an end on a wall.
+    span, low : (N,) number of the span of what is swept, and whether that is what is swept below the part.
     """
 
     clearance: Array
     line: IntArray
     tool: IntArray
     contact: IntArray
+    span: IntArray
+    low: NDArray[np.bool_]
 
 
 def nearest_moves(
@@ -48,7 +51,8 @@ def nearest_moves(
 ) -> NearestMove:
     """Where the tools of a program come nearest to each fixture of a table; ``peg_height`` in mm."""
     count, swept = len(table), swept_below(program, peg_height)
-    found = NearestMove(np.full(count, inf), *(np.full(count, -1) for _ in range(3)))
+    line, tool, contact, span = (np.full(count, -1) for _ in range(4))
+    found = NearestMove(np.full(count, inf), line, tool, contact, span, np.zeros(count, np.bool_))
     x, y = peg_places(table, toolkit, workpiece)
     bolts = toolkit.places(table.arrangement, table.column, table.row, np.zeros(count))
     carriers = toolkit.peg_carriers(table.arrangement)
@@ -71,7 +75,7 @@ def nearest_moves(
             if carrier.body_radius > carrier.peg_radius:
                 below = swept_below(program, 0.0)
                 reach, span = below.nearest(centers, centers)
-                take(found, rows, k, below, reach - carrier.body_radius, span)
+                take(found, rows, k, below, reach - carrier.body_radius, span, below=True)
     return found
 
 
@@ -84,12 +88,18 @@ class Passing:
     distance : from the nearest of what holds the part, in mm.
     line, tool : of the program.
     element : what it is near to, such as "peg L-A1".
+    contact : number of that among the contacts.
+    path : of the tool's axis there, one segment, arc or point in the part's coordinates, mm.
+    radius : of the tool's cylinder there, in mm.
     """
 
     distance: float
     line: int
     tool: int
     element: str
+    contact: int
+    path: tuple[PathVertex, ...]
+    radius: float
 
 
 def passing_of(result: Result, index: int) -> Passing | None:
@@ -103,8 +113,18 @@ def passing_of(result: Result, index: int) -> Passing | None:
     near = nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
     if near.line[0] < 0:
         return None
-    name = element_name(table, toolkit, 0, int(near.contact[0]))
-    return Passing(float(near.clearance[0]), int(near.line[0]), int(near.tool[0]), name)
+    contact, span = int(near.contact[0]), int(near.span[0])
+    program, height = result.query.passed
+    swept = swept_below(program, 0.0 if near.low[0] else height)
+    return Passing(
+        float(near.clearance[0]),
+        int(near.line[0]),
+        int(near.tool[0]),
+        element_name(table, toolkit, 0, contact),
+        contact,
+        path_of(swept.tree.rows[span]),
+        float(swept.tree.radius[span]),
+    )
 
 
 def element_name(table: FixtureTable, toolkit: Toolkit, row: int, contact: int) -> str:
@@ -129,10 +149,22 @@ def beside_wall(table: FixtureTable, rows: IntArray, swept: Swept) -> tuple[Arra
 
 
 def take(
-    found: NearestMove, rows: IntArray, contact: int, swept: Swept, clearance: Array, span: IntArray
+    found: NearestMove,
+    rows: IntArray,
+    contact: int,
+    swept: Swept,
+    clearance: Array,
+    span: IntArray,
+    below: bool = False,
 ) -> None:
-    """Takes over clearances (R,) of a contact of some rows where they are less than those known."""
+    """Takes over clearances (R,) of a contact of some rows where they are less than those known.
+
+    Parameters
+    ----------
+    below : whether ``swept`` is what is swept below the part.
+    """
     less = (clearance < found.clearance[rows]) & (span >= 0)
     chosen, spans = rows[less], span[less]
     found.clearance[chosen], found.contact[chosen] = clearance[less], contact
     found.line[chosen], found.tool[chosen] = swept.line[spans], swept.tool[spans]
+    found.span[chosen], found.low[chosen] = spans, below

@@ -24,6 +24,7 @@ from workhold.supports.clamp_point import ClampPlaces
 from workhold.supports.faces import TouchableFace, area_center
 from workhold.supports.forces import PegForces, lifted_by_jaws
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
+from workhold.supports.program_zones import with_program
 from workhold.supports.sides import Sides
 
 __all__ = ["SupportSearch", "supports_of", "supports_of_best"]
@@ -243,7 +244,7 @@ def supports_of(
         looked at, and for all triples where there are too many.
     """
     asked = spatial(query.loads if loads is None else loads, request.thickness)
-    search = SupportSearch(query, request, asked)
+    search = SupportSearch(query, with_program(request, query.workpiece, query.program), asked)
     return search.supports(fixture, checked_force(jaw_force), best, cancel, progress)
 
 
@@ -266,6 +267,7 @@ def supports_of_best(
         ``cancel`` is set no further fixture is looked at.
     """
     asked = spatial(query.loads if loads is None else loads, request.thickness)
+    request = with_program(request, query.workpiece, query.program)
     search, force, every = SupportSearch(query, request, asked), checked_force(jaw_force), list(fixtures)
     out = list[Supports]()
     for number, fixture in enumerate(every):

@@ -191,10 +191,14 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
 def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     """Draws the picture to set the vise from."""
     from workhold.drawing.fixture_pictures import draw_fixture
+    from workhold.drawing.path_drawn import planned_path
 
     result = order.result
     title = f"Fixture {order.rank} of {order.count}"
-    return draw_fixture(order.fixture, result.workpiece, result.toolkit, title=title).encode("utf-8"), None
+    index = order.rank - 1 if len(result) == order.count else 0
+    path = planned_path(result, index)
+    svg = draw_fixture(order.fixture, result.workpiece, result.toolkit, title=title, path=path)
+    return svg.encode("utf-8"), None
 
 
 def bodies(order: PaperOrder) -> tuple[bytes, str | None]:

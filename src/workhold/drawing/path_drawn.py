@@ -1,0 +1,328 @@
+"""Paths of tools on a page: cutting moves by tool and by height, and rapid moves dashed.
+
+On the plan of a fixture the path is turned with the part. The move that comes nearest to what holds the part
+is marked with its line and its distance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot, pi
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.drawing.annotation import Label, LabelPlacer, Place, around, leader_end
+from workhold.drawing.scene import GREY, Box, LengthUnit, Scene, View, number, text_width
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.moves import Moves, along
+from workhold.model.program import Program
+from workhold.model.program_figures import tip_box, tool_figures
+from workhold.model.result import Result
+from workhold.statics.program_clearance import Passing, passing_of
+
+__all__ = [
+    "COLOURS",
+    "SHADES",
+    "PagePaths",
+    "PlannedPath",
+    "draw_paths",
+    "heights_cut",
+    "planned_path",
+    "shaded",
+]
+
+Floats = NDArray[np.float64]
+# A colour for each tool, in the order in which they move; they begin again after the last.
+COLOURS = ("#1f6fb4", "#d1660d", "#2a8f4d", "#8a4fb0", "#c0392b", "#138a8a", "#8a6d1f", "#b8437f")
+# Shades of a tool's colour by height: mixed with white above, with black below.
+SHADES = 6
+LIGHT, DARK = 0.6, 0.45
+BAND = "0.13"
+# Straight moves shorter than this, page units, are drawn together.
+SHORTEST = 0.35
+NEAREST = "#d0006f"
+NAME, HIGH = 12.0, 17.0
+# How much larger than the fixture a plan may become for the sake of what is cut beside the part.
+MOST_GROWN = 1.4
+
+
+@frozen(eq=False)
+class PagePaths:
+    """The moves of a program on a page, those outside a box left out.
+
+    Parameters
+    ----------
+    start, end : (M, 2) page points, y down.
+    bulge : (M,) as of the moves, which a page with y down turns over.
+    shown : (M,) whether a move is drawn.
+    scale : page units per mm.
+    """
+
+    start: Floats
+    end: Floats
+    bulge: Floats
+    shown: NDArray[np.bool_]
+    scale: float
+
+    @classmethod
+    def of(cls, moves: Moves, view: View, pose: Pose | None = None, box: Box | None = None) -> PagePaths:
+        """The moves as a view shows them.
+
+        Parameters
+        ----------
+        pose : of the part, whose coordinates the moves are in; None where the view shows these.
+        box : of the page, at which straight moves end, and beyond which arcs are left out.
+        """
+        ends = []
+        for points in (moves.start, moves.end):
+            x, y = points[:, 0], points[:, 1]
+            if pose is not None:
+                x, y = pose.apply(x, y)
+            ends.append(np.column_stack([view.left + view.scale * x, view.top - view.scale * y]))
+        shown = np.ones(len(moves), dtype=bool)
+        if box is not None:
+            first, last = shares_inside(ends[0], ends[1], box)
+            middle = along(ends[0], ends[1], -moves.bulge, np.full(len(moves), 0.5))
+            is_arc = moves.bulge != 0.0
+            arc_inside = np.all([within(points, box) for points in (*ends, middle)], axis=0)
+            shown = np.where(is_arc, arc_inside, first <= last)
+            start, reach = ends[0].copy(), ends[1] - ends[0]
+            cut = np.flatnonzero(shown & ~is_arc & ((first > 0.0) | (last < 1.0)))
+            ends[0][cut] = start[cut] + first[cut, None] * reach[cut]
+            ends[1][cut] = start[cut] + last[cut, None] * reach[cut]
+        return cls(ends[0], ends[1], moves.bulge, shown, view.scale)
+
+    def data(self, rows: NDArray[np.int64]) -> str:
+        """SVG path data of some moves; a move that goes on where the last one ended begins no new line."""
+        rows = rows[self.shown[rows]]
+        middle = along(self.start[rows], self.end[rows], -self.bulge[rows], np.full(len(rows), 0.5))
+        found: list[str] = []
+        last: list[float] | None = None
+        written: list[float] = []
+        for one, other, half, bent in zip(
+            *(values.tolist() for values in (self.start[rows], self.end[rows], middle, self.bulge[rows])),
+            strict=True,
+        ):
+            if one != last:
+                # What was passed over of a line before is its end.
+                if last is not None and written != last:
+                    found.append(f"L{page_point(last)}")
+                found.append(f"M{page_point(one)}")
+                written = one
+            last = other
+            if not bent:
+                if one == other or hypot(other[0] - written[0], other[1] - written[1]) >= SHORTEST:
+                    found.append(f"L{page_point(other)}")
+                    written = other
+                continue
+            if written != one:
+                found.append(f"L{page_point(one)}")
+            chord = hypot(other[0] - one[0], other[1] - one[1])
+            radius = number(chord * (1 + bent * bent) / (4 * abs(bent)))
+            # Half a turn is drawn in two pieces, of which the direction is clear.
+            for place in [other] if 4 * np.arctan(abs(bent)) <= 0.9 * pi else [half, other]:
+                found.append(f"A{radius} {radius} 0 0 {0 if bent > 0 else 1} {page_point(place)}")
+            written = other
+        if last is not None and written != last:
+            found.append(f"L{page_point(last)}")
+        return "".join(found)
+
+
+def page_point(point: Sequence[float]) -> str:
+    """The numbers of a page point in path data."""
+    return f"{number(point[0])} {number(point[1])}"
+
+
+def within(points: Floats, box: Box) -> NDArray[np.bool_]:
+    """Whether page points (N, 2) are inside a box."""
+    x, y = points.T
+    inside: NDArray[np.bool_] = (box.x0 <= x) & (x <= box.x1) & (box.y0 <= y) & (y <= box.y1)
+    return inside
+
+
+def shares_inside(start: Floats, end: Floats, box: Box) -> tuple[Floats, Floats]:
+    """The shares (N,) of straight lines from which and until which they are inside a box.
+
+    The first is larger where a line is nowhere inside (Y.-D. Liang, B. A. Barsky 1984).
+    """
+    first, last = np.zeros(len(start)), np.ones(len(start))
+    for axis, (low, high) in enumerate(((box.x0, box.x1), (box.y0, box.y1))):
+        begin, reach = start[:, axis], end[:, axis] - start[:, axis]
+        level = reach == 0.0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            one, other = (low - begin) / reach, (high - begin) / reach
+        outside = level & ((begin < low) | (begin > high))
+        first = np.where(level, first, np.maximum(first, np.minimum(one, other)))
+        last = np.where(outside, -1.0, np.where(level, last, np.minimum(last, np.maximum(one, other))))
+    return first, last
+
+
+def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float = 1.0) -> None:
+    """Draws bands as wide as the flutes, rapid moves dashed, and the axes at cutting moves, high ones first.
+
+    Upright cutting moves are dots.
+    """
+    moves, figures = program.moves, tool_figures(program)
+    for place, one in enumerate(figures):
+        rows = np.flatnonzero((moves.tool == one.tool) & moves.cutting)
+        wide = program.tools[one.tool].diameter * paths.scale
+        add(group, paths, rows, COLOURS[place % len(COLOURS)], wide, "band", stroke_opacity=BAND)
+    flat = (moves.start[:, :2] != moves.end[:, :2]).any(axis=1)
+    add(
+        group,
+        paths,
+        np.flatnonzero(~moves.cutting & flat),
+        GREY,
+        1.0 * weight,
+        "rapid",
+        stroke_dasharray="6 5",
+    )
+    low, high = heights_cut(program)
+    middle = (moves.start[:, 2] + moves.end[:, 2]) / 2
+    shade = np.clip(((middle - low) / max(high - low, 1e-9) * SHADES).astype(int), 0, SHADES - 1)
+    for level in range(SHADES - 1, -1, -1):
+        for place, one in enumerate(figures):
+            own = (moves.tool == one.tool) & moves.cutting & (shade == level)
+            colour = shaded(COLOURS[place % len(COLOURS)], level)
+            for rows, wide in ((np.flatnonzero(own & flat), 1.8), (np.flatnonzero(own & ~flat), 5.0)):
+                add(group, paths, rows, colour, wide * weight, f"cut-{one.tool}")
+
+
+def add(
+    group: Scene, paths: PagePaths, rows: NDArray[np.int64], colour: str, wide: float, name: str, **more: str
+) -> None:
+    """Adds the moves of some rows as one path of a class, where there are any."""
+    d = paths.data(rows)
+    if d:
+        group.path(d, colour, wide, stroke_linecap="round", **{"class": name}, **more)
+
+
+def heights_cut(program: Program) -> tuple[float, float]:
+    """The least and the greatest height of the tip at cutting moves, in mm."""
+    cut = program.moves.cutting
+    heights = np.concatenate([program.moves.start[cut, 2], program.moves.end[cut, 2], [program.z_zero]])
+    return float(heights.min()), float(heights.max())
+
+
+def shaded(colour: str, level: int) -> str:
+    """A colour at a level, from 0, the lowest and darkest.
+
+    >>> shaded("#808080", 0), shaded("#808080", SHADES - 1)
+    ('#464646', '#cccccc')
+    """
+    share = level / (SHADES - 1)
+    parts = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
+    if share < 0.5:
+        mixed = [part * (1 - DARK * (1 - 2 * share)) for part in parts]
+    else:
+        mixed = [part + (255 - part) * LIGHT * (2 * share - 1) for part in parts]
+    return "#" + "".join(f"{int(part):02x}" for part in mixed)
+
+
+@frozen(eq=False)
+class PlannedPath:
+    """A program over a fixture on its plan.
+
+    Parameters
+    ----------
+    program : what the machine does while the fixture holds the part.
+    fixture : in whose pose the part lies.
+    passing : where its tools come nearest to what holds the part; None where none comes down to it.
+    peg_height : up to which anything holds the part, in mm; None where nobody knows.
+    """
+
+    program: Program
+    fixture: Fixture
+    passing: Passing | None
+    peg_height: float | None = None
+
+    def grown(self, extent: Box) -> Box:
+        """An extent (mm) of the plan with what is cut as well, where that makes it not much larger."""
+        program = self.program
+        cut = np.flatnonzero(program.moves.cutting)
+        if not len(cut):
+            return extent
+        moves = program.moves
+        low, high = tip_box(Moves(*(getattr(moves, name)[cut] for name in COLUMNS)))
+        around_path = max(tool.diameter for tool in program.tools.values()) / 2
+        xs, ys = self.fixture.pose.apply(
+            np.array([low[0], high[0], high[0], low[0]]), np.array([low[1], low[1], high[1], high[1]])
+        )
+        box = Box(float(xs.min()), float(ys.min()), float(xs.max()), float(ys.max())).grown(around_path)
+        union = extent.union(box)
+        small = union.width <= MOST_GROWN * extent.width and union.height <= MOST_GROWN * extent.height
+        return union if small else extent
+
+    def place(self) -> tuple[float, float]:
+        """The point of the nearest move that is nearest to what it passes, in mm in the vise frame."""
+        assert self.passing is not None
+        path, peg = self.passing.path, self.fixture.pegs[self.passing.contact]
+        points = np.array([vertex[:2] for vertex in path])
+        if len(path) > 1:
+            share = np.linspace(0.0, 1.0, 401)
+            one, other = (np.tile(points[k], (len(share), 1)) for k in (0, 1))
+            points = along(one, other, np.full(len(share), path[0][2]), share)
+        x, y = self.fixture.pose.apply(points[:, 0], points[:, 1])
+        # A wall is below all of the part.
+        off = y if peg not in self.fixture.placed else np.hypot(x - peg.x, y - peg.y)
+        nearest = int(np.argmin(off))
+        return float(x[nearest]), float(y[nearest])
+
+    def draw(self, scene: Scene, view: View, box: Box) -> None:
+        """Draws the paths as far as they are inside a box of the page, and the nearest move over them."""
+        pose = self.fixture.pose
+        group = scene.group("paths", view)
+        draw_paths(group, self.program, PagePaths.of(self.program.moves, view, pose, box), 0.8)
+        if self.passing is None:
+            return
+        path = self.passing.path
+        ends = np.array([[*path[0][:2], 0.0], [*path[-1][:2], 0.0]])
+        row = (self.passing.line, self.passing.tool, True, ends[0], ends[1], path[0][2], 0.0, 0.0)
+        paths = PagePaths.of(Moves.of_rows([row]), view, pose, box)
+        only = np.zeros(1, np.int64)
+        wide = 2 * self.passing.radius * view.scale
+        add(group, paths, only, NEAREST, wide, "nearest-band", stroke_opacity="0.16")
+        add(group, paths, only, NEAREST, 2.6, "nearest")
+        if within(np.array([view(self.place())]), box)[0]:
+            group.circle(view(self.place()), 3.6, "#ffffff", NEAREST, 1.8, **{"class": "nearest-place"})
+
+    def words(self, lengths: LengthUnit) -> str:
+        """What the label of the nearest move says, such as "line 54, T2: 12.867 mm"."""
+        assert self.passing is not None
+        near = self.passing
+        return f"line {near.line}, T{near.tool}: {lengths.words(near.distance)}"
+
+    def avoided(self, placer: LabelPlacer, view: View) -> None:
+        """Marks where the nearest move is, so that labels keep off."""
+        if self.passing is not None:
+            x, y = view(self.place())
+            placer.avoid_box(Box(x, y, x, y).grown(6))
+
+    def labels(self, view: View, lengths: LengthUnit) -> list[Label]:
+        """Candidates for the label of the nearest move."""
+        if self.passing is None:
+            return []
+        size = (text_width(self.words(lengths), NAME, bold=True) + 8, HIGH)
+        turns = [2 * pi * k / 24 for k in range(24)]
+        gaps = (8, 16, 28, 44, 64, 90)
+        return [around(view(self.place()), -pi / 4, size, gaps, turns, turn_cost=1.0)]
+
+    def draw_name(self, scene: Scene, places: Sequence[Place], lengths: LengthUnit) -> None:
+        """Writes the label of the nearest move where it was placed, with a leader."""
+        for place in places[:1]:
+            scene.line([place.anchor, leader_end(place.anchor, place.box)], NEAREST, 1.2)
+            scene.rectangle(place.box, "#ffffff", NEAREST, 1.2, 3)
+            scene.text(place.box.center, self.words(lengths), NAME, "middle", bold=True, fill=NEAREST)
+
+
+COLUMNS = ("line", "tool", "cutting", "start", "end", "bulge", "feed", "spindle")
+
+
+def planned_path(result: Result, index: int) -> PlannedPath | None:
+    """The program of a result over its fixture of an index, counted from 0; None without a program."""
+    query = result.query
+    if query.program is None:
+        return None
+    return PlannedPath(query.program, result[index], passing_of(result, index), query.peg_height)

@@ -1,0 +1,267 @@
+"""Where a program leaves no place for supports and for the clamp on top: keep-out zones of what it sweeps.
+
+What tools sweep at heights below the part is no place for pads, such as where a drill comes through. What
+they sweep at the heights of the clamp is none for its tip. Each swept piece is a zone, straight or bent, as
+wide as the tool with the clearance.
+
+Of the pieces above the part few border the places that are left. They are found on ever smaller squares of
+the face. Let c be the middle of a square and h its half diagonal. Let s(t) be the least distance of a place
+t from the paths, less what has to be kept. It changes by no more than the way. So a square is covered
+by the piece nearest to c where s(c) < -h, and free where s(c) > h. All others are quartered. On one as small as ``FINEST`` the
+piece nearest to c stands for all others, once it is made 2 h wider. Places that are left are clear of every
+piece, and no place is lost that keeps 2 h more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from math import atan, inf, pi
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from workhold.contact.swept import Swept, path_of
+from workhold.contact.trimming import distances
+from workhold.model.program import PathVertex, Program, SweptPiece
+from workhold.model.requirements import Zone, zone_of
+from workhold.model.support_bodies import SCREW
+from workhold.model.support_request import SupportRequest
+from workhold.model.workpiece import Workpiece
+from workhold.supports.faces import TouchableFace
+
+__all__ = ["capsule", "with_program"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+# Half diagonals in mm of the smallest squares, tried until there are few zones.
+FINEST = (0.01, 0.05, 0.25, 1.0)
+# Zones above the part among which the clamp's place is still found fast, and zones below it.
+MOST_ABOVE, MOST_BELOW = 40, 400
+# Squares along the longer side of a face to begin with.
+FIRST = 16
+
+
+def with_program(request: SupportRequest, workpiece: Workpiece, program: Program | None) -> SupportRequest:
+    """A request with the zones of a program among its own; the request itself without one."""
+    if program is None:
+        return request
+
+    def face(loops: tuple[Array, ...] | None) -> TouchableFace:
+        return TouchableFace.of(workpiece.loops if loops is None else loops)
+
+    below = zones_below(program, request.pad_radius, request.pad_margin, KeyedFace(face(request.bottom)))
+    above = zones_above(program, request.thickness, request.tip_radius, KeyedFace(face(request.top)))
+
+    def further(own: tuple[Zone, ...], more: tuple[Zone, ...]) -> tuple[Zone, ...]:
+        return (*own, *(zone for zone in more if zone not in own))
+
+    return evolve(
+        request,
+        bottom_zones=further(request.bottom_zones, below),
+        top_zones=further(request.top_zones, above),
+    )
+
+
+@frozen
+class KeyedFace:
+    """A face that counts as another where their borders are the same."""
+
+    face: TouchableFace
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, KeyedFace) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    @property
+    def key(self) -> bytes:
+        """The borders as bytes."""
+        borders = self.face.borders
+        return borders.starts.tobytes() + borders.ends.tobytes() + borders.arcs.tobytes()
+
+
+@lru_cache(maxsize=8)
+def zones_below(program: Program, pad_radius: float, pad_margin: float, keyed: KeyedFace) -> tuple[Zone, ...]:
+    """Where no pad may stand: where tools come down to the plane on which the part lies, or below it."""
+    swept = Swept.of(program.iter_swept(-inf, 0.0))
+    return zones_of(swept, program.clearance, pad_radius + pad_margin, pad_radius, keyed.face, MOST_BELOW)
+
+
+@lru_cache(maxsize=8)
+def zones_above(program: Program, thickness: float, tip_radius: float, keyed: KeyedFace) -> tuple[Zone, ...]:
+    """Where the tip may not stand: where tools come too near to the clamp as it is drawn."""
+    return zones_of(
+        Swept.of(beside_clamp(program, thickness, tip_radius)),
+        program.clearance,
+        tip_radius,
+        tip_radius,
+        keyed.face,
+        MOST_ABOVE,
+    )
+
+
+def beside_clamp(program: Program, thickness: float, tip_radius: float) -> Iterator[SweptPiece]:
+    """What is swept at the heights of the clamp on top, wider where the clamp is wider than its tip."""
+    low = thickness
+    for height, share in SCREW:
+        wider = max(share - 1.0, 0.0) * tip_radius
+        for one in program.iter_swept(low, low + height):
+            yield SweptPiece(one.line, one.tool, one.kind, one.path, one.tip, one.radius + wider, one.heights)
+        low += height
+
+
+def zones_of(
+    swept: Swept, clearance: float, on_face: float, disc: float, face: TouchableFace, most: int
+) -> tuple[Zone, ...]:
+    """The zones of what is swept that keep discs clear of it, as few of them as do.
+
+    Parameters
+    ----------
+    clearance : kept between the cylinders and a disc, in mm.
+    on_face : how far from the border of the face the middle of a disc is at least.
+    disc : radius of the discs.
+    most : zones; where there are more, they are made wider and fewer.
+    """
+    if not len(swept):
+        return ()
+    finest, chosen, boxes = FINEST[0], np.zeros(0, np.int64), np.zeros(0, np.int64)
+    for finest in FINEST:
+        chosen, boxes = needed(swept, clearance + disc, on_face, face, finest)
+        if len(chosen) + len(boxes) <= most:
+            break
+    wide = clearance + 2 * finest
+    return (
+        *(
+            zone_of(capsule(path_of(swept.tree.rows[k]), float(swept.tree.radius[k]) + wide))
+            for k in chosen.tolist()
+        ),
+        *(
+            zone_of([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]])
+            for x0, y0, x1, y1 in swept.filled[boxes].tolist()
+        ),
+    )
+
+
+def needed(
+    swept: Swept, keep: float, on_face: float, face: TouchableFace, finest: float
+) -> tuple[IntArray, IntArray]:
+    """Numbers of the spans, and of the filled boxes, that decide which places of a face are left.
+
+    Parameters
+    ----------
+    keep : from the cylinders to the middle of a disc, in mm.
+    finest : half diagonal of the smallest squares, in mm.
+    """
+    low, high = face.box
+    side = float(max(high - low)) / FIRST
+    x, y = (np.arange(low[k] + side / 2, high[k] + side / 2, side) for k in (0, 1))
+    points = np.stack([grid.ravel() for grid in np.meshgrid(x, y)], axis=1)
+    border, covered, spans, boxes = [], [], [], set[int]()
+    while len(points):
+        half = side / 2**0.5
+        points = points[face.room(points) >= on_face - half]
+        reach, nearest = swept.nearest(points, points)
+        inside, which = in_filled(swept, points, half)
+        boxes.update(which[inside].tolist())
+        slack = reach - keep
+        hidden = slack < -half
+        covered.append(np.column_stack([points, np.full(len(points), half)])[hidden & ~inside])
+        spans.append(nearest[hidden & ~inside])
+        open_ = ~inside & ~hidden & (slack <= half)
+        if half <= finest:
+            border.append(nearest[open_])
+            break
+        # A place beside the corner of a box is open as well as long as the box reaches into its square.
+        side /= 2
+        quarters = side / 2 * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
+        points = (points[open_][:, None] + quarters).reshape(-1, 2)
+    first = np.unique(np.concatenate([np.zeros(0, np.int64), *border]))
+    squares, own = np.concatenate([np.zeros((0, 3)), *covered]), np.concatenate([first[:0], *spans])
+    return covering(swept, first, squares, own, keep), np.array(sorted(boxes), np.int64)
+
+
+def in_filled(swept: Swept, points: Array, half: float) -> tuple[NDArray[np.bool_], IntArray]:
+    """Whether squares about points (N, 2) lie in a filled box, and in which (N,)."""
+    inside, which = np.zeros(len(points), np.bool_), np.full(len(points), -1)
+    for number, (x0, y0, x1, y1) in enumerate(swept.filled.tolist()):
+        x, y = points.T
+        now = (x0 + half <= x) & (x <= x1 - half) & (y0 + half <= y) & (y <= y1 - half) & ~inside
+        inside, which = inside | now, np.where(now, number, which)
+    return inside, which
+
+
+def covering(swept: Swept, first: IntArray, squares: Array, own: IntArray, keep: float) -> IntArray:
+    """Spans that cover squares (N, 3), middles and half diagonals: some at first, then those that cover most.
+
+    Parameters
+    ----------
+    own : (N,) a span that covers each square.
+    """
+    chosen, open_ = first, np.ones(len(squares), np.bool_)
+    for number in first.tolist():
+        open_[open_] = ~covers(swept, number, squares[open_], keep)
+    while open_.any():
+        # The one that most of the open squares are nearest to is as good as the best.
+        number = int(np.bincount(own[open_]).argmax())
+        chosen = np.append(chosen, number)
+        open_[open_] = ~covers(swept, number, squares[open_], keep)
+    return np.sort(chosen)
+
+
+def covers(swept: Swept, number: int, squares: Array, keep: float) -> NDArray[np.bool_]:
+    """Whether what is swept along a span leaves nothing of each of some squares (N, 3)."""
+    row = swept.tree.rows[number : number + 1]
+    away = distances(row, squares[None, :, 0], squares[None, :, 1])[0]
+    hidden: NDArray[np.bool_] = away - swept.tree.radius[number] - keep < -squares[:, 2]
+    return hidden
+
+
+def capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float]]:
+    """The border of all that is nearer to a point, a segment, or an arc of at most half a turn than a radius.
+
+    Returns
+    -------
+    list
+        Vertices x, y and bulge, run counter-clockwise.
+    """
+    x, y, bulge = path[0]
+    if len(path) == 1:
+        return [[x - radius, y, 1.0], [x + radius, y, 1.0]]
+    if bulge < 0.0:
+        (to_x, to_y, _) = path[1]
+        return capsule(((to_x, to_y, -bulge), (x, y, 0.0)), radius)
+    start, end = np.array([x, y]), np.array(path[1][:2])
+    chord = end - start
+    along = chord / np.hypot(*chord)
+    if bulge == 0.0:
+        right = radius * np.array([along[1], -along[0]])
+        corners = [(start + right, 0.0), (end + right, 1.0), (end - right, 0.0), (start - right, 1.0)]
+        return [[*place.tolist(), bent] for place, bent in corners]
+    half = 2.0 * atan(bulge)
+    size = float(np.hypot(*chord)) / (2 * np.sin(half))
+    center = (start + end) / 2 + np.array([-along[1], along[0]]) * size * np.cos(half)
+    out, back = (start - center) / size, (end - center) / size
+    outer = [(start + radius * out, bulge)]
+    if size > radius:
+        corners = [
+            *outer,
+            (end + radius * back, 1.0),
+            (end - radius * back, -bulge),
+            (start - radius * out, 1.0),
+        ]
+        return [[*place.tolist(), bent] for place, bent in corners]
+    # The inner border is gone; the circles about both ends meet behind the centre.
+    middle, half_chord = (start + end) / 2, float(np.hypot(*chord)) / 2
+    apex = middle + np.array([-along[1], along[0]]) * np.sqrt(max(radius**2 - half_chord**2, 0.0))
+    turns = [sweep_between(end, end + radius * back, apex), sweep_between(start, apex, start + radius * out)]
+    corners = [*outer, (end + radius * back, np.tan(turns[0] / 4)), (apex, np.tan(turns[1] / 4))]
+    return [[*place.tolist(), float(bent)] for place, bent in corners]
+
+
+def sweep_between(center: Array, one: Array, other: Array) -> float:
+    """The angle from one point about a centre to another, counter-clockwise, in radians from 0 to 2 pi."""
+    a, b = one - center, other - center
+    return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)) % (2 * pi)
