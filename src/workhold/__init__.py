@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
     from workhold.model.result import Result
     from workhold.model.workpiece import Workpiece
+    from workhold.presenting.cad import from_build123d, from_cadquery
     from workhold.search.design import answer, design
     from workhold.search.toolkit_search import count_contacts
     from workhold.seating.solver import seatings
@@ -59,6 +60,8 @@ __all__ = [
     "circle_zone",
     "count_contacts",
     "design",
+    "from_build123d",
+    "from_cadquery",
     "load",
     "open",
     "polygon_zone",
@@ -90,6 +93,8 @@ HOMES = {
     "circle_zone": "workhold.model.requirements",
     "count_contacts": "workhold.search.toolkit_search",
     "design": "workhold.search.design",
+    "from_build123d": "workhold.presenting.cad",
+    "from_cadquery": "workhold.presenting.cad",
     "load": "workhold.files.part.load",
     "open": "workhold.files.result.reader:read_result",
     "polygon_zone": "workhold.model.requirements",
@@ -112,6 +117,8 @@ DELEGATES = {
     "save_glb": "workhold.files.glb.writer",
     "save_sheet": "workhold.presenting.papers",
     "to_arrow": "workhold.presenting.data",
+    "to_build123d": "workhold.presenting.cad",
+    "to_cadquery": "workhold.presenting.cad",
     "to_pandas": "workhold.presenting.data",
     "workpiece_picture": "workhold.presenting.papers",
 }

@@ -88,6 +88,7 @@ COMMANDS = {
     "mcp": (
         "Offer load, design, show, sheet and explain as tools to an agent, over the Model Context Protocol."
     ),
+    "doctor": "Report what is installed, what is missing, and what each would be good for.",
     "completion": "Print the script that lets a shell complete the commands and options of workhold.",
 }
 

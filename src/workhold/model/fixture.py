@@ -327,6 +327,39 @@ class Fixture:
         """
         delegate("save_glb")(self, path, thickness=thickness, supports=supports, best=best)
 
+    def to_build123d(
+        self, around: Any = None, *, thickness: float | None = None, supports: Any = None, best: int = 1
+    ) -> Any:
+        """Makes a compound of build123d: part, pegs, clamps and plates, each with its name and colour.
+
+        Parameters
+        ----------
+        around : the part's own solid. The bodies then stand about it where it lies in its model, and it is
+            the first of them. With None they stand in the frame of the toolkit, and the part is a prism.
+        thickness : of the part in mm; that of its solid, or 10, if None.
+        supports : also the pads under the part and the clamp on top, of what :meth:`supports` returns.
+        best : which of its sets of three, from 1.
+
+        Raises
+        ------
+        InputError
+            For a fixture that is not one of a result, a set that is not there, and a solid of another part.
+            Also when build123d or the extra ``step`` is not installed.
+        """
+        return delegate("to_build123d")(self, around, thickness=thickness, supports=supports, best=best)
+
+    def to_cadquery(
+        self, around: Any = None, *, thickness: float | None = None, supports: Any = None, best: int = 1
+    ) -> Any:
+        """Makes an assembly of CadQuery with the bodies of :meth:`to_build123d`, which names the parameters.
+
+        Raises
+        ------
+        InputError
+            As :meth:`to_build123d`, of CadQuery.
+        """
+        return delegate("to_cadquery")(self, around, thickness=thickness, supports=supports, best=best)
+
     def supports(
         self,
         thickness: float | None = None,

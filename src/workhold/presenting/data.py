@@ -282,8 +282,13 @@ def verification_data(outcome: Verification) -> dict[str, Any]:
     }
 
 
-# What the extra ``tables`` asks for.
-REQUIREMENTS = {"pandas": "pandas>=2.2", "pyarrow": "pyarrow>=17"}
+# What the extras ``tables`` and ``build123d`` ask for. None asks for CadQuery, whose Open CASCADE is older.
+REQUIREMENTS = {
+    "pandas": "pandas>=2.2",
+    "pyarrow": "pyarrow>=17",
+    "build123d": "build123d>=0.10",
+    "cadquery": "cadquery>=2.5",
+}
 
 
 def to_pandas(result: Result) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import count
 from math import atan2, hypot, pi, sqrt
 from typing import Any
 
@@ -93,11 +94,22 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     """The edges of all faces, each as often as a face has it."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Curve
-    from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher
 
-    numbers = IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
+    # Edges that are the same whichever way a face runs them, by hash: the library's own map of shapes has
+    # another name in every version.
+    known: dict[int, list[tuple[Any, int]]] = {}
+    fresh = count()
+
+    def number_of(edge: Any) -> int:
+        same = known.setdefault(hash(edge), [])
+        for other, number in same:
+            if other.IsSame(edge):
+                return number
+        same.append((edge, next(fresh)))
+        return same[-1][1]
+
     edges = [
-        (index, edge, numbers.Add(edge))
+        (index, edge, number_of(edge))
         for index, face in enumerate(faces)
         for edge in sub_shapes(face.shape, "EDGE")
         if not BRep_Tool.Degenerated_s(edge)

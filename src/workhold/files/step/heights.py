@@ -180,16 +180,21 @@ def other_curve(face: SolidFace) -> InputError:
 
 def standing(shape: Any) -> StandingSolid:
     """A solid moved so that its lowest point is at height 0, and turned right side out."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.BRepLib import BRepLib
     from OCP.gp import gp_Trsf, gp_Vec
     from OCP.TopLoc import TopLoc_Location
 
     shape = sub_shapes(shape, "SOLID")[0]
     BRepLib.OrientClosedSolid_s(shape)
+    move = gp_Trsf()
+    move.SetTranslation(gp_Vec(0.0, 0.0, -foot_height(shape)))
+    return StandingSolid(shape.Moved(TopLoc_Location(move)))
+
+
+def foot_height(shape: Any) -> float:
+    """The height of a shape's lowest point in mm, with the very number of a level face that lies there."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+
     low = bounding_box(shape)[0][2]
     level = [plane_height(BRepAdaptor_Surface(face)) for face in sub_shapes(shape, "FACE")]
-    low = min((z for z in level if z is not None and z - low <= SAME_HEIGHT), default=low)
-    move = gp_Trsf()
-    move.SetTranslation(gp_Vec(0.0, 0.0, -low))
-    return StandingSolid(shape.Moved(TopLoc_Location(move)))
+    return min((z for z in level if z is not None and z - low <= SAME_HEIGHT), default=low)

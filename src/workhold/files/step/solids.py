@@ -241,16 +241,22 @@ def axis_named(axis: str | None) -> str:
 
 
 def along(shape: Any, axis: str) -> Any:
-    """A shape turned so that an axis of the file points up; coordinates only change places and signs.
+    """A shape turned so that an axis of the file points up; see :func:`turn_along`."""
+    from OCP.TopLoc import TopLoc_Location
+
+    return shape.Moved(TopLoc_Location(turn_along(axis)))
+
+
+def turn_along(axis: str) -> Any:
+    """The turn that makes an axis of the file point up; coordinates only change places and signs.
 
     With a minus the part lies on its other side, turned over like a page: what pointed to x points to -x.
     """
     from OCP.gp import gp_Trsf
-    from OCP.TopLoc import TopLoc_Location
 
     signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
     sources = zip(signs, AXES[axis.lstrip("-")], strict=True)
     rows = [[sign if column == source else 0.0 for column in range(3)] + [0.0] for sign, source in sources]
     turn = gp_Trsf()
     turn.SetValues(*rows[0], *rows[1], *rows[2])
-    return shape.Moved(TopLoc_Location(turn))
+    return turn

@@ -32,7 +32,14 @@ from workhold.model.setup import PartZero, part_zero
 from workhold.model.support_bodies import bodies_with_supports
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["plates_step", "setup_step", "supports_step", "write_plates_step", "write_setup_step"]
+__all__ = [
+    "named_solids",
+    "plates_step",
+    "setup_step",
+    "supports_step",
+    "write_plates_step",
+    "write_setup_step",
+]
 
 # The header's time stamp, so that the same set-up gives the same bytes.
 TIME_STAMP = "1970-01-01T00:00:00"
@@ -123,15 +130,26 @@ def supports_step(
 
 def bodies_step(bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose) -> bytes:
     """The assembly of bodies of a set-up, with the axes at part zero."""
+    named = named_solids(bodies)
+    pitch = min(min(carrier.pitch) for carrier in toolkit.plates)
+    axes = axes_at(zero, pose, pitch)
+    return assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])
+
+
+def named_solids(bodies: Sequence[FixtureBody]) -> list[tuple[str, Any, Colour]]:
+    """The bodies as solids of Open CASCADE, each with its name and colour; a body in pieces as several.
+
+    Raises
+    ------
+    InputError
+        When the extra ``step`` is not installed.
+    """
     load_step_library()
-    named = [
+    return [
         (body.name if number == 0 else f"{body.name} piece {number + 1}", solid, COLOURS[body.kind])
         for body in bodies
         for number, solid in enumerate(solids_of(body))
     ]
-    pitch = min(min(carrier.pitch) for carrier in toolkit.plates)
-    axes = axes_at(zero, pose, pitch)
-    return assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])
 
 
 def axes_at(point: Point, pose: Pose, length: float) -> Any:

@@ -1,0 +1,183 @@
+"""The command ``doctor``: what is installed, what is missing, and what each would be good for.
+
+Nothing is imported but the library for STEP files, which may be installed and still lack one of the system.
+What the extras ask for is read from the installed package, so that nothing is listed twice.
+"""
+
+from __future__ import annotations
+
+import platform
+import re
+import sys
+from collections.abc import Iterator
+from importlib import metadata
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from attrs import asdict, frozen
+
+from workhold.cli.outputs import JsonOption, print_json
+from workhold.errors import InputError
+from workhold.version import __version__
+
+if TYPE_CHECKING:
+    from workhold.cli.table import Table
+
+__all__ = ["doctor"]
+
+# The extras, each with what it is good for.
+USES = {
+    "numba": "Compiles the kernels, where the package has none for this machine.",
+    "step": "Reads parts from STEP files, and writes set-ups as STEP assemblies.",
+    "build123d": "Reads parts of build123d, and gives it fixtures as assemblies.",
+    "batch": "Writes the tables of batch as Parquet, and finds the fewest set-ups of a family.",
+    "tables": "Gives fixtures as tables of pandas and Arrow.",
+    "cluster": "Runs batch on a cluster of Dask.",
+    "mcp": "Offers tools to an agent over the Model Context Protocol.",
+}
+BUILT = "compiled in the package"
+# Distributions that are imported by another name than their own.
+MODULES = {"cadquery-ocp-novtk": "OCP"}
+# One requirement of the package's metadata: a distribution, its least version, and its extra.
+REQUIREMENT = re.compile(
+    r"(?P<name>[\w-]+)\s*(?:>=\s*(?P<least>[\d.]+))?\s*;\s*extra\s*==\s*[\"'](?P<extra>\w+)[\"']"
+)
+
+
+@frozen
+class InstallationRow:
+    """One line of the report.
+
+    Parameters
+    ----------
+    what : the part of the installation: ``kernels``, or an extra.
+    state : what was found.
+    use : what it is good for.
+    remedy : what to type for what is missing; None where nothing is.
+    """
+
+    what: str
+    state: str
+    use: str
+    remedy: str | None = None
+
+
+def doctor(json_: JsonOption = False) -> None:
+    """Report what is installed, what is missing, and what each would be good for.
+
+    Nothing is changed. Only NumPy and the other libraries of the core are needed to search; extras add
+    what is listed.
+
+    Example: workhold doctor
+    """
+    from workhold.cli.table import print_tables
+
+    findings = [kernels(), *extras()]
+    machine = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
+    if json_:
+        print_json(
+            version=__version__, python=sys.executable, machine=machine, findings=list(map(asdict, findings))
+        )
+        return
+    print_tables(f"workhold {__version__}, {machine}: {sys.executable}", "", table(findings))
+    remedies = [f"  {found.what}: {found.remedy}" for found in findings if found.remedy]
+    if remedies:
+        print_tables("", "To add what is missing:", *remedies)
+
+
+def table(findings: list[InstallationRow]) -> Table:
+    """The findings, one line each; what is missing is red on a terminal."""
+    from workhold.cli.table import Table
+
+    made = Table(("part", "state", "what it is good for"))
+    for number, found in enumerate(findings):
+        made.add_row(found.what, found.state, found.use)
+        if found.remedy:
+            made.red.add(number)
+    return made
+
+
+def kernels() -> InstallationRow:
+    """Where the compiled arithmetic comes from: the package, or numba and its cache on disk."""
+    use = "The arithmetic of every search."
+    try:
+        from workhold.kernels.base.compiling import LIBRARY, cache_folder, is_first_run
+    except InputError as error:
+        return InstallationRow("kernels", "missing", use, str(error))
+    if LIBRARY is not None:
+        return InstallationRow("kernels", BUILT, use)
+    folder = cache_folder()
+    if folder is None:
+        remedy = "set WORKHOLD_CACHE_DIR to a folder that can be written."
+        return InstallationRow("kernels", "compiled anew in every process: no folder can be written", use, remedy)
+    state = "to be compiled on the first run" if is_first_run() else "compiled on this machine"
+    return InstallationRow("kernels", f"{state}, kept in {folder}", use)
+
+
+def extras() -> Iterator[InstallationRow]:
+    """Yields what was found of each extra, in the order of :data:`USES`."""
+    asked = requirements()
+    for extra, use in USES.items():
+        if extra == "numba" and is_built():
+            yield InstallationRow(extra, "not needed here", use)
+            continue
+        found = [state_of(name, least) for name, least in asked.get(extra, [])]
+        lacking = [state for state, is_usable in found if not is_usable]
+        remedy = f"pip install 'workhold[{extra}]'" if lacking else None
+        if extra == "step" and found and (fault := step_fault()):
+            lacking, remedy = lacking or [f"{found[0][0]} does not load"], fault
+        states = lacking or [state for state, _ in found]
+        unknown = "not known: this copy was not installed as a package"
+        yield InstallationRow(extra, ", ".join(states) or unknown, use, remedy)
+
+
+def is_built() -> bool:
+    """Whether the package has compiled kernels for this machine, so that nothing is compiled here."""
+    return kernels().state == BUILT
+
+
+def requirements() -> dict[str, list[tuple[str, str]]]:
+    """What each extra asks for, with least versions; empty for a copy that was not installed."""
+    try:
+        lines = metadata.requires("workhold") or []
+    except metadata.PackageNotFoundError:
+        return {}
+    asked: dict[str, list[tuple[str, str]]] = {}
+    for line in lines:
+        if match := REQUIREMENT.fullmatch(line.strip()):
+            asked.setdefault(match["extra"], []).append((match["name"], match["least"] or "0"))
+    return asked
+
+
+def state_of(name: str, least: str) -> tuple[str, bool]:
+    """A distribution's name with its version or what is wrong with it, and whether it can be used."""
+    if find_spec(MODULES.get(name, name)) is None:
+        return f"{name} missing", False
+    try:
+        version = metadata.version(name)
+    except metadata.PackageNotFoundError:
+        # Another distribution may bring the same module.
+        return f"{name} of another package", True
+    if numbers(version) < numbers(least):
+        return f"{name} {version}, older than {least}", False
+    return f"{name} {version}", True
+
+
+def numbers(version: str) -> list[int]:
+    """The numbers of a version, to compare by.
+
+    >>> numbers("8.0.1rc2") < numbers("8.1")
+    True
+    """
+    return [int(number) for number in re.findall(r"\d+", version)]
+
+
+def step_fault() -> str | None:
+    """What keeps STEP files from being read, with its remedy: the system may lack a library."""
+    from workhold.files.step.library import load_step_library
+
+    try:
+        load_step_library()
+    except InputError as error:
+        return str(error)
+    return None

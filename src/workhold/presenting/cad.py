@@ -1,0 +1,219 @@
+"""Parts and fixtures of build123d and CadQuery: a solid becomes a workpiece, a fixture an assembly.
+
+Both libraries wrap shapes of Open CASCADE, so nothing goes through a file. An assembly stands in the frame of
+the toolkit, or about the part where it lies in its own model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import radians
+from typing import TYPE_CHECKING, Any
+
+from workhold.errors import InputError
+from workhold.files.part.data import wrapped_shapes
+from workhold.files.part.load import load
+from workhold.files.step.heights import foot_height
+from workhold.files.step.solids import along, bounding_box, sub_shapes, turn_along
+from workhold.files.step.writer import named_solids
+from workhold.model.bodies import BodyKind, BodySizes, FixtureBody, fixture_bodies
+from workhold.model.recounted import ChosenSupports
+from workhold.model.support_bodies import bodies_with_supports, supported_sizes
+from workhold.presenting.data import library
+
+if TYPE_CHECKING:
+    from workhold.model.fixture import Fixture
+    from workhold.model.support_triples import Supports
+    from workhold.model.workpiece import Workpiece
+
+__all__ = ["from_build123d", "from_cadquery", "to_build123d", "to_cadquery"]
+
+AXES = {
+    (1.0, 0.0, 0.0): "x",
+    (0.0, 1.0, 0.0): "y",
+    (0.0, 0.0, 1.0): "z",
+    (-1.0, 0.0, 0.0): "-x",
+    (0.0, -1.0, 0.0): "-y",
+    (0.0, 0.0, -1.0): "-z",
+}
+# Of a direction's coordinates.
+SAME = 1e-9
+# Of a part's size in mm.
+SAME_SIZE = 1e-3
+
+
+def from_build123d(part: Any, up: Any = "z", **choices: Any) -> Workpiece:
+    """Makes a workpiece of a part of build123d, as :func:`workhold.load` does of a file.
+
+    Parameters
+    ----------
+    part : a solid, part, sketch, face or builder.
+    up : what points up in the set-up: an ``Axis`` or vector along an axis, or its name, such as "-z".
+    choices : more of :func:`workhold.load`, such as ``name`` and ``peg_height``.
+
+    Raises
+    ------
+    InputError
+        For a direction along no axis, and as :func:`workhold.load`.
+    """
+    return load(part, axis=axis_name(up), **choices)
+
+
+def from_cadquery(part: Any, up: Any = "z", **choices: Any) -> Workpiece:
+    """Makes a workpiece of a work plane or a shape of CadQuery, as :func:`from_build123d` does.
+
+    Parameters
+    ----------
+    part : a work plane, solid or compound.
+    up : what points up in the set-up: a vector or plane along an axis, or its name, such as "-z".
+    choices : more of :func:`workhold.load`.
+
+    Raises
+    ------
+    InputError
+        As :func:`from_build123d`.
+    """
+    return load(part, axis=axis_name(up), **choices)
+
+
+def axis_name(up: Any) -> str:
+    """The name of the axis along a direction, which may be an axis, a plane, a vector or a name.
+
+    >>> axis_name((0, 0, -2))
+    '-z'
+
+    Raises
+    ------
+    InputError
+        For a direction along no axis.
+    """
+    if isinstance(up, str):
+        return up.strip().lower().replace("+", "")
+    vector = getattr(up, "direction", getattr(up, "zDir", up))
+    to_tuple = getattr(vector, "toTuple", None)
+    try:
+        x, y, z = map(float, to_tuple() if to_tuple else vector)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{type(up).__name__} is no direction: give an axis, a vector, or a name such as '-z'."
+        ) from error
+    length = max(abs(x), abs(y), abs(z))
+    for direction, name in AXES.items():
+        if length and all(
+            abs(one / length - other) <= SAME for one, other in zip((x, y, z), direction, strict=True)
+        ):
+            return name
+    raise InputError(f"the direction ({x:g}, {y:g}, {z:g}) is along none of x, y and z: turn the part first.")
+
+
+def to_build123d(
+    fixture: Fixture,
+    around: Any = None,
+    *,
+    thickness: float | None = None,
+    supports: Supports | None = None,
+    best: int = 1,
+) -> Any:
+    """Makes a compound of build123d, see :meth:`workhold.Fixture.to_build123d`."""
+    cad = library("build123d")
+    children = []
+    for name, shape, colour in bodies_of(fixture, around, thickness, supports, best):
+        child = cad.Compound.cast(shape)
+        child.label = name
+        child.color = cad.Color(*colour)
+        children.append(child)
+    return cad.Compound(label=title(fixture), children=children)
+
+
+def to_cadquery(
+    fixture: Fixture,
+    around: Any = None,
+    *,
+    thickness: float | None = None,
+    supports: Supports | None = None,
+    best: int = 1,
+) -> Any:
+    """Makes an assembly of CadQuery, see :meth:`workhold.Fixture.to_cadquery`."""
+    cad = library("cadquery")
+    assembly = cad.Assembly(name=title(fixture))
+    for name, shape, colour in bodies_of(fixture, around, thickness, supports, best):
+        assembly.add(cad.Shape.cast(shape), name=name, color=cad.Color(*colour, 1.0))
+    return assembly
+
+
+def title(fixture: Fixture) -> str:
+    """What an assembly is called."""
+    listed = fixture.listing
+    return f"{listed.result.workpiece.name} fixture {listed.rank}"
+
+
+def bodies_of(
+    fixture: Fixture, around: Any, thickness: float | None, supports: Supports | None, best: int
+) -> list[tuple[str, Any, tuple[float, float, float]]]:
+    """The bodies of a fixture with their names and colours, about a part where one is given.
+
+    Raises
+    ------
+    InputError
+        As :meth:`workhold.Fixture.to_build123d`.
+    """
+    result = fixture.listing.result
+    bodies: Sequence[FixtureBody]
+    if supports is None:
+        placed, sizes = fixture, BodySizes.of(result.workpiece, thickness)
+        bodies = fixture_bodies(placed, result.workpiece, result.toolkit, sizes)
+    else:
+        chosen = ChosenSupports.of(supports, best)
+        placed = chosen.recounted.fixture
+        bodies = bodies_with_supports(chosen, supported_sizes(supports, thickness=thickness))
+    if around is None:
+        return named_solids(bodies)
+    own = own_shape(around)
+    move = to_model(own, result.workpiece, placed)
+    rest = named_solids([body for body in bodies if body.kind is not BodyKind.PART])
+    part = next(body for body in bodies if body.kind is BodyKind.PART)
+    colour = named_solids([part])[0][2]
+    return [(part.name, own, colour), *((name, shape.Moved(move), hue) for name, shape, hue in rest)]
+
+
+def own_shape(part: Any) -> Any:
+    """The shape of Open CASCADE of a part, with one solid.
+
+    Raises
+    ------
+    InputError
+        For a part with no solid, or with several.
+    """
+    solids = [solid for shape in wrapped_shapes(part) for solid in sub_shapes(shape, "SOLID")]
+    if len(solids) != 1:
+        raise InputError(f"around is a part with {len(solids)} solids: give the one that was designed for.")
+    return solids[0]
+
+
+def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
+    """The location that carries the frame of the toolkit into the model of the part's solid.
+
+    Raises
+    ------
+    InputError
+        For a part that was not read from a solid, and for a solid of another size.
+    """
+    from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
+
+    solid = workpiece.solid
+    if solid is None:
+        raise InputError("the part was not read from a solid, so nobody knows where its model lies.")
+    turned = along(shape, solid.axis)
+    low, high = bounding_box(turned)
+    x0, y0, x1, y1 = workpiece.bounds
+    room = min(x0 - low[0], y0 - low[1], high[0] - x1, high[1] - y1)
+    if room < -SAME_SIZE or abs(high[2] - low[2] - solid.height) > SAME_SIZE:
+        raise InputError(f"around is another part than {workpiece.name}: give the one that was designed for.")
+    foot, turn, shift = gp_Trsf(), gp_Trsf(), gp_Trsf()
+    foot.SetTranslation(gp_Vec(0.0, 0.0, -foot_height(turned)))
+    pose = fixture.pose
+    turn.SetRotation(gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), radians(pose.theta_deg))
+    shift.SetTranslation(gp_Vec(pose.x, pose.y, 0.0))
+    there = shift.Multiplied(turn).Multiplied(foot).Multiplied(turn_along(solid.axis))
+    return TopLoc_Location(there.Inverted())
