@@ -8,6 +8,9 @@ from typing import Any
 
 import pytest
 
+from workhold.model.setup import part_zero
+
+BRACKET = str(Path(__file__).parents[2] / "examples" / "bracket.dxf")
 HELD = ("--pitch", "8", "--columns", "2", "--peg-radius", "3")
 PROGRAM = """(T1 D=6 - flat end mill)
 G21 G90 G17
@@ -46,6 +49,16 @@ def test_the_program_reaches_the_search_as_it_was_typed(
     assert query.ranking[1] == "program_clearance"
 
 
+@pytest.mark.parametrize("place", ["corner", "centre", "hole 1"])
+def test_its_zero_is_named_as_on_the_sheet(
+    run: Any, searched: dict[str, Any], file: Path, place: str
+) -> None:
+    outcome = run("design", BRACKET, *HELD, "--program", file, "--thickness", "10", "--zero", place)
+    assert outcome.exit_code == 0, outcome.stderr
+    query = searched["asked"]
+    assert query.program.zero == part_zero(query.workpiece, place).point
+
+
 @pytest.mark.parametrize(
     ("words", "heights"),
     [
@@ -70,7 +83,7 @@ def test_heights_are_those_that_were_given(
         ([], "give its --thickness, and --peg-height where pegs are not as high"),
         (["--peg-height", "8"], "give its --thickness"),
         (["--thickness", "10", "--rapid", "bent"], "--rapid"),
-        (["--thickness", "10", "--zero", "3"], "--zero '3' is not a place"),
+        (["--thickness", "10", "--zero", "3"], "--zero '3' is not a place here"),
         (["--thickness", "10", "--program-clearance", "-1"], "clearance"),
     ],
 )

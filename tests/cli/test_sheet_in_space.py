@@ -189,3 +189,15 @@ def test_no_supports_are_said_to_be_none(run: Run, folder: Path) -> None:
         and "under fixture 1 no three supports" in shown.stderr
         and not Path("b.pdf").exists()
     )
+
+
+def test_pegs_of_a_program_are_as_high_above_the_part_as_on_its_supports(run: Run, folder: Path) -> None:
+    """Heights of a query are above where the part lies; the sheet's are above the plate, 10 mm lower."""
+    (folder / "high.nc").write_text("(T1 D=6)\nT1 M6\nG90 G17 G21\nG0 X20 Y20 Z5\nG1 Z-2 F100\nG1 X40\nM30\n")
+    words = ("design", "plate.json", *KIT, "--best", 5, "--supports", "--thickness", 14, "--peg-height", 6)
+    shown = run(*words, "--program", "high.nc", "--sheet", "a.pdf", "--out", "r.json")
+    assert shown.exit_code == 0, shown.stderr
+    text = words_in("a.pdf")
+    assert "top of the pegs 6.000 mm" in text and "pegs above the plate 16.000 mm" in text
+    # Pegs press where they reach, not over all of the part.
+    assert "0.000 6.000" in text and "0.000 14.000" not in text

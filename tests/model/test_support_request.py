@@ -59,6 +59,7 @@ def test_each_peg_has_the_band_of_its_face_cut_at_the_thickness() -> None:
     given = evolve(SupportRequest.of(SOLID, 20), band=(3, 4)).for_fixture(held, solid)
     assert given.bands is None and given.peg_bands(4).tolist() == [[3, 4]] * 4
     assert SupportRequest.of(FLAT, 20).for_fixture(held, None).band == (0, 20)
+    assert SupportRequest.of(FLAT, 20).for_fixture(held, None, 6).band == (0, 6)
 
 
 def test_the_engine_takes_the_bands_of_the_solid() -> None:

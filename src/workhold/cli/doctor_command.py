@@ -109,7 +109,9 @@ def kernels() -> InstallationRow:
     folder = cache_folder()
     if folder is None:
         remedy = "set WORKHOLD_CACHE_DIR to a folder that can be written."
-        return InstallationRow("kernels", "compiled anew in every process: no folder can be written", use, remedy)
+        return InstallationRow(
+            "kernels", "compiled anew in every process: no folder can be written", use, remedy
+        )
     state = "to be compiled on the first run" if is_first_run() else "compiled on this machine"
     return InstallationRow("kernels", f"{state}, kept in {folder}", use)
 

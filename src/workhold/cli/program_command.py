@@ -96,7 +96,7 @@ def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
     """
     words = text.split(",")
     if len(words) != 2:
-        raise InputError(f"--zero {text!r} is not a place: give two lengths, such as 10,5.")
+        raise InputError(f"--zero {text!r} is not a place here: give two lengths, such as 10,5.")
     return length("--zero", words[0], unit), length("--zero", words[1], unit)
 
 

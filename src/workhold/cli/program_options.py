@@ -41,7 +41,12 @@ class ProgramWords:
         "FILE",
         "Table of its tools: TOML, CSV, or LinuxCNC's; what the program's comments say if not given.",
     )
-    zero: str = option(PROGRAM, "X,Y", "Where its X0 Y0 is on the part.", default="0,0")
+    zero: str = option(
+        PROGRAM,
+        "PLACE",
+        "Where its X0 Y0 is on the part: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing.",
+        default="0,0",
+    )
     z_zero: str = option(
         PROGRAM, "top|bottom|LENGTH", "Where its Z0 is: a side of the part, or a height.", default="top"
     )
@@ -115,12 +120,28 @@ class ProgramWords:
                 "the part is an outline without heights, so nobody knows what of --program passes over the "
                 "pegs: give its --thickness, and --peg-height where pegs are not as high."
             )
-        return {"program": read_once(self, unit, thick), "peg_height": high or thick}
+        zero = zero_on(workpiece, self.zero, unit)
+        return {"program": read_once(self, unit, thick, zero), "peg_height": high or thick}
+
+
+def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
+    """The place of the program's zero in mm, which the part's own places may name as on the setup sheet.
+
+    Raises
+    ------
+    InputError
+        For a place that the part does not have, or that is named where no part is known.
+    """
+    if workpiece is None or not text.strip()[:1].isalpha():
+        return asked_zero(text, unit)
+    from workhold.model.setup import part_zero
+
+    return part_zero(workpiece, text, unit).point
 
 
 @cache
-def read_once(words: ProgramWords, unit: Unit, thickness: float | None) -> Program:
-    """Reads the program, and prints remarks on it; ``thickness`` of the part in mm.
+def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]) -> Program:
+    """Reads the program, and prints remarks on it; ``thickness`` of the part and ``zero`` in mm.
 
     Raises
     ------
@@ -137,7 +158,7 @@ def read_once(words: ProgramWords, unit: Unit, thickness: float | None) -> Progr
     program = read_program(
         words.program,
         words.tools,
-        zero=asked_zero(words.zero, unit),
+        zero=zero,
         z_zero=asked_height(words.z_zero, thickness, unit),
         thickness=thickness,
         clearance=kept,

@@ -11,6 +11,7 @@ from attrs import evolve
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_facts import Caution, SheetDetails, cautions_of, edge_distances
+from workhold.drawing.sheet_heights import lift_of
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_side import FirstSide
@@ -130,7 +131,10 @@ def result_details(
             known = Solver(workpiece, toolkit).of(fixture)
         except InputError as error:
             not_seated = f"{str(error)[:1].upper()}{str(error)[1:]}"
-    program = result.query.program
+    program, reach = result.query.program, result.query.peg_height
+    if peg_height is None and reach is not None:
+        # The query's height is above where the part lies, the sheet's above the plates.
+        peg_height = reach + lift_of(supports, support_height)
     details = SheetDetails(
         number=rank if number is None else number,
         count=len(result) if count is None else count,
@@ -148,7 +152,7 @@ def result_details(
         machine_position=machine_position,
         thickness=thickness,
         peg_length=peg_length,
-        peg_height=result.query.peg_height if peg_height is None else peg_height,
+        peg_height=peg_height,
         dowel=dowel,
         others=result.table.same_holes(rank - 1) if others is None else others,
         seating=known,

@@ -14,10 +14,11 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import SUPPORT_HEIGHT, THICKNESS
 from workhold.model.fixture import Fixture
+from workhold.model.recounted import ChosenSupports
 from workhold.model.solid import Band
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["SheetHeights", "heights_of"]
+__all__ = ["SheetHeights", "heights_of", "lift_of"]
 
 
 @frozen
@@ -80,11 +81,9 @@ def heights_of(
     if thickness is None:
         return None
     assumed = set()
-    lift = 0.0
-    if supports is not None:
-        lift = SUPPORT_HEIGHT if details.support_height is None else details.support_height
-        if details.support_height is None:
-            assumed.add("supported_by")
+    lift = lift_of(supports, details.support_height)
+    if supports is not None and details.support_height is None:
+        assumed.add("supported_by")
     plate = THICKNESS if details.plate_thickness is None else details.plate_thickness
     if details.plate_thickness is None:
         assumed.add("plate_thickness")
@@ -114,13 +113,21 @@ def heights_of(
     )
 
 
+def lift_of(supports: ChosenSupports | None, support_height: float | None) -> float:
+    """How far the part lies above the plates in mm: as high as its supports, or 0 without any."""
+    if supports is None:
+        return 0.0
+    return SUPPORT_HEIGHT if support_height is None else support_height
+
+
 def bands_of_pegs(
     fixture: Fixture, workpiece: Workpiece, details: SheetDetails, thickness: float, top: float
 ) -> tuple[Band | None, ...]:
     """The heights at which each peg presses: as supports were asked for, of the solid, or of a prism."""
     supports, solid = details.supports, workpiece.solid
     if supports is not None:
-        given = supports.supports.request.for_fixture(fixture, solid).peg_bands(len(fixture.pegs))
+        reach = supports.supports.query.peg_height
+        given = supports.supports.request.for_fixture(fixture, solid, reach).peg_bands(len(fixture.pegs))
         return tuple((float(low), float(high)) for low, high in given)
     if solid is not None:
         return tuple(solid.bands[peg.face] for peg in fixture.pegs)

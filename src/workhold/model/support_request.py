@@ -294,9 +294,16 @@ class SupportRequest:
             top=None if solid is None else solid.top or None,
         )
 
-    def for_fixture(self, fixture: Fixture, solid: SolidOutline | None) -> SupportRequest:
-        """The request with its bands written out: those given, or of each peg that of its face on a solid."""
-        whole = (0.0, self.thickness)
+    def for_fixture(
+        self, fixture: Fixture, solid: SolidOutline | None, peg_height: float | None = None
+    ) -> SupportRequest:
+        """The request with its bands written out: those given, or of each peg that of its face on a solid.
+
+        Parameters
+        ----------
+        peg_height : how far pegs reach above where a prism lies, in mm; over all of it if None.
+        """
+        whole = (0.0, self.thickness if peg_height is None else min(peg_height, self.thickness))
         if self.band is not None or self.bands is not None or solid is None:
             return self if self.band is not None else evolve(self, band=whole)
         own = [band_of(peg, solid) for peg in fixture.pegs]

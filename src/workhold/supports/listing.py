@@ -100,7 +100,7 @@ class SupportSearch:
         toolkit, workpiece = self.query.toolkit, self.query.workpiece
         pegs = PegForces.within(fixture, toolkit, self.touched)
         force = needed_jaw_force(pegs, self.loads, jaw_force)
-        request = self.request.for_fixture(fixture, workpiece.solid)
+        request = self.request.for_fixture(fixture, workpiece.solid, self.query.peg_height)
         holes = holes_under(fixture, toolkit, self.bottom, self.request)
         if len(holes.row) > MOST_POSITIONS:
             raise InputError(
