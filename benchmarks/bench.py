@@ -23,6 +23,7 @@ import processes
 import pruning
 import seating
 import solids
+import survey
 import table_one
 import threads
 import toolkits
@@ -53,6 +54,7 @@ def main() -> None:
         memory.run,
         many.run,
         toolkits.run,
+        survey.run,
         pruning.run,
         seating.run,
         solids.run,
