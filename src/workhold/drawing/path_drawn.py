@@ -6,7 +6,7 @@ is marked with its line and its distance.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import hypot, pi
 
 import numpy as np
@@ -26,9 +26,11 @@ __all__ = [
     "COLOURS",
     "SHADES",
     "PagePaths",
+    "PathLook",
     "PlannedPath",
     "draw_paths",
     "heights_cut",
+    "moves_by_look",
     "planned_path",
     "shaded",
 ]
@@ -159,35 +161,56 @@ def shares_inside(start: Floats, end: Floats, box: Box) -> tuple[Floats, Floats]
     return first, last
 
 
-def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float = 1.0) -> None:
-    """Draws bands as wide as the flutes, rapid moves dashed, and the axes at cutting moves, high ones first.
+@frozen
+class PathLook:
+    """How some moves look.
 
-    Upright cutting moves are dots.
+    Parameters
+    ----------
+    kind : "band" as wide as the flute, "rapid", "cut" for the axis, or "dot" for upright moves.
+    place, tool : of the tool in the order in which tools move first, and its number; -1 for rapid moves.
+    level : of height, 0 the lowest; -1 where it does not show.
     """
+
+    kind: str
+    place: int = -1
+    tool: int = -1
+    level: int = -1
+
+
+def moves_by_look(program: Program) -> Iterator[tuple[PathLook, NDArray[np.int64]]]:
+    """The numbers of moves that look alike, in drawing order: bands, rapids, then cuts from above."""
     moves, figures = program.moves, tool_figures(program)
     for place, one in enumerate(figures):
-        rows = np.flatnonzero((moves.tool == one.tool) & moves.cutting)
-        wide = program.tools[one.tool].diameter * paths.scale
-        add(group, paths, rows, COLOURS[place % len(COLOURS)], wide, "band", stroke_opacity=BAND)
+        yield PathLook("band", place, one.tool), np.flatnonzero((moves.tool == one.tool) & moves.cutting)
     flat = (moves.start[:, :2] != moves.end[:, :2]).any(axis=1)
-    add(
-        group,
-        paths,
-        np.flatnonzero(~moves.cutting & flat),
-        GREY,
-        1.0 * weight,
-        "rapid",
-        stroke_dasharray="6 5",
-    )
+    yield PathLook("rapid"), np.flatnonzero(~moves.cutting & flat)
     low, high = heights_cut(program)
     middle = (moves.start[:, 2] + moves.end[:, 2]) / 2
     shade = np.clip(((middle - low) / max(high - low, 1e-9) * SHADES).astype(int), 0, SHADES - 1)
     for level in range(SHADES - 1, -1, -1):
         for place, one in enumerate(figures):
             own = (moves.tool == one.tool) & moves.cutting & (shade == level)
-            colour = shaded(COLOURS[place % len(COLOURS)], level)
-            for rows, wide in ((np.flatnonzero(own & flat), 1.8), (np.flatnonzero(own & ~flat), 5.0)):
-                add(group, paths, rows, colour, wide * weight, f"cut-{one.tool}")
+            yield PathLook("cut", place, one.tool, level), np.flatnonzero(own & flat)
+            yield PathLook("dot", place, one.tool, level), np.flatnonzero(own & ~flat)
+
+
+def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float = 1.0) -> None:
+    """Draws bands as wide as the flutes, rapid moves dashed, and the axes at cutting moves, high ones first.
+
+    Upright cutting moves are dots.
+    """
+    for look, rows in moves_by_look(program):
+        colour = COLOURS[look.place % len(COLOURS)]
+        match look.kind:
+            case "band":
+                wide = program.tools[look.tool].diameter * paths.scale
+                add(group, paths, rows, colour, wide, "band", stroke_opacity=BAND)
+            case "rapid":
+                add(group, paths, rows, GREY, 1.0 * weight, "rapid", stroke_dasharray="6 5")
+            case _:
+                wide = (1.8 if look.kind == "cut" else 5.0) * weight
+                add(group, paths, rows, shaded(colour, look.level), wide, f"cut-{look.tool}")
 
 
 def add(

@@ -6,10 +6,10 @@ wide as the tool with the clearance.
 
 Of the pieces above the part few border the places that are left. They are found on ever smaller squares of
 the face. Let c be the middle of a square and h its half diagonal. Let s(t) be the least distance of a place
-t from the paths, less what has to be kept. It changes by no more than the way. So a square is covered
-by the piece nearest to c where s(c) < -h, and free where s(c) > h. All others are quartered. On one as
-small as ``FINEST`` the piece nearest to c stands for all others, once it is made 2 h wider. Places that are
-left are clear of every piece, and no place is lost that keeps 2 h more.
+t from the paths, less what has to be kept. It changes by no more than the way. So a square is covered by the
+piece nearest to c where s(c) < -h, and free where s(c) > h. All others are quartered. On one as small as
+``FINEST`` the piece nearest to c stands for all others, once it is made 2 h wider. Places that are left are
+clear of every piece, and no place is lost that keeps 2 h more.
 """
 
 from __future__ import annotations

@@ -29,6 +29,7 @@ from workhold.web.fixture_tasks import (
 )
 from workhold.web.forms import LoadsForm, asked_loads
 from workhold.web.job_routes import attachment, found_job, result_of_job
+from workhold.web.program_forms import passing_answer
 from workhold.web.state import at_desk, at_desk_while_heard, state_of
 from workhold.web.support_forms import ChosenSupportsForm, FirstSideForm, SupportsForm, asked_of
 from workhold.web.support_tasks import SupportsOrder
@@ -123,11 +124,16 @@ async def closing(
 
 @router.get("", summary="One fixture")
 async def fixture(request: Request, name: str, rank: Rank, revision: Revision = None) -> dict[str, Any]:
-    """The row of a fixture, with contacts and outward normals in the vise frame."""
+    """The row of a fixture, with contacts and outward normals in the vise frame.
+
+    With a program ``passing`` is the move that comes nearest to what holds the part, with line, tool, and
+    distance in mm. Its path is that of the tool's axis there, in the part's coordinates.
+    """
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
     row = rows_answer(result.table.take(np.array([index])), result.workpiece, result.toolkit, [rank])[0]
-    return {**row, **contact_answer(result[index], result.workpiece, result.toolkit)}
+    contacts = contact_answer(result[index], result.workpiece, result.toolkit)
+    return {**row, **contacts, "passing": passing_answer(result, index)}
 
 
 @router.post("/loads", summary="What loads do to a fixture")

@@ -31,7 +31,7 @@ from workhold.presenting.data import finite
 from workhold.seating.clamping import ByHand, by_hand
 from workhold.seating.pattern import Pattern
 from workhold.units import unit_named
-from workhold.web.forms import LARGEST, Form, Number
+from workhold.web.form import LARGEST, Form, Number
 from workhold.web.support_forms import ChosenSupportsForm
 from workhold.web.support_tasks import SupportsOrder, chosen_supports
 from workhold.web.worker import Order

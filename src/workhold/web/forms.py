@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from attrs import evolve
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 
 from workhold.errors import InputError
 from workhold.files.input_forms import TAGS, forms_by_noun, one_of, optional
@@ -21,30 +21,30 @@ from workhold.model.query import Query, asked_ranking
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
+from workhold.web.form import (
+    LARGEST,
+    MOST_LOADS,
+    MOST_POINTS,
+    MOST_RANGES,
+    MOST_VERTICES,
+    BandForm,
+    Form,
+    LoopForm,
+    Name,
+    Number,
+    Point,
+)
+from workhold.web.program_forms import ProgramForm
 
 __all__ = ["ExploreForm", "JobForm", "LoadsForm", "WorkpieceForm", "asked_loads", "sentence_of"]
 
-# Beyond this, in mm, degrees, N or N mm, a number is a mistake.
-LARGEST = 1e9
-MOST_VERTICES, MOST_LOADS, MOST_POINTS, MOST_RANGES, MOST_NAMES, MOST_TOOLKITS = 20_000, 50, 500, 50, 500, 60
+MOST_NAMES, MOST_TOOLKITS = 500, 60
 # Fixtures whose seating is worked out in one search.
 MOST_SEATED = 1_000
 
-Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
-Vertex = Annotated[list[Number], Field(min_length=3, max_length=3)]
-LoopForm = Annotated[list[Vertex], Field(min_length=1, max_length=MOST_VERTICES)]
-Name = Annotated[str, Field(max_length=200)]
 DirectionPair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
 
-class Form(BaseModel):
-    """What every request has in common: unknown keys are refused, and so are numbers written as text."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
-
-
-BandForm = Annotated[list[Annotated[float, Field(ge=0, le=LARGEST)]], Field(min_length=2, max_length=2)]
 FacesForm = Annotated[list[Annotated[int, Field(ge=0, le=1_000_000)]], Field(max_length=10_000)]
 
 
@@ -57,9 +57,9 @@ class SolidForm(Form):
     head_room: Annotated[float, Field(ge=0, le=LARGEST)]
     least_band: Annotated[float, Field(ge=0, le=LARGEST)]
     bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
-    faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = []
-    bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = []
-    top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = []
+    faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 
 class WorkpieceForm(Form):
@@ -188,7 +188,7 @@ class LoadForm(Form, LoadPart):
     name: Name = ""
     points: list[Point] = Field(default=[], max_length=MOST_POINTS)
     force: Number = 0.0
-    directions: Point = [0.0, 360.0]
+    directions: Point = Field(default=[0.0, 360.0])
     moment: Number = 0.0
 
 
@@ -236,6 +236,7 @@ class SearchForm(Form):
     listing: Literal["best", "all"] | None = None
     tolerance: ToleranceForm | None = None
     loads: list[LoadForm] = Field(default=[], max_length=MOST_LOADS)
+    program: ProgramForm | None = None
 
     def query(self, toolkit: Toolkit, most_segments: int) -> Query:
         """What is asked of a toolkit.
@@ -246,17 +247,21 @@ class SearchForm(Form):
             For the first value that cannot be.
         """
         loads = tuple(form.load() for form in self.loads)
+        workpiece = self.workpiece.workpiece(most_segments)
+        passed = None if self.program is None else self.program.passed(workpiece.solid)
         return Query(
-            self.workpiece.workpiece(most_segments),
+            workpiece,
             toolkit,
             self.types,
             self.contact_margin,
             self.restrictions.restrictions(),
-            asked_ranking(self.ranking, self.prefer, loads),
+            asked_ranking(self.ranking, self.prefer, loads, passed is not None),
             None if self.tolerance is None else self.tolerance.tolerance(),
             loads,
             jaw_force=self.jaw_force,
             listing=None if toolkit.closes_at_once else self.listing,
+            program=None if passed is None else passed.program,
+            peg_height=None if passed is None else passed.peg_height,
         )
 
 

@@ -78,7 +78,9 @@ async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm) -> J
     state.jobs.refuse_more(address)
     queries = await at_desk(request, "check_job", (form, state.limits.segments))
     kind = {ExploreForm: "explore", FamilyForm: "family"}.get(type(form), "design")
-    job = state.jobs.submit(form.model_dump(), queries, address, kind)
+    # A program's text is not kept with every job.
+    asked = form.model_dump(exclude={"program": {"text": True, "tools": True}})
+    job = state.jobs.submit(asked, queries, address, kind)
     url = f"/api/jobs/{job.name}"
     return JSONResponse({"job": job.name, "url": url}, 202, {"Location": url})
 
@@ -97,7 +99,7 @@ async def explore(request: Request, form: ExploreForm) -> Response:
 
 @router.get("/jobs/{name}", summary="State of a job")
 async def state(request: Request, name: str) -> dict[str, Any]:
-    """How far the job is, what it found, and what was asked for."""
+    """How far the job is, what it found, and what was asked for, without the text of a program."""
     job = found_job(request, name)
     return {**job.answer(), "request": job.request}
 

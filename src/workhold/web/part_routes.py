@@ -12,6 +12,7 @@ from workhold.version import __version__
 from workhold.web.answers import figures_answer, toolkit_answer
 from workhold.web.fixture_tasks import has_step
 from workhold.web.forms import WorkpieceForm
+from workhold.web.program_forms import ProgramQuestion
 from workhold.web.state import at_desk, state_of
 from workhold.web.tasks import Upload
 
@@ -145,6 +146,17 @@ async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
     """The part, or what is wrong with it and where."""
     state = state_of(request)
     answer: dict[str, Any] = await at_desk(request, "check_part", (form, state.limits.segments))
+    return answer
+
+
+@router.post("/programs", summary="See what a program of the machine does")
+async def program(request: Request, form: ProgramQuestion) -> dict[str, Any]:
+    """The tools with their lines, the box of their tips, notes on how it was read, and its paths to draw.
+
+    Paths are SVG path data in tenths of mm, y downward, by tool, kind and level of height. ``height`` and
+    ``peg_height`` beside the program are those of the part's solid.
+    """
+    answer: dict[str, Any] = await at_desk(request, "look_at_program", form)
     return answer
 
 

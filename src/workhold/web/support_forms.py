@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, ValidationError
 
 from workhold.errors import InputError
 from workhold.model.support_request import SpatialLoad
-from workhold.web.forms import (
+from workhold.web.form import (
     LARGEST,
     MOST_LOADS,
     MOST_POINTS,
@@ -20,8 +20,8 @@ from workhold.web.forms import (
     Name,
     Number,
     Point,
-    sentence_of,
 )
+from workhold.web.forms import sentence_of
 
 __all__ = ["ChosenSupportsForm", "FirstSideForm", "SpatialLoadForm", "SupportsForm", "asked_of"]
 

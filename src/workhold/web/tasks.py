@@ -25,6 +25,7 @@ from workhold.model.search_report import Explanation
 from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
 from workhold.web.fixture_tasks import close, find_seating, make_paper
+from workhold.web.program_forms import ProgramQuestion, look_at_program
 from workhold.web.support_tasks import find_supports
 from workhold.web.worker import Order, Tasks, worker_main
 
@@ -263,6 +264,11 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
     return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)
 
 
+def program(question: ProgramQuestion, order: Order) -> dict[str, Any]:
+    """Describes a program of the machine for the page."""
+    return look_at_program(question)
+
+
 def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) -> list[dict[str, Any]]:
     """Describes what loads do to a fixture."""
     from workhold.presenting.data import load_case_data
@@ -310,6 +316,7 @@ TASKS: Tasks = {
     "builtin_part": builtin_part,
     "read_part": read_part,
     "survey_part": survey_part,
+    "look_at_program": program,
     "loads": loads,
     "warnings": warnings,
     "resist": resist,

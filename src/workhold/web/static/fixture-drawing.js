@@ -7,6 +7,7 @@ import { draw, show } from "./dom.js";
 import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
 import { drawLettering } from "./fixture-lettering.js";
 import { contactsOf, forceOf, intoVise, partSegments, place, poseMatrix } from "./pose.js";
+import { nearestMove, programPaths } from "./program-drawing.js";
 import { clampFromAbove, supportPads } from "./supports-drawing.js";
 import { lyingMatrix } from "./trial.js";
 import { Viewport } from "./viewport.js";
@@ -39,6 +40,10 @@ export class FixtureDrawing {
     this.clearance = null;
     /** Supports under the part and the clamp over them. @type {any} */
     this.supports = null;
+    /** What was understood of the machine's program, and the move of it that comes nearest. @type {any} */
+    this.program = null;
+    /** @type {any} */
+    this.passing = null;
   }
 
   /**
@@ -92,6 +97,19 @@ export class FixtureDrawing {
     if (this.row) this.build();
   }
 
+  /** Show the paths of a program, or none. @param {any} read */
+  showProgram(read) {
+    this.program = read;
+    if (this.row) this.build();
+  }
+
+  /** Light up the move that comes nearest, or none. @param {any} passing as the server tells it */
+  showPassing(passing) {
+    if (passing === this.passing) return;
+    this.passing = passing;
+    if (this.row) this.build();
+  }
+
   /** Nothing is shown. */
   clear() {
     cancelAnimationFrame(this.frame);
@@ -118,6 +136,7 @@ export class FixtureDrawing {
     for (const { segment, face } of partSegments(part)) {
       if (touched.has(face)) shape.append(draw("path.touched", { d: segmentPath(segment), "data-face": face }));
     }
+    shape.append(...programPaths(this.program), ...nearestMove(this.passing));
     shape.append(draw("path.outline", { d: outline }));
     this.underPegs = draw("g.under-pegs");
     const groups = (contents) => row.carriers.map((each) => draw(each.clamping ? "g.sliding" : "g.still", {}, ...contents(each)));

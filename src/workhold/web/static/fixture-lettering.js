@@ -4,6 +4,7 @@
 import { draw } from "./dom.js";
 import { along, apart, isFree } from "./labels.js";
 import { columnLetters, place } from "./pose.js";
+import { programLabel } from "./program-drawing.js";
 import { length, number } from "./units.js";
 
 const LONGEST = 62;
@@ -24,7 +25,7 @@ export function drawLettering(drawing) {
     if (drawing.load) parts.push(...loadArrow(drawing));
   }
   parts.push(...labels(drawing, closed, axes.filter(({ kind }) => kind === USED)));
-  overlay.replaceChildren(...parts, ...drawing.extras());
+  overlay.replaceChildren(...parts, ...programLabel(drawing), ...drawing.extras());
 }
 
 /**

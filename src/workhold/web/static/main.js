@@ -14,6 +14,7 @@ import { rulesPanel } from "./rules-panel.js";
 import { listenToSections } from "./sections.js";
 import { restore, setUpsPanel } from "./set-ups.js";
 import { spaceDialog } from "./space-dialog.js";
+import { programPanel, takeUpProgram } from "./program-panel.js";
 import { partDrawing, showView, stagePanel } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { supportsPanel } from "./supports-panel.js";
@@ -39,6 +40,7 @@ function writeGrids() {
 async function takeUpState() {
   const kept = await restored(location.hash);
   if (!kept) return;
+  takeUpProgram(kept.known.programName);
   change({ sides: kept.sides });
   await restore(kept);
 }
@@ -78,6 +80,7 @@ async function begin() {
   supportsPanel();
   setUpsPanel();
   warningsPanel();
+  programPanel();
   await takeUpState().catch(() => {});
   const keepSoon = quiet(keep, 150);
   on(Object.keys(state), keepSoon);

@@ -5,6 +5,7 @@ import { draw } from "./dom.js";
 import { boundsOf, extend, outlinePath, pointAt, normalAt, segmentPath, segmentsOf } from "./geometry.js";
 import { apart } from "./labels.js";
 import { partSegments } from "./pose.js";
+import { programPaths } from "./program-drawing.js";
 import { change, state } from "./state.js";
 import { bareLength, length, unitWord } from "./units.js";
 import { Viewport } from "./viewport.js";
@@ -82,7 +83,7 @@ export class PartDrawing {
       shapes.push(draw("path.stray", { d: this.stray }));
     } else if (part) {
       const outline = outlinePath(part.loops);
-      shapes.push(draw("path.part-fill", { d: outline }));
+      shapes.push(draw("path.part-fill", { d: outline }), ...programPaths(state.programRead));
       shapes.push(draw("g.zones", {}, ...state.zones.map((zone) => draw("path.zone", { d: outlinePath([zone]) }))));
       const byFace = new Map();
       for (const { segment, face } of partSegments(part)) {

@@ -6,6 +6,7 @@ import { byId, make, show } from "./dom.js";
 import { openFamily, takesDrop } from "./families-dialog.js";
 import { previewOf } from "./file-preview.js";
 import { askQuestions, noQuestions, showQuestions } from "./file-questions.js";
+import { openProgram, takesProgram } from "./program-panel.js";
 import { start } from "./search.js";
 import { showSection } from "./sections.js";
 import { otherFile } from "./standing-question.js";
@@ -182,7 +183,8 @@ function listenToDrops(readDropped) {
     event.preventDefault();
     over(-depth);
     const dropped = [...(event.dataTransfer?.files ?? [])];
-    if (dropped.length && takesDrop(dropped.length)) openFamily(dropped);
+    if (takesProgram(dropped)) openProgram(dropped);
+    else if (dropped.length && takesDrop(dropped.length)) openFamily(dropped);
     else if (dropped.length) readDropped(dropped[0]);
   });
 }

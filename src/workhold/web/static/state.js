@@ -6,7 +6,7 @@
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
-  "part", "toolkit", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating",
+  "part", "toolkit", "types", "listing", "contactMargin", "avoid", "zones", "angles", "tolerance", "loads", "ranking", "prefer", "seating", "program",
 ];
 
 /**
@@ -37,6 +37,9 @@ export const SETTINGS = [
  * @property {number[]|null} cut faces that this set-up cuts, so that the second side is not held by them; null is those not to touch
  * @property {import("./set-ups.js").Sides|null} sides both sides of a part that is turned over, or null
  * @property {import("./supports.js").Wish} supports what supports under the part and the clamp from above are
+ * @property {import("./program-panel.js").Wish|null} program that the machine runs while the part is held
+ * @property {any} programRead what the server understood of it, or null
+ * @property {string|null} programName which a link speaks of
  * @property {Object<string, any>} sheet what stands on the setup sheet besides: wishes by the server's names, lengths in mm
  */
 
@@ -69,6 +72,9 @@ export const state = {
   cut: null,
   sides: null,
   supports: { below: [], above: [] },
+  program: null,
+  programRead: null,
+  programName: null,
 };
 
 /** @type {{keys: string[], call: (changed: Set<string>) => void}[]} */
@@ -94,6 +100,11 @@ export function change(patch) {
   for (const { keys, call } of listeners) if (keys.some((key) => changed.has(key))) call(changed);
 }
 
+/** A program as the server takes it. @param {import("./program-panel.js").Wish} program */
+export function programRequest(program) {
+  return { ...program };
+}
+
 /** What the server is asked to search. */
 export function request() {
   return {
@@ -107,6 +118,7 @@ export function request() {
     prefer: state.ranking ? null : state.prefer,
     tolerance: state.tolerance,
     loads: state.loads,
+    ...(state.program ? { program: programRequest(state.program) } : {}),
     ...(state.seating.first ? { seating: state.seating.first, opening: state.seating.opening, foolproof: state.seating.foolproof } : {}),
   };
 }

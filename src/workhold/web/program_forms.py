@@ -1,0 +1,249 @@
+"""A program of the machine in a request, with its table of tools, and what the server answers about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from attrs import evolve, frozen
+from pydantic import ConfigDict, Field
+
+from workhold.errors import InputError
+from workhold.model.program import Program
+from workhold.model.solid import SolidOutline
+from workhold.web.form import LARGEST, Form, Name, Point
+
+if TYPE_CHECKING:
+    from workhold.files.program.reader import ReadProgram
+
+__all__ = ["PassedProgram", "ProgramForm", "ProgramQuestion", "read_sent_program"]
+
+# Characters; 100,000 lines have three million.
+MOST_TEXT, MOST_TABLE = 3_500_000, 400_000
+TABLES = (".toml", ".csv", ".tbl")
+Thick = Annotated[float, Field(gt=0, le=LARGEST)]
+
+EXAMPLE: dict[str, Any] = {
+    "name": "plate.nc",
+    "text": "G21 G90\nT1 M6\nG0 X-20 Y0 Z20\nG1 Z2 F300\nX80\nM30\n",
+    "tools": {"name": "tools.csv", "text": "tool,diameter,stickout,holder_diameter\n1,10,32,40\n"},
+    "thickness": 12,
+    "peg_height": 8,
+}
+
+
+class ToolTableForm(Form):
+    """A table of tools as its file has it: TOML, CSV, or that of LinuxCNC; its name says which."""
+
+    name: Name = "tools.csv"
+    text: Annotated[str, Field(max_length=MOST_TABLE)]
+
+
+class ProgramForm(Form):
+    """A program (G-code) whose tools keep clear of all that holds the part; lengths in mm.
+
+    Without a table of tools, what the program's comments say of them is read. ``zero`` is where its X0 Y0 is
+    on the part. ``z_zero`` is where its Z0 is, a height above the part's lower side. Of a solid both heights
+    are known, ``thickness`` and ``peg_height``, up to which pegs, clamps and walls reach.
+    """
+
+    model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE]})
+
+    name: Name = "program.nc"
+    text: Annotated[str, Field(max_length=MOST_TEXT)]
+    tools: ToolTableForm | None = None
+    zero: Point = Field(default=[0.0, 0.0])
+    z_zero: Literal["top", "bottom"] | Annotated[float, Field(ge=-LARGEST, le=LARGEST)] = "top"
+    clearance: Annotated[float, Field(ge=0, le=LARGEST)] = 1.0
+    rapid: Literal["straight", "box"] = "straight"
+    unit: Literal["mm", "inch"] | None = None
+    thickness: Thick | None = None
+    peg_height: Thick | None = None
+
+    def passed(self, solid: SolidOutline | None) -> PassedProgram:
+        """The program as it was read, with the peg height.
+
+        Parameters
+        ----------
+        solid : of the part, for its heights; None for a part of a drawing.
+
+        Raises
+        ------
+        InputError
+            For a program or a table that cannot be read, and heights that nobody knows.
+        """
+        thick, high = self.thickness, self.peg_height
+        if solid is not None:
+            thick, high = thick or solid.height, solid.peg_height
+        if thick is None and (self.z_zero == "top" or high is None):
+            raise InputError(
+                "The part is an outline without heights, so nobody knows what of the program passes over the "
+                "pegs: say how thick the part is, and how high pegs stand where that is less."
+            )
+        read = read_sent_program(self, thick)
+        return PassedProgram(evolve(read.program, name=self.name), high or thick, read)
+
+
+@frozen(eq=False)
+class PassedProgram:
+    """A program that fixtures are to let pass.
+
+    Parameters
+    ----------
+    program : it.
+    peg_height : up to which anything holds the part, in mm.
+    read : how it was read.
+    """
+
+    program: Program
+    peg_height: float | None
+    read: ReadProgram
+
+
+class ProgramQuestion(Form):
+    """A program to be looked at, and the heights of the part's solid, if it has one."""
+
+    program: ProgramForm
+    height: Thick | None = None
+    peg_height: Thick | None = None
+
+
+def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram:
+    """Reads a program that was sent; its errors name the files as their user does.
+
+    Raises
+    ------
+    InputError
+        For what cannot be read.
+    """
+    from workhold.files.program.reader import read_program_with_calls
+
+    with written(form) as (path, tools):
+        return read_program_with_calls(
+            path,
+            tools,
+            zero=(form.zero[0], form.zero[1]),
+            z_zero=form.z_zero,
+            thickness=thickness,
+            clearance=form.clearance,
+            rapid=form.rapid,
+            unit=form.unit,
+        )
+
+
+@contextmanager
+def written(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]:
+    """Writes a program and its table for the duration of the block."""
+    with TemporaryDirectory(prefix="workhold-") as folder:
+        path, tools = Path(folder) / "program.nc", None
+        path.write_text(form.text, encoding="utf-8", newline="")
+        names = {str(path): form.name}
+        if form.tools is not None:
+            ending = f".{form.tools.name.rpartition('.')[2].lower()}"
+            tools = Path(folder) / f"tools{ending if ending in TABLES else '.csv'}"
+            tools.write_text(form.tools.text, encoding="utf-8", newline="")
+            names[str(tools)] = form.tools.name
+        try:
+            yield path, tools
+        except InputError as error:
+            raise InputError(named(str(error), names)) from error
+        except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
+            raise InputError(f"{form.name} is damaged: post it anew.") from error
+
+
+def named(sentence: str, names: Mapping[str, str]) -> str:
+    """A sentence with the names of files as their user knows them."""
+    for path, name in names.items():
+        sentence = sentence.replace(path, name)
+    return sentence
+
+
+def look_at_program(question: ProgramQuestion) -> dict[str, Any]:
+    """Describes what was understood of a program: its tools, box, notes, and the paths to draw.
+
+    Heights are above the part's lower side. The paths are SVG path data in tenths of mm, y downward. Each has
+    the place of its tool in their order, its kind, and for cutting moves its level of height from 0.
+
+    Raises
+    ------
+    InputError
+        For what cannot be read.
+    """
+    from workhold.drawing.path_drawn import SHADES, heights_cut
+    from workhold.model.program_figures import tip_box, tool_figures
+
+    form = question.program
+    thick = form.thickness if question.height is None else question.height
+    high = form.peg_height if question.peg_height is None else question.peg_height
+    if thick is None and form.z_zero == "top":
+        raise InputError('How thick the part is, is not known: fill in "Part thickness".')
+    read = read_sent_program(form, thick)
+    program, figures = read.program, tool_figures(read.program)
+    low, top = tip_box(program.moves)
+    last = dict(zip(program.moves.tool.tolist(), program.moves.line.tolist(), strict=True))
+    levels = heights_cut(program)
+    return {
+        "name": form.name,
+        "lines": read.lines,
+        "moves": len(program.moves),
+        "unit": program.unit,
+        "thickness": thick,
+        "peg_height": high or thick,
+        "tools": [
+            {
+                "tool": one.tool,
+                "name": program.tools[one.tool].name,
+                "diameter": program.tools[one.tool].diameter,
+                "reach": max(cylinder.high for cylinder in program.tools[one.tool].cylinders),
+                "widest": 2 * max(cylinder.radius for cylinder in program.tools[one.tool].cylinders),
+                "first_line": one.first_line,
+                "last_line": last[one.tool],
+                "cutting": one.cutting,
+                "rapid": one.rapid,
+                "seconds": one.seconds,
+                "lowest": one.lowest,
+                "lowest_cut": one.lowest_cut,
+            }
+            for one in figures
+        ],
+        "box": [low.tolist(), top.tolist()],
+        "heights_cut": list(levels),
+        "levels": SHADES,
+        "skipped": list(program.skipped),
+        "notes": list(program.notes),
+        "paths": list(paths_answer(program)),
+    }
+
+
+def paths_answer(program: Program) -> Iterator[dict[str, Any]]:
+    """The paths of a program by tool, kind and height."""
+    from workhold.drawing.path_drawn import PagePaths, moves_by_look
+    from workhold.drawing.scene import View
+
+    paths = PagePaths.of(program.moves, View(10.0, 0.0, 0.0))
+    for look, rows in moves_by_look(program):
+        d = paths.data(rows)
+        if d:
+            yield {"place": look.place, "kind": look.kind, "level": look.level, "d": d}
+
+
+def passing_answer(result: Any, index: int) -> dict[str, Any] | None:
+    """Where the tools of a result's program come nearest to a fixture; None where none does."""
+    from workhold.statics.program_clearance import passing_of
+
+    near = passing_of(result, index)
+    if near is None or not np.isfinite(near.distance):
+        return None
+    return {
+        "distance": near.distance,
+        "line": near.line,
+        "tool": near.tool,
+        "element": near.element,
+        "contact": near.contact,
+        "path": [list(vertex) for vertex in near.path],
+        "radius": near.radius,
+    }
