@@ -58,7 +58,7 @@ export function passingLabel({ line, tool, distance }) {
 }
 
 /**
- * The label of the nearest move, at its middle on the drawing of a fixture.
+ * The label of the nearest move in the lower corner of the drawing of a fixture, clear of all names, with a line to it.
  * @param {import("./fixture-drawing.js").FixtureDrawing} drawing
  */
 export function programLabel(drawing) {
@@ -66,9 +66,11 @@ export function programLabel(drawing) {
   if (!passing || drawing.open || drawing.lying) return [];
   const [x, y] = view.page(drawing.toVise(middleOf(passing)));
   const words = passingLabel(passing);
-  const wide = 7.2 * words.length + 10;
+  const wide = 7.6 * words.length + 12;
+  const low = view.size[1] - 18;
   return [
-    draw("rect.program-label-box", { x: x - wide / 2, y: y - 32, width: wide, height: 20, rx: 4 }),
-    draw("text.program-label", { x, y: y - 22, "text-anchor": "middle", dy: "0.36em" }, words),
+    draw("line.program-lead", { x1: x, y1: y, x2: 10 + wide / 2, y2: low }),
+    draw("rect.program-label-box", { x: 10, y: low - 11, width: wide, height: 22, rx: 4 }),
+    draw("text.program-label", { x: 10 + wide / 2, y: low, "text-anchor": "middle", dy: "0.36em" }, words),
   ];
 }
