@@ -7,6 +7,7 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.fixels.vise import Vise
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLOSURE_MARGIN,
     FIGURES,
@@ -17,7 +18,7 @@ from workhold.model.quality import (
     WARNINGS,
 )
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.search_report import Proof, Undecided
 from workhold.model.workpiece import Workpiece
 

@@ -23,6 +23,8 @@ def plain(text: str) -> str:
     >>> plain("a\\x1b]0;b\\u202ec\\td")
     'a?]0;b?c d'
     """
+    if text.isprintable():
+        return text
     return "".join(letter if letter.isprintable() else " " if letter.isspace() else "?" for letter in text)
 
 

@@ -17,8 +17,9 @@ from svg_reading import by_class
 
 from workhold import __version__
 from workhold.files.result.writer import write_result
+from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.model.result import Result
 
 
 def diamond_result() -> Result:

@@ -17,9 +17,9 @@ import pytest
 from fakes import fake_result
 from workhold import Result, Vise, Workpiece, design
 from workhold.files.result.writer import write_result
+from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.query import Query
 from workhold.model.requirements import Tolerance
-from workhold.model.result import FixtureTable, unknown_quality
 from workhold.model.search_report import Proof
 from workhold.statics.quality import quality_of
 from workhold.verification.account import SEARCH

@@ -33,7 +33,7 @@ from workhold.errors import InputError
 from workhold.fixels.plate import Plate
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.workpiece import Workpiece
-from workhold.units import INCH, MILLIMETRE
+from workhold.units import INCH, MILLIMETRE, Unit
 
 Box = tuple[float, float, float, float]
 
@@ -113,21 +113,15 @@ def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
         assert (low, high) == pytest.approx((-lifted - 15.0, -lifted), abs=2e-3)
 
 
-@pytest.mark.parametrize("paper", ["a4", "letter"])
+@pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)], ids=["a4", "letter"])
 @pytest.mark.parametrize("name", NAMES)
-def test_nothing_is_covered_or_cut_off(name: str, paper: str) -> None:
+def test_nothing_is_covered_or_cut_off(name: str, paper: str, unit: Unit) -> None:
     """No word of a sheet in space lies on another or off the paper, with loads and without, in both units."""
-    for unit in (MILLIMETRE, INCH):
-        assert faults(sheet(result_of(name), paper=paper, unit=unit)) == []
-        for loaded in (False, True):
-            pages = sheet(
-                result_of(name, False, loaded),
-                paper=paper,
-                unit=unit,
-                supports=chosen(name, loaded),
-                thickness=HEIGHT,
-            )
-            assert faults(pages) == []
+    assert faults(sheet(result_of(name), paper=paper, unit=unit)) == []
+    for loaded in (False, True):
+        result, supports = result_of(name, False, loaded), chosen(name, loaded)
+        pages = sheet(result, paper=paper, unit=unit, supports=supports, thickness=HEIGHT)
+        assert faults(pages) == []
 
 
 @pytest.mark.parametrize(("unit", "size"), [(MILLIMETRE, "{:.3f}"), (INCH, "{:.4f}")])

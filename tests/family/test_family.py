@@ -21,9 +21,9 @@ from workhold.family.plan import Holding
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.ranking import measured
 from workhold.model.fixture import Peg
+from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.model.requirements import Restrictions
-from workhold.model.result import FixtureTable, fixture_at
 from workhold.statics.judging import unfit
 from workhold.verification.verify import Judge
 

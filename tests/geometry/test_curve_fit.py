@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from ezdxf.math import BSpline, open_uniform_knot_vector
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from workhold.errors import InputError
 from workhold.geometry.curve_fit import FittedCurve, biarcs, fitted_curve
@@ -223,7 +224,7 @@ def test_biarcs_are_smooth_and_as_near_as_said(fit: float, shape: str) -> None:
     # The other way: the nearest of many points of the curve is half a step from the foot at most.
     fine = points_along(pieces, 4000)
     half_step = float(np.hypot(*np.diff(fine, axis=0).T).max()) / 2
-    back = max(float(np.hypot(*(fine - point).T).min()) for point in sampled(segments, 5))
+    back = float(cKDTree(fine).query(sampled(segments, 5))[0].max())
     assert back <= hypot(fitted.departure, half_step) + 1e-6
     for one, other in pairwise(segments):
         (ax, ay), (bx, by) = one.normal(edge(one, 1)), other.normal(edge(other, -1))

@@ -13,7 +13,7 @@ from workhold.conventions import SAME_POSE
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated
 from workhold.listing.identity import Identity, SetCount, identity_order
-from workhold.model.result import FixtureTable
+from workhold.model.fixture_table import FixtureTable
 
 TOOLKITS: dict[str, Toolkit] = {
     "vise": Vise(pitch=9, columns=2, peg_radius=2),

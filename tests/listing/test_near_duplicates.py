@@ -11,8 +11,8 @@ from attrs import evolve, fields
 from workhold import Plate, Vise, Workpiece, design, load
 from workhold.geometry.symmetry import symmetries
 from workhold.listing.identity import entries, near_duplicates, smallest_images
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import TILT
-from workhold.model.result import FixtureTable
 from workhold.statics.judging import unfit
 
 PLATE = Workpiece.from_loops("plate", [[[0, 0, 0], [34, 0, 0], [34, 34, 0], [0, 34, 0]]])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fakes import fake_proof, fake_result
-from workhold.model.result import FixtureTable
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.workpiece import Workpiece
 
 PLATE = [[0.0, 0.0, 0.0], [60.0, 0.0, 0.2], [60.0, 40.0, 0.0], [0.0, 40.0, 0.0]]

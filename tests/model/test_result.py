@@ -7,7 +7,7 @@ import pytest
 
 from fakes import fake_result
 from workhold.model.fixture import Fixture
-from workhold.model.result import FixtureTable
+from workhold.model.fixture_table import FixtureTable
 
 
 def test_a_result_is_a_sequence():

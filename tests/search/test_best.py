@@ -14,7 +14,7 @@ from workhold.contact.problem import Problem
 from workhold.files.result.writer import write_result
 from workhold.listing.collector import BestFixtures
 from workhold.listing.ranking import measured
-from workhold.model.result import FixtureTable
+from workhold.model.fixture_table import FixtureTable
 from workhold.search.toolkit_search import ToolkitSearch
 
 # Parts with ties, equal holes in two places, sliding pairs and coincidences; how many to keep.

@@ -10,7 +10,7 @@ import pytest
 
 from workhold import Vise, answer, load
 from workhold.contact.problem import Problem
-from workhold.kernels.curves.two_and_two import CANDIDATES, CROSSED
+from workhold.kernels.curves.block_work import CANDIDATES, CROSSED
 from workhold.model.query import Query
 from workhold.proof.deciding import Course, decided
 from workhold.search.cells import Block, cell_edges, member_counts, members_of_cell, run_blocks

@@ -16,6 +16,7 @@ from held import force_directions, held, load_wrench, plate_fixture
 from workhold.errors import InputError
 from workhold.fixels.vise import OpeningVise, Vise
 from workhold.model.fixture import Fixture
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
@@ -24,7 +25,7 @@ from workhold.model.quality import (
     LOCATION_ERROR,
 )
 from workhold.model.requirements import Load
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import quality_of

@@ -17,6 +17,7 @@ from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distances
 from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
@@ -27,7 +28,7 @@ from workhold.model.quality import (
     WRENCH_RADIUS,
 )
 from workhold.model.requirements import Load, Tolerance
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases
 from workhold.statics.quality import quality_of

@@ -26,8 +26,9 @@ from attrs import define, evolve, field, frozen
 
 from workhold.batch.store import part_record, plain_record, refusal_record, workpiece_of
 from workhold.errors import NO_ROOM, InputError, WorkholdError, lacks_memory
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.version import __version__
 
 __all__ = [

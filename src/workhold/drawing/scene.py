@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from math import atan2, cos, hypot, log10, sin
 from pathlib import Path
 
@@ -64,6 +64,7 @@ def advance_widths() -> dict[str, dict[str, float]]:
     return widths
 
 
+@lru_cache(maxsize=1 << 14)
 def text_width(content: str, size: float, bold: bool = False) -> float:
     """Width of a line of text in page units, for a font size in page units.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from functools import lru_cache
 
 from attrs import frozen
 
@@ -127,6 +128,8 @@ class MovingBlocks:
     steps: Callable[[Sheet], list[str]]
 
 
+# A layout asks for each block in each width many times; a sheet has some hundred of these.
+@lru_cache(maxsize=256)
 def height_of(block: Block, width: float) -> float:
     """Height of a block in a column of a width, page units."""
     column = TextColumn(Scene(ET.Element("g")), 0.0, 0.0, width)

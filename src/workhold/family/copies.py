@@ -38,7 +38,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
 from workhold.model.clamps import shown_clamps
 from workhold.model.fixture import Fixture
-from workhold.model.result import FixtureTable, fixture_at
+from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 

@@ -22,10 +22,11 @@ from workhold.errors import InputError
 from workhold.family.patterns import half_turn, pattern_words, turned, zero_words
 from workhold.listing.canonical_form import changes
 from workhold.listing.ranking import measured
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import FIGURES, Figure, figure_number
 from workhold.model.query import DEFAULT_RANKING, PAIR_RANKING, Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.workpiece import Workpiece
 from workhold.statics.judging import unfit

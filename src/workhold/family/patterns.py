@@ -16,7 +16,7 @@ from workhold.conventions import GAP_SLACK
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated
 from workhold.listing.canonical_form import packed
-from workhold.model.result import FixtureTable
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.setup import PartZero
 
 __all__ = [

@@ -22,8 +22,8 @@ from workhold.family.members import Member
 from workhold.family.patterns import NOTHING, holes_of, moved_onto, shifted
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
+from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.quality import figure_number
-from workhold.model.result import FixtureTable, fixture_at
 
 __all__ = ["MOST_EXACT", "Freedom", "Holding", "Plan", "SetUp", "Step", "best_order", "freedom_of", "plan_of"]
 

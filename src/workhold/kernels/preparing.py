@@ -42,10 +42,11 @@ from workhold.kernels.contact.record import RECORD_LENGTH, WORK_LENGTH
 from workhold.kernels.contact.seat_numbers import numbers_of_seats
 from workhold.kernels.contact.swept import DEPTH as TREE_DEPTH
 from workhold.kernels.contact.swept import SweptTree, nearest_swept
-from workhold.kernels.curves.sliding_pairs import sliding_three_and_one, sliding_two_and_two
+from workhold.kernels.curves.block_work import STATISTICS
+from workhold.kernels.curves.sliding_pairs import sliding_fixtures
 from workhold.kernels.curves.table import tail_curves
 from workhold.kernels.curves.three_and_one import three_and_one_cells
-from workhold.kernels.curves.two_and_two import STATISTICS, two_and_two_cells
+from workhold.kernels.curves.two_and_two import two_and_two_cells
 from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians
 from workhold.kernels.proof.merging import merge_boxes
@@ -128,8 +129,7 @@ def crossings_and_pairs() -> Calls:
     given = (features, curves, LATTICE, LIMITS, False, np.zeros(STATISTICS, np.int64))
     for cells in (two_and_two_cells, three_and_one_cells):
         yield cells, (np.zeros(1), none, *given)
-    for meet in (sliding_two_and_two, sliding_three_and_one):
-        yield meet, (none, sliding_pairs, none, *given)
+    yield sliding_fixtures, (2, none, sliding_pairs, none, *given)
 
 
 def matrices_and_figures() -> Calls:

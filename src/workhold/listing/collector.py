@@ -38,8 +38,8 @@ from workhold.listing.identity import Identity
 from workhold.listing.placing import placeable, placed
 from workhold.listing.ranking import best_marked, measured, ranking_keys
 from workhold.listing.runs import Runs, SortedRun, in_order, key_of
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import CLOSURE_MARGIN
-from workhold.model.result import FixtureTable
 from workhold.proof.deciding import Account, Course, decided
 from workhold.statics.judging import unfit
 

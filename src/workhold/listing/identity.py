@@ -35,8 +35,9 @@ from workhold.geometry.symmetry import (
 )
 from workhold.listing.canonical_form import changes, clusters, packed
 from workhold.listing.clamp_placement import axis_of
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import TILT
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.judging import unfit
 

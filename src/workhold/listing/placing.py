@@ -20,7 +20,7 @@ from workhold.conventions import ANGLE_SLACK, GAP_SLACK
 from workhold.geometry.symmetry import rotated
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
-from workhold.model.result import FixtureTable, unknown_quality
+from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.proof.deciding import is_standing
 from workhold.rowwise import largest, smallest
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import FIGURE_DECIMALS
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
@@ -27,7 +28,6 @@ from workhold.model.quality import (
 )
 from workhold.model.query import Query
 from workhold.model.requirements import Tolerance
-from workhold.model.result import FixtureTable
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import unfit
 from workhold.statics.quality import quality_of

@@ -20,8 +20,9 @@ from workhold.listing.canonical_form import Candidates
 from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.identity import Identity, SetCount, identity_order
 from workhold.listing.ranking import best_marked, measured_as, rank, ranking_keys
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.search_report import (
     Proof,
     best_note,

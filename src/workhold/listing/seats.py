@@ -43,9 +43,10 @@ from workhold.listing.clamp_contacts import ClampContacts, box_beside
 from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_bolted, is_upright, last_holes
 from workhold.listing.identity import half_turns
 from workhold.listing.results import RankedTable, Work
+from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.quality import CLAMP_FREEDOM
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.model.result import Result
 from workhold.model.search_report import AT_AN_EDGE, Undecided
 from workhold.proof.deciding import BALLS, Account
 

@@ -17,8 +17,9 @@ from workhold.conventions import SAME_PLACE
 from workhold.geometry.symmetry import rotated
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
 from workhold.listing.results import RankedTable, Work
+from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result, unknown_quality
+from workhold.model.result import Result
 from workhold.proof.deciding import Account
 
 __all__ = ["WallCollector", "WallFixtures", "first_of_each", "placed_on_wall", "turned", "wall_table"]

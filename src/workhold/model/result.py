@@ -2,163 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, overload
 
-import numpy as np
-from attrs import define, evolve, field, fields
-from numpy.typing import NDArray
+from attrs import define, evolve, field
 
 from workhold.delegates import delegate
-from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Line
-from workhold.model.clamps import ratios, working_forces
-from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, known_figures_of
+from workhold.model.fixture import Fixture, Listed
+from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at
 from workhold.model.query import Query
 from workhold.model.search_report import Proof, cut_note, fitted_note
 from workhold.model.seating import Seating
-from workhold.model.wall import ENDS
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["FixtureTable", "Result", "fixture_at", "flat_angles", "peg_places", "unknown_quality"]
-
-# Fixtures looked at together when all are gone through.
-BLOCK = 4096
-
-
-@define(frozen=True, eq=False)
-class FixtureTable:
-    """N fixtures as arrays; pegs stand in every row in the order of their arrangement.
-
-    Of a large result file the arrays are parts, read only where they are looked at: go through them by
-    ``take``. Tables of the same fixtures in the same order are equal.
-
-    Parameters
-    ----------
-    arrangement : (N,) int8, index into the toolkit's arrangements.
-    column, row : (N, P) int32, the hole; P is 4, of a toolkit with two clamps 5.
-    face : (N, P) int32, number of the face touched.
-    theta : (N,) orientation of the workpiece in radians, in [0, 2 pi).
-    position : (N, 2) translation of the pose in mm.
-    jaw_separation : (N,) in mm; of two clamps (N, 2), the travel of each.
-    force : (N, P) contact force per unit of clamping force; of two clamps (N, P, 2), per unit of the force of
-        each.
-    quality : (N, Q) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known,
-        and in a column more the program clearance where there is a program.
-    pairs : (N,) int32, how many pairs of clamps there are at the seat that a fixture stands for; 1 where each
-        is listed.
-    """
-
-    arrangement: NDArray[np.int8]
-    column: NDArray[np.int32]
-    row: NDArray[np.int32]
-    face: NDArray[np.int32]
-    theta: NDArray[np.float64]
-    position: NDArray[np.float64]
-    jaw_separation: NDArray[np.float64]
-    force: NDArray[np.float64]
-    quality: NDArray[np.float64]
-    pairs: NDArray[np.int32] = field()
-
-    @pairs.default
-    def each_by_itself(self) -> NDArray[np.int32]:
-        """One for each fixture."""
-        return np.ones(len(self.arrangement), np.int32)
-
-    def __attrs_post_init__(self) -> None:
-        for column in self.columns:
-            column.setflags(write=False)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # So that the arrays are read-only again on the other side.
-        return FixtureTable, self.columns
-
-    def __len__(self) -> int:
-        return len(self.arrangement)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, FixtureTable):
-            return NotImplemented
-        return len(self) == len(other) and all(
-            np.array_equal(mine, theirs, equal_nan=True)
-            for block in (slice(start, start + BLOCK) for start in range(0, len(self), BLOCK))
-            for mine, theirs in zip(self.take(block).columns, other.take(block).columns, strict=True)
-        )
-
-    def __hash__(self) -> int:
-        return hash(len(self))
-
-    @property
-    def columns(self) -> tuple[NDArray[Any], ...]:
-        """All the arrays, in the order above."""
-        return tuple(getattr(self, column.name) for column in fields(FixtureTable))
-
-    @property
-    def working_force(self) -> NDArray[np.float64]:
-        """The contact forces (N, P) per unit of clamping force; of two clamps at their working ratio."""
-        return self.force if self.force.ndim == 2 else working_forces(self.force)
-
-    @property
-    def null_vector(self) -> NDArray[np.float64]:
-        """The positive null vectors (N, P) of the wrenches, scaled to sum 1; forces are proportional to them,
-        those of two clamps at their working ratio.
-        """
-        forces = self.working_force
-        return np.asarray(forces / forces.sum(axis=1, keepdims=True))
-
-    def take(self, order: NDArray[Any] | slice) -> FixtureTable:
-        """The fixtures of an index array or slice, in its order."""
-        return FixtureTable(*(column[order] for column in self.columns))
-
-    def same_holes(self, index: int) -> int:
-        """How many other fixtures have their pegs in the same holes as the one of an index."""
-        same = self.arrangement == self.arrangement[index]
-        for holes in (self.column, self.row):
-            same &= (holes == holes[index]).all(axis=1)
-        return int(same.sum()) - 1
-
-    @classmethod
-    def joined(cls, tables: Sequence[FixtureTable]) -> FixtureTable:
-        """Several tables, at least one, as one; of figures that only some have the others know nothing."""
-        most = max(table.quality.shape[1] for table in tables)
-        return cls(
-            *map(np.concatenate, zip(*(table.with_figures(most).columns for table in tables), strict=True))
-        )
-
-    def with_figures(self, columns: int) -> FixtureTable:
-        """The table with so many columns of figures at least."""
-        missing = columns - self.quality.shape[1]
-        if missing <= 0:
-            return self
-        return evolve(self, quality=np.pad(self.quality, ((0, 0), (0, missing)), constant_values=np.nan))
-
-    @classmethod
-    def empty(cls, toolkit: Toolkit | None = None) -> FixtureTable:
-        """A table of no fixtures of a toolkit; None is one with four pegs."""
-        count, travels = (4, 1) if toolkit is None else (toolkit.peg_count, toolkit.travels)
-        several = (travels,) if travels > 1 else ()
-        ints, floats = np.zeros((0, count), np.int32), np.zeros((0, count, *several))
-        return cls(
-            arrangement=np.zeros(0, np.int8),
-            column=ints,
-            row=ints.copy(),
-            face=ints.copy(),
-            theta=np.zeros(0),
-            position=np.zeros((0, 2)),
-            jaw_separation=np.zeros((0, *several)),
-            force=floats,
-            quality=unknown_quality(np.zeros(0)),
-        )
-
-
-def unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Figures of quality (N, Q) of which only the closure margin (N,) is known."""
-    quality = np.full((len(closure_margin), len(FIGURES)), np.nan)
-    quality[:, CLOSURE_MARGIN] = closure_margin
-    return quality
+__all__ = ["Result"]
 
 
 @define(frozen=True, repr=False)
@@ -321,86 +180,3 @@ class Result:
         """What holds the best fixtures up, see ``workhold.supports.asking.result_supports``."""
         found: tuple[Any, ...] = delegate("result_supports")(self, thickness, **asked)
         return found
-
-
-def whole_turn_degrees(theta: float) -> float:
-    """An angle in radians as degrees in [0, 360); what is within 1e-10 degrees below a whole turn is 0."""
-    degrees = float(np.degrees(theta)) % 360.0
-    return 0.0 if degrees > 360.0 - 1e-10 else degrees
-
-
-def peg_places(
-    table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """x and y (N, P) in mm of all pegs of a table; those of a wall are where the workpiece touches it."""
-    x, y = toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
-    for ends in toolkit.ends_on_walls:
-        x[:, ends] = workpiece.flush.x(table.theta, table.position)
-        y[:, ends] = 0.0
-    return x, y
-
-
-def flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> list[list[float | None]]:
-    """The way the flats of all pegs of a table look, in degrees; None for pegs that touch with their round
-    side.
-    """
-    if not toolkit.has_flats:
-        return [[None] * table.face.shape[1] for _ in range(len(table))]
-    straight = {
-        face.number: np.degrees(np.arctan2(*face.segment.normal()[::-1])) + 180.0
-        for face in workpiece.faces
-        if isinstance(face.segment, Line)
-    }
-    flatted = [[toolkit.carriers[k].flat is not None for k in one.carriers] for one in toolkit.arrangements]
-    return [
-        [
-            round((straight[face] + turn) % 360.0, 9) % 360.0 if has_flat and face in straight else None
-            for has_flat, face in zip(flatted[kind], faces, strict=True)
-        ]
-        for kind, faces, turn in zip(
-            table.arrangement.tolist(), table.face.tolist(), np.degrees(table.theta).tolist(), strict=True
-        )
-    ]
-
-
-def fixture_at(
-    table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece, listed: Listed | None = None
-) -> Fixture:
-    """Makes the :class:`Fixture` of one row of a table; ``listed`` is where it is listed, if it is."""
-    one = table.take(slice(index, index + 1))
-    arrangement, carriers = toolkit.arrangements[one.arrangement[0]], toolkit.carriers
-    across, along = peg_places(one, toolkit, workpiece)
-    forces = one.working_force[0].tolist()
-    flats = flat_angles(one, toolkit, workpiece)[0]
-    pegs = []
-    for k, number in enumerate(arrangement.carriers):
-        carrier, column, row = carriers[number], int(one.column[0, k]), int(one.row[0, k])
-        place = None if carrier.has_lattice else carrier.place_name(column, row)
-        beside = None
-        if carrier.contact is WALL_END:
-            end, flush = k - arrangement.carriers.index(number), workpiece.flush
-            place, beside = (
-                f"{carrier.noun} {ENDS[end]}",
-                flush.touching[flush.number(one.theta)[0]][end].beside,
-            )
-        at, face = (float(across[0, k]), float(along[0, k])), int(one.face[0, k])
-        pegs.append(Peg(carrier.name, column, row, *at, face, forces[k], place, beside, flats[k]))
-    x, y = (float(v) for v in table.position[index])
-    return Fixture(
-        type=arrangement.name,
-        pegs=tuple(pegs),
-        pose=Pose(whole_turn_degrees(float(table.theta[index])), x, y),
-        jaw_separation=float(np.ravel(one.jaw_separation)[0]),
-        quality=known_figures_of(table.quality[index].tolist()),
-        direction=arrangement.direction,
-        pair=pair_at(one) if one.force.ndim == 3 else None,
-        listed=listed,
-    )
-
-
-def pair_at(one: FixtureTable) -> Pair:
-    """What is particular to the two clamps of the only fixture of a table."""
-    low, high = (float(values[0]) for values in ratios(one.force))
-    first, second = one.jaw_separation[0].tolist()
-    reactions = tuple((a, b) for a, b in one.force[0].tolist())
-    return Pair((first, second), (low, high), reactions, int(one.pairs[0]))

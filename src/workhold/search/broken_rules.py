@@ -25,9 +25,9 @@ from workhold.kernels.contact import record
 from workhold.limits import thread_count
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.placing import placeable, placed
+from workhold.model.fixture_table import fixture_at
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
-from workhold.model.result import fixture_at
 from workhold.model.search_report import NearestMiss, Removal
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks

@@ -19,7 +19,7 @@ from workhold.errors import InputError
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC
-from workhold.kernels.curves.two_and_two import CANDIDATES, CONTACTS
+from workhold.kernels.curves.block_work import CANDIDATES, CONTACTS
 from workhold.limits import counting_number, thread_count
 from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.ranking import figure_keys

@@ -17,10 +17,11 @@ from workhold.contact.problem import Problem
 from workhold.errors import InputError
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
+from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.quality import WARNINGS
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
-from workhold.model.result import FixtureTable, Result, fixture_at
+from workhold.model.result import Result
 from workhold.model.search_report import Explanation, Help, NearestMiss, Removal
 from workhold.search.broken_rules import SECOND_CLAMP, Removals, removals_of
 from workhold.search.design import answer

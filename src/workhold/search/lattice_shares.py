@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_POSE
-from workhold.kernels.curves.two_and_two import CANDIDATES
+from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
 from workhold.listing.collector import blocks_of

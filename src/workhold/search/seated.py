@@ -22,9 +22,10 @@ from workhold.contact.problem import Progress
 from workhold.errors import InputError
 from workhold.listing.ranking import rank
 from workhold.listing.results import stage
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS
 from workhold.model.query import SEATING_KEYS, Query
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.search_report import best_note, by_hand_note, cut_note, seated_note
 from workhold.model.seating import Seating
 from workhold.seating.pattern import refuse_unseated

@@ -25,16 +25,10 @@ from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
 from workhold.kernels.base.feature import SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Limits
 from workhold.kernels.chord.columns import FROM, ORIENTATION, TO
-from workhold.kernels.curves.sliding_pairs import sliding_three_and_one, sliding_two_and_two
+from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATISTICS, STOPPED
+from workhold.kernels.curves.sliding_pairs import sliding_fixtures
 from workhold.kernels.curves.three_and_one import three_and_one_cells
-from workhold.kernels.curves.two_and_two import (
-    CONTACTS,
-    CROSSED,
-    PAIRS,
-    STATISTICS,
-    STOPPED,
-    two_and_two_cells,
-)
+from workhold.kernels.curves.two_and_two import two_and_two_cells
 from workhold.limits import thread_count
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
@@ -51,11 +45,10 @@ __all__ = ["LEAST_BLOCKS", "ToolkitSearch", "contacts_of", "count_contacts", "la
 
 Array = NDArray[np.float64]
 
-# Kernels of crossings and of sliding pairs for each arrangement of pegs, and how long the former take,
-# relative to others.
-KERNELS: dict[tuple[int, ...], tuple[Callable[..., Array], Callable[..., Array], float]] = {
-    (2, 2): (two_and_two_cells, sliding_two_and_two, 1.0),
-    (3, 1): (three_and_one_cells, sliding_three_and_one, 0.5),
+# The kernel of crossings for each arrangement of pegs, and how long it takes, relative to others.
+KERNELS: dict[tuple[int, ...], tuple[Callable[..., Array], float]] = {
+    (2, 2): (two_and_two_cells, 1.0),
+    (3, 1): (three_and_one_cells, 0.5),
 }
 # Cells of a half turn: so many for each pitch that L of the wrenches holds, within limits.
 CELLS_PER_PITCH = 10.0
@@ -289,7 +282,7 @@ class ToolkitSearch:
 
     def crossing_block(self, arrangement: Arrangement, edges: Array, members: int) -> Block:
         """The crossings of some neighbouring cells, in which there are about so many curves."""
-        kernel, _, weight = KERNELS[arrangement.pegs]
+        kernel, weight = KERNELS[arrangement.pegs]
         work = partial(self.run, partial(kernel, edges), float(edges[0]), float(edges[-1]), self.tally())
         return Block(work, 1.0 + weight * members**2, len(edges) - 1)
 
@@ -297,12 +290,11 @@ class ToolkitSearch:
         self, arrangement: Arrangement, edges: Array, cells: list[int], sliding_pairs: list[NDArray[np.int64]]
     ) -> Block:
         """The sliding pairs of some cells, given those of all."""
-        _, kernel, _ = KERNELS[arrangement.pegs]
-        stats = self.tally()
+        standing, stats = arrangement.pegs[0], self.tally()
         parts = [
             partial(
                 self.run,
-                partial(kernel, sliding_pairs[cell], self.table.sliding_pairs),
+                partial(sliding_fixtures, standing, sliding_pairs[cell], self.table.sliding_pairs),
                 float(edges[cell]),
                 float(edges[cell + 1]),
                 stats,

@@ -22,8 +22,8 @@ from workhold.listing.clamp_placement import last_holes
 from workhold.listing.results import RankedTable, Work
 from workhold.listing.seats import ClampedSeats, Seats, seats_of
 from workhold.listing.wall_fixtures import WallCollector, WallFixtures, first_of_each, turned
+from workhold.model.fixture_table import FixtureTable, unknown_quality
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, unknown_quality
 from workhold.model.search_report import AT_AN_EDGE, Undecided, no_fixture_notes, no_pair_note, no_place_note
 from workhold.proof.deciding import Account
 from workhold.proof.flush import Candidate

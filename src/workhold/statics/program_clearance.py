@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from workhold.contact.swept import Swept, path_of, swept_below
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated
+from workhold.model.fixture_table import FixtureTable, peg_places
 from workhold.model.program import PathVertex, Program
-from workhold.model.result import FixtureTable, Result, peg_places
+from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["NearestMove", "Passing", "element_name", "nearest_moves", "passing_of"]

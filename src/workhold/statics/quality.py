@@ -25,6 +25,7 @@ from workhold.geometry.segment import Arc, Line
 from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.model.fixture import Fixture
+from workhold.model.fixture_table import FixtureTable, fixture_at, peg_places
 from workhold.model.program import Program
 from workhold.model.quality import (
     CLAMP_FREEDOM,
@@ -38,7 +39,7 @@ from workhold.model.quality import (
     WARNINGS,
 )
 from workhold.model.requirements import Load, Tolerance
-from workhold.model.result import FixtureTable, Result, fixture_at, peg_places
+from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import smallest
 from workhold.statics.contact_matrix import Touched

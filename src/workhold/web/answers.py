@@ -19,8 +19,8 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Box, Segment
 from workhold.model.clamps import ShownClamp, order_words
 from workhold.model.fixture import Fixture
+from workhold.model.fixture_table import FixtureTable, fixture_at
 from workhold.model.quality import FIGURES
-from workhold.model.result import FixtureTable, fixture_at
 from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import settings_of
 from workhold.model.shown import Shown, shown

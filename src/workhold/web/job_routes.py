@@ -12,7 +12,8 @@ from fastapi import APIRouter, Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
-from workhold.model.result import FixtureTable, Result
+from workhold.model.fixture_table import FixtureTable
+from workhold.model.result import Result
 from workhold.model.seating import length
 from workhold.statics.judging import unfit as unfit_of
 from workhold.web.answers import explanation_answer, rows_answer

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.identity import Entries, first_of_each, near_duplicates
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import FIGURES, figure_number
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.statics.judging import unfit
 
 __all__ = ["Selection", "angle_range"]

@@ -20,7 +20,8 @@ from workhold.files.result.forms import COLUMNS, HEAD
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
 from workhold.listing.identity import entries
-from workhold.model.result import FixtureTable, Result
+from workhold.model.fixture_table import FixtureTable
+from workhold.model.result import Result
 from workhold.verification.listing import read_listing
 
 

@@ -22,8 +22,8 @@ from workhold.files.result import fixture_text
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result, write_result_to
 from workhold.files.toolkit_file import preset
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.requirements import Tolerance
-from workhold.model.result import FixtureTable
 from workhold.model.search_report import Undecided
 
 

@@ -39,6 +39,8 @@ from workhold.kernels.chord.columns import (
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
 from workhold.kernels.contact.record import PEG_LENGTH, place_peg
 from workhold.kernels.contact.rules import is_fixture, minors, outward_normal, share_a_carrier
+from workhold.kernels.curves.block_work import TRIPLE_ROWS, place_chord, place_triple
+from workhold.kernels.curves.moving_pegs import faces_away, may_close, write_triple
 from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
 from workhold.kernels.curves.pieces import cell_pieces
 from workhold.kernels.curves.roots import (
@@ -47,25 +49,16 @@ from workhold.kernels.curves.roots import (
     ROOT_RADIUS,
     STACK_DEPTH,
     STACK_LENGTH,
-    TRIPLE_ROWS,
     crossings,
     may_meet,
 )
-from workhold.kernels.curves.three_and_one import (
-    faces_away,
-    farthest_right,
-    height_range,
-    may_close,
-    place_triple,
-    row_meets,
-    write_triple,
-)
+from workhold.kernels.curves.rows import height_range, row_meets
+from workhold.kernels.curves.three_and_one import farthest_right
 from workhold.kernels.curves.two_and_two import (
     ROLE_LENGTH,
     ROLE_X,
     flat_slope,
     may_cross,
-    place_chord,
     sort_from_right,
     write_roles,
 )

@@ -56,7 +56,7 @@ from workhold.kernels.chord.columns import (
 )
 from workhold.kernels.chord.evaluation import chord_state
 from workhold.kernels.curves.piece_bounds import force_range, write_force_directions
-from workhold.kernels.curves.pieces import largest_part
+from workhold.kernels.curves.piece_enclosures import largest_part
 
 # The check's own rounding: a number at 200 bits, doubled orientation and places as doubles.
 EXACT_TO = 1e-15

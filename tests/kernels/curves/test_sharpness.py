@@ -40,7 +40,7 @@ from workhold.kernels.chord.columns import (
 )
 from workhold.kernels.chord.evaluation import HEIGHT
 from workhold.kernels.chord.stretches import SPEED, STRETCH_LENGTH, write_stretch
-from workhold.kernels.curves import piece_bounds, pieces
+from workhold.kernels.curves import piece_bounds, piece_enclosures
 from workhold.kernels.curves.piece_bounds import write_edge
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -211,8 +211,10 @@ def left(force: float, bare_low: float, bare_high: float, low: float, high: floa
 
 
 CONSTANTS = [
-    Constant("between ends, w² / 8", pieces.write_steady, between_ends, 8.0, draws=60, times=10.0),
-    Constant("directions of a piece, 2 errors", pieces.write_steady, normals_off, 2.0, 0, draws=150),
+    Constant("between ends, w² / 8", piece_enclosures.write_steady, between_ends, 8.0, draws=60, times=10.0),
+    Constant(
+        "directions of a piece, 2 errors", piece_enclosures.write_steady, normals_off, 2.0, 0, draws=150
+    ),
     Constant("turn of normals, 1.06", piece_bounds.largest_turn, turn_told, 1.06),
     Constant("hull of forces, 4 doubts", piece_bounds.write_hull, sagging(False), 4.0, draws=600),
     Constant("forces at both ends, 2 doubts", piece_bounds.write_hull, sagging(False), 2.0, 0, draws=600),

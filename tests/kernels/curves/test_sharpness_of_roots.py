@@ -19,14 +19,17 @@ from sharpness import Constant, changed, check_sharpness
 from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Lattice
 from workhold.kernels.chord.columns import (
+    CURVE_INTEGERS,
+    CURVE_REALS,
     DIRECTION,
     SLIDING_PAIR_REALS,
     STEP_LENGTH,
+    Curves,
 )
+from workhold.kernels.chord.stretches import STRETCH_LENGTH
 from workhold.kernels.contact.record import RECORD_LENGTH
-from workhold.kernels.curves import roots, sliding_pairs, three_and_one
-from workhold.kernels.curves.roots import work_space
-from workhold.kernels.curves.two_and_two import STATISTICS
+from workhold.kernels.curves import moving_pegs, roots, sliding_pairs
+from workhold.kernels.curves.block_work import STATISTICS, block_work
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Kernel = Callable[..., Any]
@@ -112,16 +115,22 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
             return True, 0.0, 0.0, 0.0
 
         def closes(*given: Any) -> bool:
-            told.append(-given[7] - three_and_one.GAP_SLACK - three_and_one.HAIR)
+            told.append(-given[7] - moving_pegs.GAP_SLACK - moving_pegs.HAIR)
             return False
 
         rows = np.zeros((4, FEATURE_LENGTH))
         rows[:, :SEGMENT_LENGTH] = line_row(0, 0, 1.0, length)
         form = changed(kernel, row_meets=meets, may_close=closes)
         features = Features(rows[:, :SEGMENT_LENGTH], rows, (0, 4), (0, 4))
-        space, stats, out = work_space(), np.zeros(STATISTICS, np.int64), np.zeros((16, RECORD_LENGTH))
-        space.pegs[:] = 0.0
-        form(out, 0, 0.0, reach, features, Lattice(1.0, 1.0, 0.0), limits(length, 0.0), False, space, stats)
+        curves = Curves(
+            np.zeros((0, CURVE_INTEGERS), np.int64),
+            np.zeros((0, CURVE_REALS)),
+            np.zeros((0, STRETCH_LENGTH)),
+        )
+        given = features, curves, Lattice(1.0, 1.0, 0.0), limits(length, 0.0), False
+        work, out = block_work(*given, np.zeros(STATISTICS, np.int64)), np.zeros((16, RECORD_LENGTH))
+        work.pegs[:] = 0.0
+        form(out, 0, 0.0, reach, work)
         error, gap = told[:2]
         return 2 * length * sin(reach) / (error if name == "height" else gap)
 
@@ -140,9 +149,9 @@ CONSTANTS = [
     Constant("sliding arcs, 4 misfits", sliding_pairs.sliding_pair_reach, arcs_off, 4.0),
     Constant("sliding tail, 1.2", sliding_pairs.tail_inside, past_a_sliding_end, 1.2),
     Constant(
-        "moving peg's height, 4 L", three_and_one.add_moving_pegs, moving_peg_off("height"), 4.0, 0, draws=20
+        "moving peg's height, 4 L", moving_pegs.add_moving_pegs, moving_peg_off("height"), 4.0, 0, draws=20
     ),
-    Constant("moving peg's gap, 4 L", three_and_one.add_moving_pegs, moving_peg_off("gap"), 4.0, 1, draws=20),
+    Constant("moving peg's gap, 4 L", moving_pegs.add_moving_pegs, moving_peg_off("gap"), 4.0, 1, draws=20),
 ]
 
 

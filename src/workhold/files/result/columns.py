@@ -34,8 +34,9 @@ from workhold.files.result.parts import (
 )
 from workhold.files.result.writer import FORMAT, head
 from workhold.files.text import json_value
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 
 __all__ = ["ColumnsSink", "MappedTable", "answer_to_file", "read_columns", "write_columns"]
 

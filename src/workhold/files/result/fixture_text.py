@@ -33,8 +33,9 @@ from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture
+from workhold.model.fixture_table import FixtureTable, flat_angles, peg_places
 from workhold.model.quality import SEATING_FIGURES, Figure, figures_in
-from workhold.model.result import FixtureTable, Result, flat_angles, peg_places
+from workhold.model.result import Result
 from workhold.model.seating import DECIMALS
 from workhold.model.workpiece import Workpiece
 from workhold.units import Unit

@@ -25,8 +25,9 @@ from workhold.files.input_forms import TAGS
 from workhold.files.result.forms import Head, ProofPart
 from workhold.files.text import json_value
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
 

@@ -222,8 +222,7 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
     if not is_regular(kind, radius, d, gamma):
         return (False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     wx, wy = d * cos(alpha), d * sin(alpha)
-    branch = curve[BRANCH]
-    way = branch if gamma >= 0.0 else -branch
+    way = curve[BRANCH] if gamma >= 0.0 else -curve[BRANCH]
     half_angle = gamma / 2.0
     if kind == ARCS:
         mx, my = cos(middle + half_angle), sin(middle + half_angle)
@@ -382,29 +381,20 @@ def motion_box(a: Array, b: Array, curve: Array, low: float, high: float) -> tup
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
     center, gamma = angle_box(low, high, middle)
     radius = regular_radius(a, b, kind)
-    zero = (0.0, 0.0)
-    nothing = (zero, zero, zero, zero, zero, zero)
     if not (is_regular(kind, radius, d, gamma[0]) and is_regular(kind, radius, d, gamma[1])):
-        return (False, nothing)
+        zero = (0.0, 0.0)
+        return (False, (zero, zero, zero, zero, zero, zero))
     way = curve[BRANCH] if center >= 0.0 else -curve[BRANCH]
-    if kind in (ARCS, TOUCHING):
-        if kind == ARCS:
-            r = arcs_box(a, b, d, middle, gamma, way)
-        else:
-            r = touching_box(a, b, d, side, middle, gamma, way)
-        return (True, (ishift(a[X], r[0]), ishift(a[Y], r[1]), r[2], r[3], r[4], r[5]))
-    if kind == ARC_FIRST:
+    if kind == LINE_FIRST:
+        r = line_box(a, radius, d, side, gamma, way)
+        alpha = ishift(middle, gamma)
+        wx, wy = iscale(d, icos(alpha)), iscale(d, isin(alpha))
+        x, y = isub(ishift(b[X], r[0]), wx), isub(ishift(b[Y], r[1]), wy)
+        return (True, (x, y, iadd(r[2], wy), iadd(r[3], ineg(wx)), iadd(r[4], wx), iadd(r[5], wy)))
+    if kind == ARCS:
+        r = arcs_box(a, b, d, middle, gamma, way)
+    elif kind == TOUCHING:
+        r = touching_box(a, b, d, side, middle, gamma, way)
+    else:
         r = line_box(b, radius, d, side, gamma, way)
-        return (True, (ishift(a[X], r[0]), ishift(a[Y], r[1]), r[2], r[3], r[4], r[5]))
-    r = line_box(a, radius, d, side, gamma, way)
-    alpha = ishift(middle, gamma)
-    wx, wy = iscale(d, icos(alpha)), iscale(d, isin(alpha))
-    u = (
-        isub(ishift(b[X], r[0]), wx),
-        isub(ishift(b[Y], r[1]), wy),
-        iadd(r[2], wy),
-        iadd(r[3], ineg(wx)),
-        iadd(r[4], wx),
-        iadd(r[5], wy),
-    )
-    return (True, u)
+    return (True, (ishift(a[X], r[0]), ishift(a[Y], r[1]), r[2], r[3], r[4], r[5]))

@@ -206,6 +206,8 @@ def value_disc(
     return (parameter_on(a, x, y), 1.1 * radius / a[RADIUS] if radius <= 0.5 * a[RADIUS] else TURN)
 
 
+# Rounding of an orientation in radians.
+SAME = 2e-15
 # Rounding of places in mm, generously counted.
 HAIR = 1e-6
 

@@ -9,22 +9,16 @@ decided by those who examine the contacts there.
 Every root is given with a radius: the exact root, if there is one, is no farther from it. A range
 too narrow to split in which f may take a target, monotone or not, is given as one root with half the range as
 its radius. So is every range where two curves run on top of each other.
-
-A work space is what a block of a search finds crossings with and hands from kernel to kernel. It is made
-once, so that no inner kernel makes an array. Kernels that list fixtures go on until all is done or their
-output is full. They record where in their pairs they stopped in ``at``; what they began there is taken back,
-and begun anew when the caller has made room.
 """
 
 from __future__ import annotations
 
 from math import ceil, floor, isfinite, isinf
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.interval import slope_range, value_bounds
 from workhold.kernels.chord.columns import (
     CURVE,
@@ -45,11 +39,7 @@ from workhold.kernels.chord.columns import (
     Curves,
 )
 from workhold.kernels.chord.evaluation import curve_value
-from workhold.kernels.contact.record import PEG_LENGTH
-from workhold.kernels.curves.piece_bounds import value_disc
-from workhold.kernels.curves.pieces import SAME
-
-__all__ = ["TRIPLE_ROWS", "WorkSpace", "work_space"]
+from workhold.kernels.curves.piece_bounds import SAME, value_disc
 
 Array = NDArray[np.float64]
 
@@ -369,44 +359,3 @@ def crossings(
         high = middle
         w1, t1, w2, t2 = m1, n1, m2, n2
         c1, q1, c2, q2 = error1, spread1, error2, spread2
-
-
-IntArray = NDArray[np.int64]
-
-# Rows of what moving pegs need of three standing ones.
-TRIPLE_ROWS = 8
-
-
-class WorkSpace(NamedTuple):
-    """Work space of a block.
-
-    Parameters
-    ----------
-    at : (2,) where among its pairs a kernel stopped.
-    stack, roots : see ``roots.crossings``.
-    pegs : (4, 6) places, see ``kernels.contact.record``.
-    contacts, null : see ``contact.rules.is_fixture``.
-    triple : see ``three_and_one.write_triple``.
-    """
-
-    at: IntArray
-    stack: Array
-    roots: Array
-    pegs: Array
-    contacts: Array
-    null: Array
-    triple: Array
-
-
-@inner_making_arrays
-def work_space() -> WorkSpace:
-    """A work space."""
-    return WorkSpace(
-        np.zeros(2, np.int64),
-        np.empty((STACK_DEPTH, STACK_LENGTH)),
-        np.empty((MOST_ROOTS, 3)),
-        np.empty((4, PEG_LENGTH)),
-        np.empty((8, 2)),
-        np.empty(4),
-        np.empty((TRIPLE_ROWS, 3)),
-    )

@@ -11,7 +11,7 @@ never make a fixture together. Nor does a sliding pair whose contacts share one 
 
 from __future__ import annotations
 
-from math import acos, atan2, ceil, cos, floor, hypot, pi, sin
+from math import acos, atan2, ceil, cos, hypot, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,24 +41,22 @@ from workhold.kernels.chord.columns import (
 )
 from workhold.kernels.chord.evaluation import backward_error, parameter_on
 from workhold.kernels.chord.intervals import SLIVER
-from workhold.kernels.contact.record import (
-    PEG_RADIUS,
-    PEG_X,
-    PEG_Y,
-    RECORD_LENGTH,
-    place_peg,
-    write_record,
-)
-from workhold.kernels.contact.rules import is_fixture, is_listed, share_a_carrier
-from workhold.kernels.curves.roots import WorkSpace, work_space
-from workhold.kernels.curves.three_and_one import (
-    add_moving_pegs,
-    heads_share_a_line,
-    height_range,
+from workhold.kernels.contact.record import PEG_RADIUS, PEG_X, PEG_Y, RECORD_LENGTH, place_peg
+from workhold.kernels.contact.rules import share_a_carrier
+from workhold.kernels.curves.block_work import (
+    CANDIDATES,
+    CONTACTS,
+    STOPPED,
+    BlockWork,
+    add_listed,
+    block_work,
+    is_among,
+    place_chord,
     place_triple,
-    row_meets,
 )
-from workhold.kernels.curves.two_and_two import CANDIDATES, CONTACTS, STOPPED, is_among, place_chord
+from workhold.kernels.curves.moving_pegs import add_moving_pegs
+from workhold.kernels.curves.rows import height_range, lines_between, row_meets
+from workhold.kernels.curves.three_and_one import heads_share_a_line
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -219,13 +217,7 @@ def add_lines(
     curve: int,
     inside: float,
     sliding_pairs: SlidingPairs,
-    features: Features,
-    curves: Curves,
-    lattice: Lattice,
-    limits: Limits,
-    counting: bool,
-    space: WorkSpace,
-    stats: IntArray,
+    work: BlockWork,
 ) -> int:
     """Appends the fixtures of a sliding pair on one carrier and a curve's chord on the other: one for each
     line of holes in which they meet.
@@ -239,16 +231,16 @@ def add_lines(
     -------
     how many records there are, -1 when there is no room for another
     """
-    whole, sliding_pair, pegs = sliding_pairs.integers[pair], sliding_pairs.reals[pair], space.pegs
-    rows, pitch_y, psi = features.rows, lattice.pitch_y, sliding_pair[ORIENTATION]
+    whole, sliding_pair, pegs = sliding_pairs.integers[pair], sliding_pairs.reals[pair], work.pegs
+    features, curves, lattice = work.features, work.curves, work.lattice
+    pitch_y, psi, wide = lattice.pitch_y, sliding_pair[ORIENTATION], 2.0 * reach + SLIVER
     ax, ay = -sin(psi), cos(psi)
     row = features.loose[whole[TAIL]]
     lowest, highest = height_range(row, ax, ay)
     tail = curves.integers[curve, TAIL]
-    place_chord(pegs[:2], curve, inside, 2.0 * reach + SLIVER, 0.0, rows, curves)
+    place_chord(pegs[:2], curve, inside, wide, 0.0, features.rows, curves)
     height = ax * pegs[0, PEG_X] + ay * pegs[0, PEG_Y]
-    error = pegs[0, PEG_RADIUS] + 4.0 * limits.wrench_length * reach
-    slack = 1e-9 + error / pitch_y
+    error = pegs[0, PEG_RADIUS] + 4.0 * work.limits.wrench_length * reach
     for order in range(2):
         # The sliding pair stands still for order 0, and is on the moving carrier for order 1.
         one, two = (whole[TAIL], tail) if order == 0 else (tail, whole[TAIL])
@@ -256,8 +248,7 @@ def add_lines(
             continue
         sign = 1.0 if order == 0 else -1.0
         base = height - sign * lattice.row_offset
-        first = int(ceil((lowest - base) / pitch_y - slack))
-        last = int(floor((highest - base) / pitch_y + slack))
+        first, last = lines_between(lowest, highest, base, pitch_y, error)
         for line in range(first, last + 1):
             for k in range(2):
                 meets, x, y, radius = row_meets(row, ax, ay, base + line * pitch_y, error, 1.0 - 2.0 * k)
@@ -267,96 +258,52 @@ def add_lines(
                 slid, turned = (0.0, float(-line)) if order == 0 else (float(line), 0.0)
                 at, other = 2 * order, 2 - 2 * order
                 place_sliding_pair(pegs[at : at + 2], x, y, slid, whole, sliding_pair, radius, reach)
-                place_chord(
-                    pegs[other : other + 2], curve, inside, 2.0 * reach + SLIVER, turned, rows, curves
-                )
-                verdict, separation = is_fixture(
-                    pegs, 2.0, psi, reach, features, limits, space.contacts, space.null
-                )
-                stats[CANDIDATES] += 1
-                if verdict > 0 and order == 0:
-                    stats[CONTACTS] += 1
-                if is_listed(verdict, counting, count, limits):
-                    if count == out.shape[0]:
-                        return -1
-                    write_record(out[count], 2.0, pegs, psi, separation, reach)
-                    count += 1
+                place_chord(pegs[other : other + 2], curve, inside, wide, turned, features.rows, curves)
+                count = add_listed(out, count, 2.0, psi, reach, order == 0, work)
+                if count < 0:
+                    return count
     return count
 
 
 @inner
-def add_chords(
+def add_third_peg(
     out: Array,
     count: int,
     pair: int,
+    reach: float,
+    curve: int,
+    inside: float,
     sliding_pairs: SlidingPairs,
-    members: IntArray,
-    features: Features,
-    curves: Curves,
-    lattice: Lattice,
-    limits: Limits,
-    counting: bool,
-    space: WorkSpace,
-    stats: IntArray,
+    work: BlockWork,
 ) -> int:
-    """Appends the fixtures of two and two pegs of a sliding pair and the curves, from the member at
-    ``space.at`` on (see ``work_space``)."""
-    at, loose = space.at, features.loose
-    whole, sliding_pair = sliding_pairs.integers[pair], sliding_pairs.reals[pair]
-    psi, reach = (
-        sliding_pair[ORIENTATION],
-        sliding_pair_reach(loose[whole[TAIL]], loose[whole[HEAD]], sliding_pair),
-    )
-    for m in range(at[0], members.shape[0]):
-        if stats[STOPPED] != 0:
-            break
-        curve = members[m]
-        exists, inside = orientation_inside(curve, psi, reach, curves.reals)
-        if not exists or shares_a_line(curves.reals[curve], inside):
-            continue
-        candidates, contacts = stats[CANDIDATES], stats[CONTACTS]
-        more = add_lines(
-            out,
-            count,
-            pair,
-            reach,
-            curve,
-            inside,
-            sliding_pairs,
-            features,
-            curves,
-            lattice,
-            limits,
-            counting,
-            space,
-            stats,
-        )
-        if more < 0:
-            at[0], stats[CANDIDATES], stats[CONTACTS] = m, candidates, contacts
-            return count
-        count = more
-    at[0] = members.shape[0]
-    return count
+    """Appends the fixtures of three and one peg of a sliding pair and a curve from its tail; parameters and
+    result as for :func:`add_lines`."""
+    whole, sliding_pair, pegs = sliding_pairs.integers[pair], sliding_pairs.reals[pair], work.pegs
+    features, curves = work.features, work.curves
+    loose, one = features.loose, curves.integers[curve]
+    if not work.counting and heads_share_a_line(whole, one, loose, work.lattice):
+        return count
+    place_triple(pegs, curve, curve, inside, 2.0 * reach + SLIVER, features.rows, curves)
+    x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]
+    if not tail_inside(loose[whole[TAIL]], sliding_pair, x, y, radius):
+        return count
+    place_sliding_pair(pegs[:2], x, y, 0.0, whole, sliding_pair, radius, reach)
+    return add_moving_pegs(out, count, sliding_pair[ORIENTATION], reach, work)
 
 
 @inner
-def add_third_pegs(
+def add_of_pair(
     out: Array,
     count: int,
     pair: int,
+    standing: int,
     sliding_pairs: SlidingPairs,
     members: IntArray,
-    features: Features,
-    curves: Curves,
-    lattice: Lattice,
-    limits: Limits,
-    counting: bool,
-    space: WorkSpace,
-    stats: IntArray,
+    work: BlockWork,
 ) -> int:
-    """Appends the fixtures of three and one peg of a sliding pair and the curves from its tail, from the
-    member at ``space.at`` on (see ``work_space``)."""
-    at, loose, pegs = space.at, features.loose, space.pegs
+    """Appends the fixtures of a sliding pair and the curves, from the member at ``work.at`` on (see
+    ``block_work``). Of three standing pegs the third is on a curve from the pair's tail."""
+    at, stats, loose, curves = work.at, work.stats, work.features.loose, work.curves
     whole, sliding_pair = sliding_pairs.integers[pair], sliding_pairs.reals[pair]
     psi, tail = sliding_pair[ORIENTATION], whole[TAIL]
     reach = sliding_pair_reach(loose[tail], loose[whole[HEAD]], sliding_pair)
@@ -364,22 +311,17 @@ def add_third_pegs(
         if stats[STOPPED] != 0:
             break
         curve = members[m]
-        if curves.integers[curve, TAIL] != tail:
+        one = curves.integers[curve]
+        if standing == 3 and (one[TAIL] != tail or not share_a_carrier(whole, one, work.limits)):
             continue
         exists, inside = orientation_inside(curve, psi, reach, curves.reals)
-        if not exists or not share_a_carrier(whole, curves.integers[curve], limits):
+        if not exists or shares_a_line(curves.reals[curve], inside):
             continue
-        if shares_a_line(curves.reals[curve], inside):
-            continue
-        if not counting and heads_share_a_line(whole, curves.integers[curve], loose, lattice):
-            continue
-        place_triple(pegs, curve, curve, inside, 2.0 * reach + SLIVER, features.rows, curves)
-        x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]
-        if not tail_inside(loose[tail], sliding_pair, x, y, radius):
-            continue
-        place_sliding_pair(pegs[:2], x, y, 0.0, whole, sliding_pair, radius, reach)
         candidates, contacts = stats[CANDIDATES], stats[CONTACTS]
-        more = add_moving_pegs(out, count, psi, reach, features, lattice, limits, counting, space, stats)
+        if standing == 2:
+            more = add_lines(out, count, pair, reach, curve, inside, sliding_pairs, work)
+        else:
+            more = add_third_peg(out, count, pair, reach, curve, inside, sliding_pairs, work)
         if more < 0:
             at[0], stats[CANDIDATES], stats[CONTACTS] = m, candidates, contacts
             return count
@@ -389,7 +331,8 @@ def add_third_pegs(
 
 
 @compiled_making_arrays
-def sliding_two_and_two(
+def sliding_fixtures(
+    standing: int,
     chosen: IntArray,
     sliding_pairs: SlidingPairs,
     members: IntArray,
@@ -400,75 +343,20 @@ def sliding_two_and_two(
     counting: bool,
     stats: IntArray,
 ) -> Array:
-    """All fixtures of two and two pegs that rest on one of the ``chosen`` sliding pairs and on a curve of
-    ``members``.
+    """All fixtures that rest on one of the ``chosen`` sliding pairs and on curves of ``members``.
 
-    Parameters and result as for ``two_and_two_cells``.
+    Parameters and result as for ``two_and_two_cells``. So many pegs, 2 or 3, are ``standing``; of three, two
+    form the sliding pair from the shared tail.
     """
-    out, space = np.empty((16, RECORD_LENGTH)), work_space()
+    out, work = np.empty((16, RECORD_LENGTH)), block_work(features, curves, lattice, limits, counting, stats)
     count = int(np.int64(0))
     for pair in chosen:
-        space.at[0] = 0
-        while True:
-            count = add_chords(
-                out,
-                count,
-                pair,
-                sliding_pairs,
-                members,
-                features,
-                curves,
-                lattice,
-                limits,
-                counting,
-                space,
-                stats,
-            )
-            if space.at[0] == members.shape[0]:
-                break
-            out = grown(out)
-    return out[:count]
-
-
-@compiled_making_arrays
-def sliding_three_and_one(
-    chosen: IntArray,
-    sliding_pairs: SlidingPairs,
-    members: IntArray,
-    features: Features,
-    curves: Curves,
-    lattice: Lattice,
-    limits: Limits,
-    counting: bool,
-    stats: IntArray,
-) -> Array:
-    """All fixtures of three and one peg two of whose standing pegs form one of the ``chosen`` sliding pairs
-    from the shared tail.
-
-    Parameters and result as for ``two_and_two_cells``.
-    """
-    out, space = np.empty((16, RECORD_LENGTH)), work_space()
-    count = int(np.int64(0))
-    for pair in chosen:
-        if not is_among(sliding_pairs.integers[pair, TAIL], features.standing):
+        if standing == 3 and not is_among(sliding_pairs.integers[pair, TAIL], features.standing):
             continue
-        space.at[0] = 0
+        work.at[0] = 0
         while True:
-            count = add_third_pegs(
-                out,
-                count,
-                pair,
-                sliding_pairs,
-                members,
-                features,
-                curves,
-                lattice,
-                limits,
-                counting,
-                space,
-                stats,
-            )
-            if space.at[0] == members.shape[0]:
+            count = add_of_pair(out, count, pair, standing, sliding_pairs, members, work)
+            if work.at[0] == members.shape[0]:
                 break
             out = grown(out)
     return out[:count]

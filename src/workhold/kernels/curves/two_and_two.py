@@ -11,7 +11,7 @@ against each other along x. The difference of their heights must be able to be a
 
 from __future__ import annotations
 
-from math import ceil, cos, floor, sin
+from math import ceil, floor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,17 +24,12 @@ from workhold.kernels.chord.columns import (
     ACROSS_LEAST,
     ACROSS_MOST,
     CENTER,
-    COLUMN_STEP,
     CURVE,
-    HEAD,
     HIGH,
     LEFTWARD_LOW,
-    LENGTH,
     LOW,
     PIECE_LENGTH,
     RIGHTWARD_LOW,
-    ROW_STEP,
-    SHIFT,
     STEADY,
     TAIL,
     VALUE_LEAST,
@@ -43,29 +38,24 @@ from workhold.kernels.chord.columns import (
     Curves,
 )
 from workhold.kernels.chord.evaluation import HEIGHT
-from workhold.kernels.contact.record import RECORD_LENGTH, place_peg, write_given_up, write_record
-from workhold.kernels.contact.rules import is_fixture, is_listed
-from workhold.kernels.curves.piece_bounds import HAIR, chord_tail, kept_edges
-from workhold.kernels.curves.pieces import cell_pieces
-from workhold.kernels.curves.roots import (
-    MULTIPLE,
-    ROOT_PSI,
-    ROOT_RADIUS,
-    WorkSpace,
-    crossings,
-    may_meet,
-    work_space,
+from workhold.kernels.contact.record import RECORD_LENGTH, write_given_up
+from workhold.kernels.curves.block_work import (
+    CROSSED,
+    PAIRS,
+    STOPPED,
+    BlockWork,
+    add_listed,
+    block_work,
+    is_among,
+    place_chord,
 )
+from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
+from workhold.kernels.curves.pieces import cell_pieces
+from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought,
-# four contacts examined, and those that may be inside their features.
-PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
-# Beside these is what another thread asks for: any number but 0 at STOPPED ends the work soon.
-STOPPED = 4
-STATISTICS = 5
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
 (
     ROLE_X,
@@ -78,29 +68,6 @@ STATISTICS = 5
     ROLE_PIECE,
 ) = range(8)
 ROLE_LENGTH = 8
-
-
-@inner
-def place_chord(
-    pegs: Array, curve: int, psi: float, reach: float, line: float, features: Array, curves: Curves
-) -> None:
-    """Writes the pegs of a curve's chord to (2, 6) places, the tail in row ``line`` of column 0.
-
-    ``reach`` is how far in radians psi may be off; the pegs' radii follow from it.
-    """
-    step, reals = curves.integers[curve], curves.reals[curve]
-    tail, head = step[TAIL], step[HEAD]
-    d, alpha = reals[LENGTH], psi + reals[SHIFT]
-    x, y, radius = chord_tail(features[tail], features[head], reals, psi, reach)
-    column, row = float(step[COLUMN_STEP]), float(step[ROW_STEP])
-    place_peg(pegs[0], x, y, tail, 0.0, line, radius)
-    place_peg(pegs[1], x + d * cos(alpha), y + d * sin(alpha), head, column, line + row, radius + d * reach)
-
-
-@inner
-def is_among(feature: int, touched: tuple[int, int]) -> bool:
-    """Whether a feature is among those that the pegs of a carrier touch."""
-    return touched[0] <= feature < touched[1]
 
 
 @inner
@@ -195,52 +162,21 @@ def counts_once(features: Features, lattice: Lattice) -> bool:
 
 
 @inner
-def add_crossings(
-    out: Array,
-    count: int,
-    number: int,
-    one: int,
-    two: int,
-    features: Features,
-    curves: Curves,
-    limits: Limits,
-    counting: bool,
-    space: WorkSpace,
-    stats: IntArray,
-) -> int:
+def add_crossings(out: Array, count: int, number: int, one: int, two: int, work: BlockWork) -> int:
     """Examines the four contacts at each of a ``number`` of crossings of two curves, and appends those that
     are listed to ``out``, which has room for all."""
-    pegs, roots = space.pegs, space.roots
+    pegs, roots, rows, curves = work.pegs, work.roots, work.features.rows, work.curves
     for root in range(number):
         psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
         # The height of the moving chord over the standing one is the row offset and so many pitches.
-        place_chord(pegs[:2], one, psi, reach, 0.0, features.rows, curves)
-        place_chord(pegs[2:], two, psi, reach, roots[root, MULTIPLE], features.rows, curves)
-        verdict, separation = is_fixture(pegs, 2.0, psi, reach, features, limits, space.contacts, space.null)
-        stats[CANDIDATES] += 1
-        if verdict > 0:
-            stats[CONTACTS] += 1
-        if is_listed(verdict, counting, count, limits):
-            write_record(out[count], 2.0, pegs, psi, separation, reach)
-            count += 1
+        place_chord(pegs[:2], one, psi, reach, 0.0, rows, curves)
+        place_chord(pegs[2:], two, psi, reach, roots[root, MULTIPLE], rows, curves)
+        count = add_listed(out, count, 2.0, psi, reach, True, work)
     return count
 
 
 @inner
-def add_pairs(
-    out: Array,
-    count: int,
-    standing: Array,
-    moving: Array,
-    pieces: Array,
-    features: Features,
-    curves: Curves,
-    lattice: Lattice,
-    limits: Limits,
-    counting: bool,
-    space: WorkSpace,
-    stats: IntArray,
-) -> int:
+def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Array, work: BlockWork) -> int:
     """Appends what comes of the pairs of two lists of roles, from the one at ``space.at`` on (see
     ``work_space``).
 
@@ -248,7 +184,9 @@ def add_pairs(
     ----------
     standing, moving : (N, 8) and (M, 8) roles, the moving ones from right to left.
     """
-    at, loose, integers = space.at, features.loose, curves.integers
+    at, stats, counting = work.at, work.stats, work.counting
+    features, curves, lattice, limits = work.features, work.curves, work.lattice, work.limits
+    integers, offset, pitch_y = curves.integers, lattice.row_offset, lattice.pitch_y
     gap = limits.gap - GAP_SLACK - HAIR
     once = counting and limits.most_listed == 0.0 and counts_once(features, lattice)
     for i in range(at[0], standing.shape[0]):
@@ -271,22 +209,13 @@ def add_pairs(
             if once and one > two:
                 continue
             steady = first[STEADY] * second[STEADY] == 1.0
-            if steady and not may_meet(first, second, lattice.row_offset, lattice.pitch_y):
+            if steady and not may_meet(first, second, offset, pitch_y):
                 continue
             if stats[STOPPED] != 0:
                 break
             flat = 0.0 if counting else flat_slope(first, second)
             number = crossings(
-                first,
-                second,
-                loose,
-                curves,
-                HEIGHT,
-                lattice.row_offset,
-                lattice.pitch_y,
-                flat,
-                space.stack,
-                space.roots,
+                first, second, features.loose, curves, HEIGHT, offset, pitch_y, flat, work.stack, work.roots
             )
             if count + max(number, 1) > out.shape[0]:
                 at[0], at[1] = i, j
@@ -296,9 +225,7 @@ def add_pairs(
             if number < 0:
                 write_given_up(out[count], 2.0, first, second, integers)
                 count += 1
-            count = add_crossings(
-                out, count, number, one, two, features, curves, limits, counting, space, stats
-            )
+            count = add_crossings(out, count, number, one, two, work)
         at[1] = 0
     at[0] = standing.shape[0]
     return count
@@ -332,8 +259,9 @@ def two_and_two_cells(
     """
     out = np.empty((64, RECORD_LENGTH))
     count = int(np.int64(0))
-    space, kept, room = work_space(), kept_edges(members.shape[0]), np.empty((64, PIECE_LENGTH))
-    loose, integers = features.loose, curves.integers
+    work = block_work(features, curves, lattice, limits, counting, stats)
+    kept, room = kept_edges(members.shape[0]), np.empty((64, PIECE_LENGTH))
+    pitch_x, least_margin = lattice.pitch_x, limits.least_margin
     # Where closing clamps, standing pegs push to the right; where opening does, to the left.
     standing_force, moving_force = RIGHTWARD_LOW, LEFTWARD_LOW
     if limits.clamping < 0.0:
@@ -341,18 +269,9 @@ def two_and_two_cells(
     for cell in range(edges.shape[0] - 1):
         if stats[STOPPED] != 0:
             break
+        low, high = edges[cell], edges[cell + 1]
         room, number = cell_pieces(
-            edges[cell],
-            edges[cell + 1],
-            members,
-            loose,
-            curves,
-            lattice.pitch_x,
-            limits.least_margin,
-            HEIGHT,
-            kept,
-            np.inf,
-            room,
+            low, high, members, features.loose, curves, pitch_x, least_margin, HEIGHT, kept, np.inf, room
         )
         pieces = room[:number]
         roles, counts = np.empty((2, pieces.shape[0], ROLE_LENGTH)), np.empty(2, np.int64)
@@ -360,27 +279,14 @@ def two_and_two_cells(
             touched = features.standing if side == 0 else features.moving
             force = standing_force if side == 0 else moving_force
             counts[side] = write_roles(
-                pieces, integers, touched, X_STANDING + side, force, counting, roles[side]
+                pieces, curves.integers, touched, X_STANDING + side, force, counting, roles[side]
             )
         moving = np.empty((counts[1], ROLE_LENGTH))
         sort_from_right(roles[1, : counts[1]], np.empty(counts[1]), np.empty(counts[1], np.int64), moving)
-        standing, space.at[0] = roles[0, : counts[0]], 0
+        standing, work.at[0] = roles[0, : counts[0]], 0
         while True:
-            count = add_pairs(
-                out,
-                count,
-                standing,
-                moving,
-                pieces,
-                features,
-                curves,
-                lattice,
-                limits,
-                counting,
-                space,
-                stats,
-            )
-            if space.at[0] == standing.shape[0]:
+            count = add_pairs(out, count, standing, moving, pieces, work)
+            if work.at[0] == standing.shape[0]:
                 break
             out = grown(out)
     return out[:count]

@@ -1,0 +1,156 @@
+"""What the kernels of one block of a search are given and work in, and how they list what they find.
+
+A work space is made once for a block, so that no inner kernel makes an array. Kernels that list fixtures go
+on until all is done or their output is full. They record where in their pairs they stopped in ``at``; what
+they began there is taken back, and begun anew when the caller has made room.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.given import Features, Lattice, Limits
+from workhold.kernels.chord.columns import COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, Curves
+from workhold.kernels.contact.record import PEG_LENGTH, PEG_RADIUS, PEG_X, PEG_Y, place_peg, write_record
+from workhold.kernels.contact.rules import is_fixture, is_listed
+from workhold.kernels.curves.piece_bounds import chord_tail
+from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH
+
+__all__ = ["TRIPLE_ROWS", "BlockWork", "block_work"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought,
+# four contacts examined, and those that may be inside their features.
+PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
+# Beside these is what another thread asks for: any number but 0 at STOPPED ends the work soon.
+STOPPED = 4
+STATISTICS = 5
+# Rows of what moving pegs need of three standing ones.
+TRIPLE_ROWS = 8
+
+
+class BlockWork(NamedTuple):
+    """What a block is given, and its work space.
+
+    Parameters
+    ----------
+    counting : count all simultaneous contacts instead of looking for fixtures only.
+    stats : (5,) counts to add to.
+    at : (2,) where among its pairs a kernel stopped.
+    stack, roots : see ``roots.crossings``.
+    pegs : (4, 6) places, see ``kernels.contact.record``.
+    contacts, null : see ``contact.rules.is_fixture``.
+    triple : see ``moving_pegs.write_triple``.
+    """
+
+    features: Features
+    curves: Curves
+    lattice: Lattice
+    limits: Limits
+    counting: bool
+    stats: IntArray
+    at: IntArray
+    stack: Array
+    roots: Array
+    pegs: Array
+    contacts: Array
+    null: Array
+    triple: Array
+
+
+@inner_making_arrays
+def block_work(
+    features: Features, curves: Curves, lattice: Lattice, limits: Limits, counting: bool, stats: IntArray
+) -> BlockWork:
+    """The work of a block with an empty work space."""
+    return BlockWork(
+        features,
+        curves,
+        lattice,
+        limits,
+        counting,
+        stats,
+        np.zeros(2, np.int64),
+        np.empty((STACK_DEPTH, STACK_LENGTH)),
+        np.empty((MOST_ROOTS, 3)),
+        np.empty((4, PEG_LENGTH)),
+        np.empty((8, 2)),
+        np.empty(4),
+        np.empty((TRIPLE_ROWS, 3)),
+    )
+
+
+@inner
+def is_among(feature: int, touched: tuple[int, int]) -> bool:
+    """Whether a feature is among those that the pegs of a carrier touch."""
+    return touched[0] <= feature < touched[1]
+
+
+@inner
+def place_chord(
+    pegs: Array, curve: int, psi: float, reach: float, line: float, features: Array, curves: Curves
+) -> None:
+    """Writes the pegs of a curve's chord to (2, 6) places, the tail in row ``line`` of column 0.
+
+    ``reach`` is how far in radians psi may be off; the pegs' radii follow from it.
+    """
+    step, reals = curves.integers[curve], curves.reals[curve]
+    tail, head = step[TAIL], step[HEAD]
+    d, alpha = reals[LENGTH], psi + reals[SHIFT]
+    x, y, radius = chord_tail(features[tail], features[head], reals, psi, reach)
+    column, row = float(step[COLUMN_STEP]), float(step[ROW_STEP])
+    place_peg(pegs[0], x, y, tail, 0.0, line, radius)
+    place_peg(pegs[1], x + d * cos(alpha), y + d * sin(alpha), head, column, line + row, radius + d * reach)
+
+
+@inner
+def place_triple(
+    pegs: Array, one: int, two: int, psi: float, reach: float, features: Array, curves: Curves
+) -> None:
+    """Writes the three standing pegs of two curves with a common tail; ``reach`` as for ``place_chord``."""
+    place_chord(pegs[:2], one, psi, reach, 0.0, features, curves)
+    step, d, alpha = curves.integers[two], curves.reals[two, LENGTH], psi + curves.reals[two, SHIFT]
+    x, y, radius = (
+        pegs[0, PEG_X] + d * cos(alpha),
+        pegs[0, PEG_Y] + d * sin(alpha),
+        pegs[0, PEG_RADIUS] + d * reach,
+    )
+    place_peg(pegs[2], x, y, step[HEAD], float(step[COLUMN_STEP]), float(step[ROW_STEP]), radius)
+
+
+@inner
+def add_listed(
+    out: Array, count: int, standing: float, psi: float, reach: float, once: bool, work: BlockWork
+) -> int:
+    """Examines the four pegs in place, and appends their record to ``out`` where it is listed.
+
+    Parameters
+    ----------
+    standing : how many pegs, the first ones, are on the carrier that stands still.
+    psi, reach : orientation in radians, and how far it may be off.
+    once : whether the contacts count, where other pegs in place are the same ones.
+
+    Returns
+    -------
+    how many records there are, -1 when there is no room for another
+    """
+    pegs, limits, stats = work.pegs, work.limits, work.stats
+    verdict, separation = is_fixture(
+        pegs, standing, psi, reach, work.features, limits, work.contacts, work.null
+    )
+    stats[CANDIDATES] += 1
+    if verdict > 0 and once:
+        stats[CONTACTS] += 1
+    if not is_listed(verdict, work.counting, count, limits):
+        return count
+    if count == out.shape[0]:
+        return -1
+    write_record(out[count], standing, pegs, psi, separation, reach)
+    return count + 1
