@@ -21,7 +21,7 @@ from attrs import define, evolve, field
 
 from workhold.batch.tasks import MOST_TRIES, Outcome, Task, Watcher, done
 from workhold.errors import InputError
-from workhold.web.worker import Order, worker_main
+from workhold.web.worker import worker_main
 
 __all__ = ["LocalWorkers", "processor_count"]
 
@@ -51,14 +51,9 @@ def memory_share(workers: int) -> int:
     return max(whole // workers, LEAST_MEMORY)
 
 
-def do_task(task: Task, order: Order) -> Outcome:
-    """Does a task in a worker."""
-    return done(task)
-
-
 def worker(connection: Connection, memory_bytes: int) -> None:
     """The main function of a worker."""
-    worker_main(connection, memory_bytes, {"task": do_task}, lambda: None)
+    worker_main(connection, memory_bytes, {"task": lambda task, _: done(task)}, lambda: None)
 
 
 @define(eq=False)

@@ -200,7 +200,8 @@ class ToolWalk:
             # Of a stretch that is not low all along, its lower end is.
             sure = np.where(whole, off + sagitta, inf)
             ends = np.where(one[there] <= other[there], waiting.first, waiting.last)
-            at_end = self.from_element(self.at(move, ends), element) - waiting.radius - element.radius
+            points = self.at(move, ends)
+            at_end = self.chord_distances(points, points, element) - waiting.radius - element.radius
             sure = np.where(~whole & (least <= element.height), at_end, sure)
             best = int(sure.argmin())
             if sure[best] < found:
@@ -236,12 +237,8 @@ class ToolWalk:
             off[k] = self.box_distance(start, end, element)
         return off, sagitta
 
-    def from_element(self, points: Array, element: Element) -> Array:
-        """Distances (N,) of points from an element's middle line, or from a half plane."""
-        return self.chord_distances(points, points, element)
-
     def chord_distances(self, one: Array, other: Array, element: Element) -> Array:
-        """Distances (N,) of straight pieces from an element's middle line, or from a half plane."""
+        """Distances (N,) of straight pieces or points from an element's middle line, or from a half plane."""
         start, end = np.array(element.start), np.array(element.end)
         if element.is_half_plane:
             return np.asarray(np.maximum(np.minimum((one - start) @ end, (other - start) @ end), 0.0))
