@@ -193,7 +193,8 @@ def no_place_note(verified: int, wording: Wording, has_body_to_pass: bool = Fals
     has_body_to_pass : whether a clamp has a body that a program's tools have to pass as well.
     """
     also = ", and with its body clear of the program's tools" if has_body_to_pass else ""
-    return f"{verified} {wording.sets} would hold the part, but none of them can stand in {wording.within}{also}."
+    within = f"{wording.within}{also}"
+    return f"{verified} {wording.sets} would hold the part, but none of them can stand in {within}."
 
 
 def no_pair_note(seats: int, contacts: int) -> str:
