@@ -20,6 +20,7 @@ import in_space
 import many
 import memory
 import processes
+import program
 import pruning
 import seating
 import solids
@@ -59,6 +60,7 @@ def main() -> None:
         seating.run,
         solids.run,
         in_space.run,
+        program.run,
         batch.run,
         batch_queue.run,
         batch_estimate.run,

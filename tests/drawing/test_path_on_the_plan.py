@@ -97,7 +97,7 @@ def test_sheet_names_the_program_with_its_tools_and_zero(result: Result) -> None
     """The sheet's part zero is the program's, and every tool stands on it with its lines."""
     pages = result_sheet(result, 1)
     words = [one.text for page in pages for one in ET.fromstring(page).iter() if one.tag.endswith("text")]
-    for said in ("bracket.nc", "T1", "13 to 30", "37 to 58", "65 to 66", "origin of the drawing"):
+    for said in ("bracket.nc", "T1", "13 to 30", "37 to 41", "49 to 70", "origin of the drawing"):
         assert said in words
     assert by_class(pages[0], "rapid") and by_class(pages[0], "cut-1") and by_class(pages[0], "nearest")
     assert svg_to_pdf(pages, date(2026, 3, 1)).startswith(b"%PDF")

@@ -26,12 +26,11 @@ from slow_program import (
     slow_clearance,
 )
 from strategies import random_outline
-from workhold import Fence, InputError, Query, Result, Vise, answer, load
+from workhold import Fence, InputError, Plate, Query, Result, Vise, Workpiece, answer, load
 from workhold.algebra.engine import answer_by_algebra
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.program import Program
-from workhold.model.workpiece import Workpiece
 from workhold.search.explaining import explain
 from workhold.statics.judging import unfit
 
@@ -286,3 +285,21 @@ def test_heights_are_asked_for_where_nobody_knows_them() -> None:
         Query(part, Vise(10.0, 1, 3.0), program=program, peg_height=-1.0)
     with pytest.raises(InputError, match="there is no program to rank by"):
         Query(part, Vise(10.0, 1, 3.0), ranking=["program-clearance"])
+
+
+def test_an_explanation_says_that_tools_hit_the_body_of_a_clamp() -> None:
+    """A path between tips and bolts leaves every peg and takes every clamp; farther out it takes nothing."""
+    part = Workpiece.from_points("plate", [(0, 0), (60, 0), (60, 40), (0, 40)])
+    plate = Plate(10.0, 3.0, clamp_radius=4.0, columns=12, rows=12, directions=["-x"], travel=(6, 30))
+    near, far = (program_of(path(END_MILL, around(part, off))) for off in (12.4, 60.0))
+    assert len(answer(Query(part, plate, program=far, peg_height=9.0, best=1), threads=1))
+    query = Query(part, plate, program=near, peg_height=9.0)
+    result = answer(query, threads=1)
+    assert not len(result) and "its body clear of the program's tools" in result.reasons[0]
+    why = explain(query, threads=1)
+    rules = {removal.rule: removal for removal in why.removals}
+    (hit,) = [
+        removal for rule, removal in rules.items() if "body of the clamp clear of the program's tools" in rule
+    ]
+    assert hit.before > 0 and hit.after == 0
+    assert rules["tools of the program"].removed == 0

@@ -40,6 +40,8 @@ FIGURES = (
     ("edge distance mm", "edge_distance", 1),
     ("warnings", "warnings", 0),
 )
+# That of a program, where some job has one.
+CLEARANCE = ("program clearance mm", "program_clearance", 1)
 # How a job may come out: said of one, and of some.
 STATES = {
     "held": ("held", "held"),
@@ -174,7 +176,7 @@ class Report:
                 state + (f"<small>{escaped(why)}</small>" if why else ""), key=state, bad=row["state"] in BAD
             ),
             figure(row["fixtures"], 0),
-            *(figure(row[key], decimals) for _, key, decimals in FIGURES),
+            *(figure(row[key], decimals) for _, key, decimals in (*FIGURES, CLEARANCE)),
             figure(row["seconds"], 2),
             figure(row["estimated_seconds"], 2),
         ]
@@ -219,7 +221,7 @@ class Report:
             "toolkit",
             "state",
             "fixtures",
-            *(words for words, _, _ in FIGURES),
+            *(words for words, _, _ in (*FIGURES, CLEARANCE)),
         ]
         headings += ["seconds", "predicted s"]
         with text_file(path) as stream:

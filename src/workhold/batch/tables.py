@@ -19,7 +19,7 @@ from workhold.batch.durations import Measured
 from workhold.batch.run import Job
 from workhold.batch.store import Store, plain_record
 from workhold.files.atomic import binary_file, text_file
-from workhold.model.quality import FIGURES, SEATING_FIGURES
+from workhold.model.quality import FIGURES, PROGRAM_FIGURE, SEATING_FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.statics.judging import is_unfit
@@ -28,11 +28,14 @@ __all__ = ["BEST", "MARK", "RESULTS", "JobRow", "has_parquet", "job_rows", "tabl
 
 # By which a table is known as one of workhold's own, see ``cli.outputs``.
 MARK = "workhold-table/1"
-FIGURE_COLUMNS = {figure.key: float for figure in (*FIGURES, *SEATING_FIGURES)}
+FIGURE_COLUMNS = {figure.key: float for figure in (*FIGURES, *SEATING_FIGURES, PROGRAM_FIGURE)}
+# Where a program's tools come nearest: in which line, which tool, and to what.
+PASSING_COLUMNS: Mapping[str, type] = {"program_line": int, "program_tool": int, "program_element": str}
 RESULTS: Mapping[str, type] = {
     **dict.fromkeys(("part", "file", "toolkit", "kind", "state"), str),
     **dict.fromkeys(("fixtures", "distinct"), int),
     **FIGURE_COLUMNS,
+    **PASSING_COLUMNS,
     "fit": bool,
     "faces": int,
     **dict.fromkeys(("width", "height"), float),
@@ -47,6 +50,7 @@ BEST: Mapping[str, type] = {
     **dict.fromkeys(("theta_deg", "x", "y", "jaw_separation"), float),
     **dict.fromkeys(("holes", "faces"), str),
     **FIGURE_COLUMNS,
+    **PASSING_COLUMNS,
     "record": str,
 }
 # Rows written together.
@@ -115,7 +119,7 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
         for rank, fixture in enumerate(record["fixtures"], 1)
     ]
     if best:
-        row |= {key: best[0][key] for key in FIGURE_COLUMNS}
+        row |= {key: best[0][key] for key in (*FIGURE_COLUMNS, *PASSING_COLUMNS)}
         off = record["tolerance"]["peg"] + record["tolerance"]["face"]
         row["fit"] = not bool(is_unfit(row["closure_margin"], row["location_error"], off))
     return best
@@ -142,6 +146,17 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
         "faces": " ".join(str(peg["segment"]) for peg in fixture["pegs"]),
         **fixture["quality"],
         **seating_figures(fixture.get("seating")),
+        **passing_columns(fixture.get("program_clearance")),
+    }
+
+
+def passing_columns(passing: Mapping[str, Any] | None) -> Row:
+    """Columns on where a program's tools come nearest to a fixture in a result file; none where none do."""
+    if passing is None:
+        return {}
+    return {
+        PROGRAM_FIGURE.key: passing["distance"],
+        **{f"program_{name}": passing[name] for name in ("line", "tool", "element")},
     }
 
 

@@ -90,9 +90,23 @@ class Swept:
                 filled_lines.append(piece.line)
         rows = np.array(spans).reshape(-1, SPAN)
         named = np.array(numbers, np.int64).reshape(-1, 2)
+        return cls.of_spans(rows, named, np.array(filled).reshape(-1, 5), np.array(filled_lines, np.int64))
+
+    @classmethod
+    def below(cls, program: Program, height: float) -> Swept:
+        """The spans of what a program sweeps at heights up to one in mm."""
+        if program.boxed().any():
+            return cls.of(program.iter_swept(-inf, height))
+        one = program.arrays_of(*program.pairs(), -inf, height)
+        rows = np.column_stack([one.start, one.end, one.bulge, one.cylinder[:, 2]])
+        named = np.column_stack([one.line, one.tool])
+        return cls.of_spans(rows, named, np.zeros((0, 5)), np.zeros(0, np.int64))
+
+    @classmethod
+    def of_spans(cls, rows: Array, named: IntArray, inside: Array, filled_lines: IntArray) -> Swept:
+        """Spans from rows (N, 6), with line and tool (N, 2) of each, and filled boxes with radii (B, 5)."""
         kept = each_path_once(rows)
         rows, named = rows[kept], named[kept]
-        inside = np.array(filled).reshape(-1, 5)
         order, boxes = tree_order(rows, (segments := span_rows(rows)))
         count = len(order)
         filling = order < 0
@@ -111,7 +125,7 @@ class Swept:
             around,
             inside[:, :4],
             inside[:, 4],
-            np.array(filled_lines, np.int64),
+            filled_lines,
         )
 
     def nearest(self, starts: Array, ends: Array) -> tuple[Array, IntArray]:
@@ -152,7 +166,7 @@ class Swept:
 @lru_cache(maxsize=16)
 def swept_below(program: Program, height: float) -> Swept:
     """What a program sweeps at heights up to one in mm, above which nothing of a fixture reaches."""
-    return Swept.of(program.iter_swept(-inf, height))
+    return Swept.below(program, height)
 
 
 def each_path_once(spans: Array) -> IntArray:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -70,8 +71,12 @@ def read_limited(path: Path, largest: int, wanted: str, whose: str) -> bytes:
         ) from error
 
 
-def json_value(text: str) -> Any:
+def json_value(text: str, hook: Callable[[dict[str, Any]], Any] | None = None) -> Any:
     """The content of JSON text.
+
+    Parameters
+    ----------
+    hook : makes something else of each object as soon as it is read.
 
     Raises
     ------
@@ -79,7 +84,7 @@ def json_value(text: str) -> Any:
         A sentence without the file's name, that gives line and column where the form is broken.
     """
     try:
-        return DECODER.decode(text)
+        return decoder(hook).decode(text)
     except json.JSONDecodeError as error:
         raise InputError(
             f"the file is not valid JSON: {error.msg.lower()} at line {error.lineno}, column {error.colno}."
@@ -163,3 +168,14 @@ def refuse_long_numbers(value: Any) -> None:
 DECODER = json.JSONDecoder(
     parse_constant=refuse_constant, parse_int=whole_number, object_pairs_hook=each_once
 )
+
+
+def decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
+    """The decoder that makes something else of each object, or of none."""
+    if hook is None:
+        return DECODER
+    return json.JSONDecoder(
+        parse_constant=refuse_constant,
+        parse_int=whole_number,
+        object_pairs_hook=lambda pairs: hook(each_once(pairs)),
+    )

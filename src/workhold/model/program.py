@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from math import inf, isfinite
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from attrs import field, frozen
@@ -24,16 +24,23 @@ from workhold.errors import InputError
 from workhold.limits import real, refuse_long
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.model.moves import Moves, along, shares_between
+from workhold.model.swept_piece import (
+    CUT,
+    RAPID,
+    MoveKind,
+    PathVertex,
+    SweptPiece,
+    box_path,
+    moves_of,
+    packed_piece,
+)
 
-__all__ = ["Cylinder", "MoveKind", "Program", "SweptPiece", "Tool"]
+__all__ = ["Cylinder", "MoveKind", "PathVertex", "Program", "SweptPiece", "Tool"]
 
-MoveKind = Literal["rapid", "cut"]
-RAPID: MoveKind = "rapid"
-CUT: MoveKind = "cut"
 WAYS = ("straight", "box")
+# Pieces made at a time.
+AT_ONCE = 1 << 13
 UNITS = ("mm", "inch")
-# x, y in mm, and the bulge of the span to the next vertex.
-PathVertex = tuple[float, float, float]
 
 
 def tools_of(values: Mapping[int, Tool]) -> dict[int, Tool]:
@@ -51,69 +58,28 @@ def notes_of(values: Iterable[str]) -> tuple[str, ...]:
     return tuple(values)
 
 
-@frozen
-class SweptPiece:
-    """A cylinder of a tool on one move, or on a part of it; in mm, in the part's coordinates.
+class SweptArrays(NamedTuple):
+    """N swept pieces as arrays, see :class:`workhold.model.swept_piece.SweptPiece`.
 
     Parameters
     ----------
-    line : of the program, from 1.
-    tool : its number.
-    kind : ``rapid`` or ``cut``.
-    path : of the axis: vertices x, y and the bulge of the span to the next. One vertex is an upright move,
-        two are a segment or an arc; three or more return to the first and are filled, see :attr:`filled`.
-    tip : height of the tip at the start and at the end, linear in the share of the span.
-    radius : of the cylinder.
-    heights : (l, u) of the cylinder above the tip, closed.
+    line, tool, cutting : (N,) of the moves.
+    start, end : (N, 2) of the axis; of a box its corners.
+    bulge, tip_first, tip_last : (N,).
+    cylinder : (N, 3) low, high and radius.
+    box : (N,) whether everything inside the box of the ends counts.
     """
 
-    line: int
-    tool: int
-    kind: MoveKind
-    path: tuple[PathVertex, ...]
-    tip: tuple[float, float]
-    radius: float
-    heights: tuple[float, float]
-
-    @property
-    def filled(self) -> bool:
-        """Whether everything inside the path counts, everywhere at all heights of the move."""
-        return len(self.path) > 2
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Least and greatest height that the cylinder covers on the way, in mm."""
-        return min(self.tip) + self.heights[0], max(self.tip) + self.heights[1]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data as in a result file."""
-        return {
-            "line": self.line,
-            "tool": self.tool,
-            "kind": self.kind,
-            "path": [list(vertex) for vertex in self.path],
-            "z": list(self.tip),
-            "radius": self.radius,
-            "heights": list(self.heights),
-        }
-
-    @classmethod
-    def of_entries(cls, entries: Mapping[str, Any]) -> SweptPiece:
-        """A piece of a file's entries.
-
-        Raises
-        ------
-        InputError, LookupError, TypeError, ValueError
-            For entries that lack something, or hold what cannot be.
-        """
-        kind = entries["kind"]
-        path = tuple((real(x), real(y), real(bulge)) for x, y, bulge in entries["path"])
-        if kind not in (RAPID, CUT) or not path or (len(path) > 2 and path[0][:2] != path[-1][:2]):
-            raise InputError(f"a piece of line {entries['line']} of the program is none: leave it out.")
-        one, other = (real(value) for value in entries["z"])
-        low, high = (real(value) for value in entries["heights"])
-        line, tool = int(entries["line"]), int(entries["tool"])
-        return cls(line, tool, kind, path, (one, other), real(entries["radius"]), (low, high))
+    line: NDArray[np.int64]
+    tool: NDArray[np.int64]
+    cutting: NDArray[np.bool_]
+    start: NDArray[np.float64]
+    end: NDArray[np.float64]
+    bulge: NDArray[np.float64]
+    tip_first: NDArray[np.float64]
+    tip_last: NDArray[np.float64]
+    cylinder: NDArray[np.float64]
+    box: NDArray[np.bool_]
 
 
 @frozen(repr=False)
@@ -229,35 +195,19 @@ class Program:
 
     def iter_swept(self, low: float, high: float) -> Iterator[SweptPiece]:
         """The pieces of :meth:`swept`, one by one."""
-        moves = self.moves
         row, cylinder = self.pairs()
-        if not len(row):
-            return
-        first_low, last_high = low - cylinder[:, 1], high - cylinder[:, 0]
-        start, end, bulge = moves.start[row], moves.end[row], moves.bulge[row]
-        box = self.boxed()[row]
-        first, last = shares_between(start[:, 2], end[:, 2], first_low, last_high)
-        inside = first <= last
-        first, last = np.where(box, 0.0, first), np.where(box, 1.0, last)
-        kept = np.flatnonzero(inside)
-        row, cylinder, box = row[kept], cylinder[kept], box[kept]
-        start, end, bulge, first, last = start[kept], end[kept], bulge[kept], first[kept], last[kept]
-        one = along(start[:, :2], end[:, :2], bulge, first)
-        other = along(start[:, :2], end[:, :2], bulge, last)
-        part = np.where(last - first == 1.0, bulge, np.tan((last - first) * np.arctan(bulge)))
-        rise = end[:, 2] - start[:, 2]
-        tip_first = np.where(first == 0.0, start[:, 2], start[:, 2] + first * rise)
-        tip_last = np.where(last == 1.0, end[:, 2], start[:, 2] + last * rise)
-        columns = (moves.line[row], moves.tool[row], moves.cutting[row], one, other, part)
-        rows = zip(
-            *(one.tolist() for one in (*columns, tip_first, tip_last, cylinder, box)),
-            strict=True,
-        )
-        for line, tool, cutting, (x, y), (to_x, to_y), span, tip, to_tip, (
-            lower,
-            upper,
-            radius,
-        ), filled in rows:
+        for start in range(0, len(row), AT_ONCE):
+            part = slice(start, start + AT_ONCE)
+            yield from self.pieces_of(row[part], cylinder[part], low, high)
+
+    def pieces_of(
+        self, row: NDArray[np.int64], cylinder: NDArray[np.float64], low: float, high: float
+    ) -> Iterator[SweptPiece]:
+        """The swept pieces of moves (N,) with cylinders (N, 3), see :meth:`pairs`, at some heights."""
+        found = self.arrays_of(row, cylinder, low, high)
+        rows = zip(*(one.tolist() for one in found), strict=True)
+        for line, tool, cutting, (x, y), (to_x, to_y), span, tip, to_tip, shape, filled in rows:
+            lower, upper, radius = shape
             path: tuple[PathVertex, ...]
             if filled:
                 path = box_path((x, y), (to_x, to_y))
@@ -268,6 +218,34 @@ class Program:
             yield SweptPiece(
                 line, tool, CUT if cutting else RAPID, path, (tip, to_tip), radius, (lower, upper)
             )
+
+    def arrays_of(
+        self, row: NDArray[np.int64], cylinder: NDArray[np.float64], low: float, high: float
+    ) -> SweptArrays:
+        """What :meth:`pieces_of` yields, as arrays."""
+        moves = self.moves
+        first_low, last_high = low - cylinder[:, 1], high - cylinder[:, 0]
+        start, end, bulge = moves.start[row], moves.end[row], moves.bulge[row]
+        box = self.boxed()[row]
+        first, last = shares_between(start[:, 2], end[:, 2], first_low, last_high)
+        inside = first <= last
+        first, last = np.where(box, 0.0, first), np.where(box, 1.0, last)
+        kept = np.flatnonzero(inside)
+        row, cylinder, box = row[kept], cylinder[kept], box[kept]
+        start, end, bulge, first, last = start[kept], end[kept], bulge[kept], first[kept], last[kept]
+        rise = end[:, 2] - start[:, 2]
+        return SweptArrays(
+            line=moves.line[row],
+            tool=moves.tool[row],
+            cutting=moves.cutting[row],
+            start=along(start[:, :2], end[:, :2], bulge, first),
+            end=along(start[:, :2], end[:, :2], bulge, last),
+            bulge=np.where(last - first == 1.0, bulge, np.tan((last - first) * np.arctan(bulge))),
+            tip_first=np.where(first == 0.0, start[:, 2], start[:, 2] + first * rise),
+            tip_last=np.where(last == 1.0, end[:, 2], start[:, 2] + last * rise),
+            cylinder=cylinder,
+            box=box,
+        )
 
     def pairs(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Every move with every cylinder of its tool: (N,) numbers of moves, (N, 3) low, high and radius."""
@@ -312,6 +290,8 @@ class Program:
     def of_entries(cls, entries: Mapping[str, Any]) -> Program:
         """A program of a file's entries; feeds and speeds are not known of it.
 
+        Pieces may be entries, or packed as :func:`workhold.model.swept_piece.packed_piece` does.
+
         Raises
         ------
         InputError, LookupError, TypeError, ValueError
@@ -319,7 +299,7 @@ class Program:
         """
         tools = {int(key): Tool.of_entries(int(key), value) for key, value in entries["tools"].items()}
         x, y = (real(value) for value in entries["zero"])
-        pieces = [SweptPiece.of_entries(one) for one in entries["pieces"]]
+        pieces = [one if isinstance(one, bytes) else packed_piece(one) for one in entries["pieces"]]
         return cls(
             name=str(entries["name"]),
             sha256=str(entries["sha256"]),
@@ -329,38 +309,7 @@ class Program:
             clearance=entries["clearance"],
             rapid=entries["rapid"],
             tools=tools,
-            moves=Moves.of_rows(list(moves_of(pieces, tools))),
+            moves=moves_of(pieces, tools),
             skipped=[int(line) for line in entries["skipped"]],
             notes=[str(note) for note in entries.get("notes", ())],
         )
-
-
-def box_path(one: tuple[float, float], other: tuple[float, float]) -> tuple[PathVertex, ...]:
-    """The border of the rectangle between two corners, back to the first; there and back where it is flat."""
-    (x, y), (to_x, to_y) = one, other
-    corners = [(x, y), (to_x, y), (to_x, to_y), (x, to_y)] if x != to_x and y != to_y else [one, other]
-    return tuple((a, b, 0.0) for a, b in (*corners, one))
-
-
-def moves_of(pieces: list[SweptPiece], tools: Mapping[int, Tool]) -> Iterator[tuple[Any, ...]]:
-    """Rows of moves of which these are the pieces.
-
-    Raises
-    ------
-    InputError
-        Where a move lacks a piece of its tool, or has one too many.
-    """
-    place = 0
-    while place < len(pieces):
-        first = pieces[place]
-        cylinders = tools[first.tool].cylinders if first.tool in tools else ()
-        found = pieces[place : place + max(len(cylinders), 1)]
-        shapes = [(*one.heights, one.radius) for one in found]
-        same = {(one.line, one.tool, one.kind, one.path, one.tip) for one in found}
-        if len(same) != 1 or shapes != [(one.low, one.high, one.radius) for one in cylinders]:
-            raise InputError(f"the pieces of line {first.line} of the program are not those of its tool.")
-        x, y, bulge = first.path[0]
-        to_x, to_y, _ = first.path[len(first.path) // 2]
-        start, end = (x, y, first.tip[0]), (to_x, to_y, first.tip[1])
-        yield first.line, first.tool, first.kind == CUT, start, end, bulge, 0.0, 0.0
-        place += len(cylinders)

@@ -185,9 +185,16 @@ def no_fixture_notes(wording: Wording) -> tuple[str, ...]:
     )
 
 
-def no_place_note(verified: int, wording: Wording) -> str:
-    """Why a search finds no fixture though ``verified`` candidates are proven to hold the part."""
-    return f"{verified} {wording.sets} would hold the part, but none of them can stand in {wording.within}."
+def no_place_note(verified: int, wording: Wording, has_body_to_pass: bool = False) -> str:
+    """Why a search finds no fixture though ``verified`` candidates are proven to hold the part.
+
+    Parameters
+    ----------
+    has_body_to_pass : whether a clamp has a body that a program's tools have to pass as well.
+    """
+    also = ", and with its body clear of the program's tools" if has_body_to_pass else ""
+    within = f"{wording.within}{also}"
+    return f"{verified} {wording.sets} would hold the part, but none of them can stand in {within}."
 
 
 def no_pair_note(seats: int, contacts: int) -> str:

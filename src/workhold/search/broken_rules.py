@@ -31,7 +31,7 @@ from workhold.model.requirements import Restrictions
 from workhold.model.search_report import NearestMiss, Removal
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks
-from workhold.search.in_the_way import program_rule, stroke_rule
+from workhold.search.in_the_way import body_rule, has_body_to_pass, program_rule
 from workhold.search.toolkit_search import ToolkitSearch, contacts_of
 from workhold.statics.contact_matrix import outward_normals
 from workhold.units import Unit
@@ -258,8 +258,8 @@ def placing_rules(problem: Problem) -> list[Rule]:
     first = sum(limit.bounds == "bodies" for limit in limits)
     out: list[Rule] = []
 
-    def rule(words: str, kept: int, restrictions: Restrictions) -> None:
-        query = evolve(problem.query, toolkit=toolkit.without(limits[kept:]), restrictions=restrictions)
+    def rule(words: str, kept: int, restrictions: Restrictions, asked_of: Query = problem.query) -> None:
+        query = evolve(asked_of, toolkit=toolkit.without(limits[kept:]), restrictions=restrictions)
         part = evolve(problem, query=query)
         keeps = partial(no_place, toolkit.noun, words)
         out.append((words, lambda c: placeable(c.candidates, part), keeps))
@@ -269,8 +269,13 @@ def placing_rules(problem: Problem) -> list[Rule]:
     for number, limit in enumerate(limits):
         if number == first and asked.angles:
             rule("angles of the part", first, asked)
-        words = stroke_rule(problem.query, limit.rule) if limit.bounds == "travel" else limit.rule
-        rule(words, number + 1, asked if number >= first else Restrictions())
+        ruled_out = asked if number >= first else Restrictions()
+        if limit.bounds == "travel" and has_body_to_pass(problem.query):
+            # First without what the tools do to the body that the stroke gives the clamp.
+            rule(limit.rule, number + 1, ruled_out, problem.query.without_program)
+            rule(body_rule(problem.query), number + 1, ruled_out)
+        else:
+            rule(limit.rule, number + 1, ruled_out)
     if first == len(limits) and asked.angles:
         rule("angles of the part", first, asked)
     return out

@@ -39,6 +39,7 @@ from workhold.model.result import Result
 from workhold.model.search_report import no_fixture_notes, no_place_note
 from workhold.model.workpiece import Workpiece
 from workhold.search.cells import Block, run_blocks
+from workhold.search.in_the_way import has_body_to_pass
 from workhold.search.lattice_shares import LatticeShares
 from workhold.search.seated import Sink, deliver_seated, seated_answer
 from workhold.search.shares import Locating, Preview, Previews, answer_in_shares
@@ -276,7 +277,7 @@ def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, ca
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
     if contacts == 0 and contacts_of(problem, threads, cancel) == 0:
         return apart
-    return no_place_note(proven, wording) if proven else loose
+    return no_place_note(proven, wording, has_body_to_pass(problem.query)) if proven else loose
 
 
 @frozen

@@ -7,7 +7,7 @@ from workhold.contact.trimming import most_in_the_way
 from workhold.errors import InputError
 from workhold.model.query import Query
 
-__all__ = ["line_in_the_way", "program_rule", "stroke_rule"]
+__all__ = ["body_rule", "has_body_to_pass", "line_in_the_way", "program_rule", "stroke_rule"]
 
 
 def line_in_the_way(query: Query) -> int | None:
@@ -39,7 +39,16 @@ def program_rule(query: Query) -> str:
     return "tools of the program" + ("" if line is None else f", most in line {line}")
 
 
+def has_body_to_pass(query: Query) -> bool:
+    """Whether a clamp has a body, which its stroke gives it, that a program's tools may come too near to."""
+    return query.program is not None and query.toolkit.moving.on is not None
+
+
+def body_rule(query: Query) -> str:
+    """What a program asks of the bodies of clamps, from the tip back to the hole."""
+    return f"body of the {query.toolkit.moving.noun} clear of the program's tools"
+
+
 def stroke_rule(query: Query, rule: str) -> str:
-    """The rule on a clamp's stroke, with which it has a body that a program's tools may come too near to."""
-    has_body = query.program is not None and query.toolkit.moving.on is not None
-    return f"{rule}, its body clear of the program's tools" if has_body else rule
+    """The rule on a clamp's stroke, with what a program asks of the body that the clamp then has."""
+    return f"{rule}, {body_rule(query)}" if has_body_to_pass(query) else rule

@@ -27,6 +27,7 @@ from workhold.model.query import Query
 from workhold.model.search_report import AT_AN_EDGE, Undecided, no_fixture_notes, no_pair_note, no_place_note
 from workhold.proof.deciding import Account
 from workhold.proof.flush import Candidate
+from workhold.search.in_the_way import has_body_to_pass
 from workhold.search.lattice_pairs import LatticePairs, are_pressed, closure_of, pairs_on
 from workhold.search.shares import one_clamp
 from workhold.search.wall_search import (
@@ -120,7 +121,7 @@ class WallShares:
         )
         never, no_locator, square, loose = no_fixture_notes(wording)
         if isinstance(self.collector, WallCollector) and verified:
-            return no_place_note(verified, wording)
+            return no_place_note(verified, wording, has_body_to_pass(self.collector.query))
         if not self.edges:
             return never
         if search.locators == 0:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
-from math import atan, inf, pi
+from math import atan, pi
 
 import numpy as np
 from attrs import evolve, frozen
@@ -86,7 +86,7 @@ class KeyedFace:
 @lru_cache(maxsize=8)
 def zones_below(program: Program, pad_radius: float, pad_margin: float, keyed: KeyedFace) -> tuple[Zone, ...]:
     """Where no pad may stand: where tools come down to the plane on which the part lies, or below it."""
-    swept = Swept.of(program.iter_swept(-inf, 0.0))
+    swept = Swept.below(program, 0.0)
     return zones_of(swept, program.clearance, pad_radius + pad_margin, pad_radius, keyed.face, MOST_BELOW)
 
 

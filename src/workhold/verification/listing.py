@@ -22,7 +22,7 @@ from workhold.errors import InputError
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.forms import HEAD, Head, columns_said
 from workhold.files.result.parts import checked_head, read_parts
-from workhold.files.text import json_value
+from workhold.files.result.program_entries import head_value
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
@@ -286,7 +286,7 @@ def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[A
     try:
         if is_archive(path):
             text, columns = columns_of(path)
-            data = json_value(text)
+            data = head_value(text)
             head = checked_head(data, path)
             return head, columns, seatings_of(data, path)
     except OSError as error:

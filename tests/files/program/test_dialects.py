@@ -64,3 +64,40 @@ def test_comments_in_a_western_encoding_are_passed_over(tmp_path: Path) -> None:
         path = tmp_path / "haas.nc"
         path.write_bytes(text.replace("Contour1", "Außenkontur Ø6").replace("\n", "\r\n").encode(encoding))
         assert Program.read(path, z_zero=0).pieces == plain.pieces
+
+
+@pytest.mark.parametrize("plane", ["G18", "G19"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{plane}\nG1 X10 F200\nZ-2\nY5 Z0\nG0 Z5\n",
+        "{plane} G1 X10 F200\nZ-2\nY5 Z0\nG17\nG0 Z5\n",
+        "G1 {plane} X10 F200\nG17 Z-2\nG2 X10 Y0 I-1 J0\n",
+        "{plane}\nG1 X10 F200\nG17\nG98 G81 X5 Y5 Z-3 R1\nG80\n",
+    ],
+)
+def test_another_plane_without_an_arc_in_it_changes_nothing(tmp_path: Path, plane: str, text: str) -> None:
+    """As Fusion's lead-ins write it: the plane counts where an arc or a cycle stands, and nowhere else."""
+    path = tmp_path / "plane.nc"
+    head = "G21 G90 G17\nT1 M6\nG0 X0 Y0 Z5\n"
+    found = []
+    for word in (plane, "G17"):
+        path.write_text(head + text.format(plane=word))
+        found.append(Program.read(path, {1: 6.0}, z_zero=0).pieces)
+    assert found[0] == found[1] and len(found[0]) > 3
+
+
+@pytest.mark.parametrize(
+    ("line", "plane"), [("G18 G3 X19 Z-1 I-1 K0. F40.", "18"), ("G19\nG2 Y1 Z-1 J1 K0", "19")]
+)
+def test_a_lead_in_along_an_upright_arc_is_refused_with_what_helps(
+    tmp_path: Path, line: str, plane: str
+) -> None:
+    """Fusion's vertical lead-in: its line, and the setting that posts it otherwise."""
+    path = tmp_path / "lead.nc"
+    path.write_text(f"G21 G90 G17\nT1 M6\nG0 X20 Y0 Z5\nG0 Z0\n{line}\nG17\n")
+    at = 5 + line.count("\n")
+    with pytest.raises(
+        InputError, match=rf"line {at}: an arc stands in the plane G{plane}: .*vertical lead-in"
+    ):
+        Program.read(path, {1: 6.0}, z_zero=0)

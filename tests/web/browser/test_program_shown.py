@@ -34,11 +34,11 @@ def test_what_was_understood_is_told_and_drawn(walk: Walk) -> None:
     with_program(walk)
     walk.seen("#program-read")
     rows = page.locator("#program-tools tbody tr").all_inner_texts()
-    assert [row.split()[:2] for row in rows] == [["T1", "10.00"], ["T2", "8.00"], ["T3", "9.00"]]
-    assert "13–30" in rows[0] and "65–66" in rows[2]
+    assert [row.split()[:2] for row in rows] == [["T1", "10.00"], ["T3", "9.00"], ["T2", "8.00"]]
+    assert "13–30" in rows[0] and "49–70" in rows[2]
     words = page.inner_text("#program-words")
-    assert "49 moves" in words and "T1 stays above pegs 6.0 mm high" in words
-    assert "Lines 8, 31, 59 and 68" in page.inner_text("#program-notes")
+    assert "61 moves" in words and "T1 stays above pegs 6.0 mm high" in words
+    assert "Lines 8, 31, 43 and 71" in page.inner_text("#program-notes")
     assert page.locator("#drawing-part .program-band").count() == 3
     assert page.locator("#drawing-part .program-rapid").count() == 1
     assert page.locator("#drawing-part .program-cut").count() > 3

@@ -282,7 +282,7 @@ class Interpreter:
         if modes.plane != "17":
             raise InputError(
                 f"an arc stands in the plane G{modes.plane}: post the program with arcs in the plane G17 "
-                "only."
+                "only, and with a vertical lead-in of radius 0."
             )
         if values.get("K", 0.0) != 0.0:
             raise InputError("K is of arcs in another plane than G17: take it out.")

@@ -8,7 +8,6 @@ the types; fixtures are read, and checked, when they are looked at.
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
@@ -32,8 +31,8 @@ from workhold.files.result.parts import (
     result_with,
     with_seating,
 )
+from workhold.files.result.program_entries import head_texts, head_value
 from workhold.files.result.writer import FORMAT, head
-from workhold.files.text import json_value
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -74,10 +73,11 @@ class ColumnsSink:
                     archive.add(as_written(table.take(slice(start, start + BLOCK))))
             if archive.done < listed:
                 result = result.cut_short(archive.done)
-            text = head(result) | {"counts": {name: counts[name] for name in result.toolkit.types}}
+            text = head(result, with_pieces=False)
+            text["counts"] = {name: counts[name] for name in result.toolkit.types}
             if result.query.seating is not None:
                 text["seatings"] = [one.as_fields() for one in result.seating]
-            archive.close(HEAD, json.dumps(text, ensure_ascii=False), FORMAT)
+            archive.close(HEAD, "".join(head_texts(text, result.query.program)), FORMAT)
 
 
 def write_columns(result: Result, path: str | Path) -> None:
@@ -172,7 +172,7 @@ def read_columns(path: Path) -> Result:
     """
     text, columns = mapped_archive(path, columns_said, HEAD)
     try:
-        data = json_value(text)
+        data = head_value(text)
     except InputError as error:
         raise InputError(f"{path} is not a result file: {error}") from error
     head = checked_head(data, path)

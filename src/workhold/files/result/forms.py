@@ -25,6 +25,7 @@ from workhold.model.query import Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.search_report import Proof, Undecided
 from workhold.model.solid import SolidOutline
+from workhold.model.swept_piece import PIECE_KEYS
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -373,10 +374,15 @@ def columns_of(travels: int, has_program: bool) -> Columns:
     return columns | {"quality": Column("<f8", (len(FIGURES) + 1,))} if has_program else columns
 
 
+def without_piece(entries: dict[str, Any]) -> dict[str, Any] | None:
+    """Entries as they are, but for those of a swept piece, which are many."""
+    return None if entries.keys() == PIECE_KEYS else entries
+
+
 def columns_said(head: str) -> Columns:
     """What the columns hold beside a head, which may be of any kind of file."""
     try:
-        said = json.loads(head)
+        said = json.loads(head, object_hook=without_piece)
         toolkit = said.get("toolkit")
         travels = 2 if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else 1
         return columns_of(travels, said.get("program") is not None)

@@ -23,6 +23,7 @@ from pydantic import ValidationError
 from workhold.errors import InputError
 from workhold.files.input_forms import TAGS
 from workhold.files.result.forms import Head, ProofPart
+from workhold.files.result.program_entries import head_value
 from workhold.files.text import json_value
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
@@ -294,7 +295,10 @@ def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
         after: list[str] = []
         taken = take(fixture_lines(stream, after), path)
         try:
-            data = json_value("".join(before + after) + stream.read())
+            before += [*after, stream.read()]
+            text = "".join(before)
+            before.clear()
+            data = head_value(text)
         except ValueError as error:
             raise OtherLayoutError from error
     return data, taken
@@ -329,7 +333,7 @@ def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     if not text.strip():
         raise InputError(f"{path} is empty: it is not a result file.")
     try:
-        data = json_value(text)
+        data = head_value(text)
     except InputError as error:
         raise InputError(f"{path} is not a result file: {error}") from error
     if not isinstance(data, dict) or not isinstance(data.get("fixtures"), list):

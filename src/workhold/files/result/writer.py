@@ -19,6 +19,7 @@ from attrs import asdict
 
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
+from workhold.files.result.program_entries import program_text
 from workhold.fixels.carrier import Holes
 from workhold.fixels.fields import FLAT
 from workhold.fixels.kinds import USUAL
@@ -73,8 +74,16 @@ def write_result_to(result: Result, stream: IO[str]) -> None:
 
 def result_text(result: Result) -> Iterator[str]:
     """The text of a result file, piece by piece; in ASCII, so that no name in it steers a terminal."""
-    lines = [f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head(result).items()]
-    yield "{" + "".join(lines) + '"fixtures": ['
+    program = result.query.program
+    yield "{"
+    for key, value in head(result, with_pieces=False).items():
+        yield f"{json.dumps(key)}: "
+        if key == "program" and program is not None:
+            yield from program_text(program)
+        else:
+            yield json.dumps(value)
+        yield ",\n"
+    yield '"fixtures": ['
     separator, count = "\n", 0
     for lines in fixture_lines(result.table, result.toolkit, result.workpiece):
         seatings = result.seating[count : count + len(lines)]
@@ -116,13 +125,18 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
     return out
 
 
-def head(result: Result) -> dict[str, Any]:
-    """Everything in the file but the fixtures, at full precision."""
+def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
+    """Everything in the file but the fixtures, at full precision.
+
+    Parameters
+    ----------
+    with_pieces : whether all that a program sweeps is among it, or only what else there is of it.
+    """
     return {
         "format": FORMAT,
         **solid_entry(result.workpiece.solid),
         "workpiece": workpiece_entry(result.workpiece),
-        **asked_entry(result.query),
+        **asked_entry(result.query, with_pieces),
         "counts": result.counts,
         "found": {kind: int(count) for kind, count in result.found.items()},
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
@@ -168,8 +182,9 @@ def solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
     }
 
 
-def asked_entry(query: Query) -> dict[str, Any]:
-    """What a query asks about a workpiece, as it is written."""
+def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
+    """What a query asks about a workpiece, as it is written; see :func:`head`."""
+    program = query.program
     return {
         **toolkit_entry(query.toolkit),
         "types": list(query.arrangements),
@@ -192,8 +207,11 @@ def asked_entry(query: Query) -> dict[str, Any]:
         ),
         **(
             {}
-            if query.program is None
-            else {"peg_height": query.peg_height, "program": query.program.to_dict()}
+            if program is None
+            else {
+                "peg_height": query.peg_height,
+                "program": program.to_dict() if with_pieces else program.head(),
+            }
         ),
     }
 
