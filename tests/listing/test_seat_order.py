@@ -230,7 +230,7 @@ def test_numbers_of_seats_are_those_of_their_definition(monkeypatch: pytest.Monk
     query = Query(cad_part(9), Plate(pitch=(25, 20), peg_radius=3, clamps=2), best=5)
     triples: dict[int, Any] = {}
     for records, problem in zip(*contacts_of(query, monkeypatch), strict=True):
-        holes, theta, turn, place, _ = seat_order.seat_numbers(records, problem)
+        holes, theta, turn, place, *_ = seat_order.seat_numbers(records, problem)
         columns, rows = problem.frame.step_back(
             *(records[:, k : k + 3].astype(np.int64) for k in (record.COLUMNS, record.ROWS))
         )

@@ -37,6 +37,7 @@ from workhold.kernels.contact.clamp_pairs import (
     pairs_of,
 )
 from workhold.kernels.contact.contact_matrix import contact_matrices_of
+from workhold.kernels.contact.pair_bounds import BOUND_LENGTH, FORCE_LENGTH, bounds_of_pairs
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.record import RECORD_LENGTH, WORK_LENGTH
 from workhold.kernels.contact.seat_numbers import numbers_of_seats
@@ -191,6 +192,9 @@ def clamps() -> Calls:
     records = np.zeros((0, RECORD_LENGTH)), np.zeros(3), np.zeros(2), 0.0
     yield numbers_of_seats, (*records, none, np.zeros(0), np.zeros(0))
     yield closures_of, (np.zeros((0, 2, CLAMP_LENGTH)), np.zeros((0, 2)))
+    forces, bounds = np.zeros((0, FORCE_LENGTH)), np.zeros((0, BOUND_LENGTH))
+    asked = np.zeros((4, 4), np.int64)
+    yield bounds_of_pairs, (np.zeros(1, np.int64), none, forces, asked, False, bounds, np.zeros((2, 3)))
 
 
 def distances() -> Calls:

@@ -17,19 +17,24 @@ may stop once as many fixtures are kept as are asked for, and the next bound is 
 Then no further seat holds one that is listed. Seats of equal bounds are looked at, for what ranks alike is
 listed in the order of holes.
 
+What pairs of clamps bound (``listing.pair_bounds``) takes longer. So it is asked of groups only that are as
+good as the next by all figures before the first of those, or that are next to be looked at anyway.
+
 Seats are taken whole, with all contacts that may be theirs. A group is one of holes and orientation. Contacts
 whose orientation is not well known are put together with all others of the same holes. So a group holds every
 seat that it touches, and what is found at it does not depend on the others. Each place in a group is bounded
-by itself, and the best counts. A group with a contact whose place is not well known has no bound.
+by itself, and the best counts. A group with a contact whose place is not well known has no bound. Where that
+is because locators touch along one line or pass one point, they hold nothing (``proof.degenerate``). Such
+contacts stand by themselves, after all others.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import inf, pi, tau
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
@@ -40,10 +45,12 @@ from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.seat_numbers import numbers_of_seats
 from workhold.listing.canonical_form import candidates_of
 from workhold.listing.packed_contacts import PackedContacts
+from workhold.listing.pair_bounds import BOUNDED, first_of_clamps, pair_bounds
 from workhold.listing.ranking import ranking_keys
 from workhold.listing.results import RankedTable
 from workhold.model.clamps import LOCATORS
 from workhold.model.quality import (
+    CLAMP_AMPLIFICATION,
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
     EDGE_DISTANCE,
@@ -56,8 +63,9 @@ from workhold.model.quality import (
     WARNINGS,
 )
 from workhold.model.query import Query
+from workhold.proof.degenerate import hold_nothing
 from workhold.statics.contact_matrix import Touched, locators_inverse, outward_normals, wrenches
-from workhold.statics.judging import Judging, is_astray, is_near_edge
+from workhold.statics.judging import Judging, is_astray, is_near_edge, is_strong
 from workhold.statics.quality import extremes, face_sizes, main_direction, tilts
 
 __all__ = ["SeatGroups", "ordered_groups"]
@@ -85,6 +93,8 @@ SHARE, ANGLE = 1e-6, 1e-4
 MOST_SHARE = 0.01
 # mm. Contacts this near to an end may be at a joint, and be listed on the face beside it.
 NEAR_END = 1e-4
+# Larger than the number of any contact.
+NO_CONTACT = np.iinfo(np.int64).max
 # How often places of locators are found from what they were before.
 ROUNDS = 3
 # The best that figures can be which locators do not bound; of others infinity, or 0 where less is better.
@@ -100,11 +110,16 @@ class SeatGroups:
     order : (M,) numbers of the contacts, counted through all directions, group by group.
     ends : (G,) where each group ends in the order.
     bounds : (G, R) keys to rank by, none of a fixture in the group being better, in lexicographic order.
+    sharpened : the bounds of groups, given with their contacts, by the pairs of their clamps; None where these
+        bound nothing that is ranked by, or all are known already.
+    alike : how many keys, the first ones, no pairs bound.
     """
 
     order: IntArray
     ends: IntArray
     bounds: Array
+    sharpened: Callable[[IntArray, IntArray], Array] | None = None
+    alike: int = 0
 
     def reach(self, last: Array | None) -> int:
         """The number of groups, the first ones, that may hold what ranks no worse than keys (R,).
@@ -121,9 +136,32 @@ class SeatGroups:
         while first < (end := self.reach(kept.last)):
             begin = int(self.ends[first - 1]) if first else 0
             end = min(end, int(np.searchsorted(self.ends, begin + together)) + 1)
-            yield np.sort(self.order[begin : self.ends[end - 1]])
+            if self.sharpened is None:
+                yield np.sort(self.order[begin : self.ends[end - 1]])
+            else:
+                same = (self.bounds[:, : self.alike] == self.bounds[first, : self.alike]).all(axis=1)
+                end = max(end, int(np.flatnonzero(same)[-1]) + 1)
+                yield from self.between(first, end).batches(kept, together)
             first, together = end, 2 * together
         kept.has_dropped |= first < len(self.ends)
+
+    def followed_by(self, last: IntArray) -> SeatGroups:
+        """The groups, and one after them of contacts (N,) that hold nothing."""
+        if len(last) == 0:
+            return self
+        order, ends = np.concatenate([self.order, last]), np.append(self.ends, len(self.order) + len(last))
+        return SeatGroups(order, ends, np.concatenate([self.bounds, np.full((1, self.bounds.shape[1]), inf)]))
+
+    def between(self, first: int, end: int) -> SeatGroups:
+        """Some of the groups, with the bounds by their pairs, and in the order of these."""
+        assert self.sharpened is not None
+        begin = int(self.ends[first - 1]) if first else 0
+        order, ends = self.order[begin : self.ends[end - 1]], self.ends[first:end] - begin
+        starts = np.concatenate([[0], ends[:-1]])
+        bounds = np.where(
+            self.bounds[first:end, :1] == -inf, self.bounds[first:end], self.sharpened(order, starts)
+        )
+        return in_order_of_bounds(order, starts, bounds)
 
 
 def is_worse(keys: Array, last: Array) -> BoolArray:
@@ -151,14 +189,15 @@ def ordered_groups(
         for part, problem in zip(records, problems, strict=True)
         for some in part.parts()
     ]
-    holes, theta, turn, place, off = (np.concatenate(parts) for parts in zip(*numbers, strict=True))
+    holes, theta, turn, place, off, holds = (np.concatenate(parts) for parts in zip(*numbers, strict=True))
     del numbers
     holes &= HOLES
-    unsure = ~(turn <= WELL_KNOWN) | (theta < AT_START) | (theta > tau - AT_START)
+    unsure = holds & (~(turn <= WELL_KNOWN) | (theta < AT_START) | (theta > tau - AT_START))
     loose = is_among(holes, np.unique(holes[unsure]))
     theta[loose] = 0.0
     # Numbers of whole steps of orientation stand in the bits that those of holes leave.
     order = np.argsort(holes | (theta * STEPS).astype(np.int64))
+    order = order[holds[order]]
     fresh = np.ones(len(order), np.bool_)
     fresh[1:] = (np.diff(holes[order]) != 0) | (np.diff(theta[order]) > 4 * SAME_POSE)
     starts, group = np.flatnonzero(fresh), np.cumsum(fresh) - 1
@@ -167,9 +206,25 @@ def ordered_groups(
     mixed = np.flatnonzero(several[group])
     order[mixed] = order[mixed[np.lexsort([by_place[mixed], group[mixed]])]]
     del by_place
-    bounds = group_bounds(order, group, ((theta, turn), (place, off)), records, problems, query)
+    known = (theta, turn), (place, off)
+    bounds = group_bounds(order, group, known, records, problems, query)
     unknown = loose | ~(off <= SAME_PLACE)
     bounds[np.logical_or.reduceat(unknown[order], starts)] = -inf
+    groups, alike = in_order_of_bounds(order, starts, bounds), first_of_clamps(query)
+    groups = groups.followed_by(np.flatnonzero(~holds))
+    if alike is None:
+        return groups
+
+    def sharpened(order: IntArray, starts: IntArray) -> Array:
+        group = np.cumsum(np.bincount(starts, minlength=len(order))) - 1
+        return group_bounds(order, group, known, records, problems, query, by_pairs=True)
+
+    # The first key is of what is fit for a workshop.
+    return evolve(groups, sharpened=sharpened, alike=alike + 1)
+
+
+def in_order_of_bounds(order: IntArray, starts: IntArray, bounds: Array) -> SeatGroups:
+    """Groups that begin at some places (G,) of an order (M,), in the order of their bounds (G, R)."""
     by_bound = np.lexsort(bounds.T[::-1])
     sizes = np.diff(starts, append=len(order))[by_bound]
     ends = np.cumsum(sizes)
@@ -184,6 +239,7 @@ def group_bounds(
     records: Sequence[PackedContacts],
     problems: Sequence[Problem],
     query: Query,
+    by_pairs: bool = False,
 ) -> Array:
     """The keys (G, R) that no fixture of a group ranks before, the least of those of the places in it.
 
@@ -191,6 +247,7 @@ def group_bounds(
     ----------
     order, group : (M,) numbers of contacts, group by group and in each by place, and those of the groups.
     known : orientations and places, each (M,) with how far they may be off.
+    by_pairs : whether pairs of clamps are to bound them, too.
     """
     place, off = (values[order] for values in known[1])
     fresh = np.ones(len(order), np.bool_)
@@ -200,10 +257,12 @@ def group_bounds(
     edges = np.cumsum([0, *map(len, records)])
     direction = np.searchsorted(edges, first, side="right") - 1
     bounds = np.empty((len(first), len(query.ranking) + 1))
+    pairs = pair_bounds(order, starts, records, problems, query) if by_pairs else None
     for number, (part, problem) in enumerate(zip(records, problems, strict=True)):
         chosen = np.flatnonzero(direction == number)
         known_within = known[1][1][first[chosen]]
-        bounds[chosen] = keys_bounding(part.take(first[chosen] - edges[number]), known_within, problem, query)
+        some, of_pairs = part.take(first[chosen] - edges[number]), None if pairs is None else pairs[chosen]
+        bounds[chosen] = keys_bounding(some, known_within, problem, query, of_pairs)
     for values, doubts in known:
         middle, radius = values[order], 2.0 * doubts[order]
         low, high = np.minimum.reduceat(middle + radius, starts), np.maximum.reduceat(middle - radius, starts)
@@ -217,7 +276,7 @@ def group_bounds(
 def best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
     """The lowest of numbers (M,) in an order that are off the least, of each place (G,)."""
     least = np.repeat(np.minimum.reduceat(off, starts), np.diff(starts, append=len(off)))
-    return np.asarray(np.minimum.reduceat(np.where(off <= least, order, len(order)), starts))
+    return np.asarray(np.minimum.reduceat(np.where(off <= least, order, NO_CONTACT), starts))
 
 
 def is_among(numbers: IntArray, few: IntArray) -> BoolArray:
@@ -227,14 +286,14 @@ def is_among(numbers: IntArray, few: IntArray) -> BoolArray:
     return np.asarray(few[np.minimum(np.searchsorted(few, numbers), len(few) - 1)] == numbers)
 
 
-def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Array, Array, Array]:
+def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Array, Array, Array, BoolArray]:
     """What distinguishes the seats of contacts (N, 19), whatever the direction of the clamp.
 
     Returns
     -------
-    Five arrays (N,). The first is a number for the holes of locators, the same wherever they are on the
-    plate. Then come orientations from ``START`` on, and how far they may be off. The last two are a number
-    for the place of the part beside the holes in mm, and how far that may be off.
+    Six arrays (N,). The first is a number for the holes of locators, the same wherever they are on the
+    plate. Then come orientations from ``START`` on, and how far they may be off. Then a number for the place
+    of the part beside the holes in mm, and how far that may be off. The last says whether locators may hold.
     """
     frame, count = problem.frame, len(records)
     holes, theta, place = np.empty(count, np.int64), np.empty(count), np.empty(count)
@@ -242,7 +301,11 @@ def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Arr
     pitch = np.array(problem.toolkit.carriers[0].pitch, np.float64)
     numbers_of_seats(records, quarters, pitch, START, holes, theta, place)
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH])
-    return holes, theta, turn, place, places_off(records, problem)
+    off, holds = places_off(records, problem), np.ones(count, np.bool_)
+    vague = np.flatnonzero(~(off <= SAME_PLACE))
+    if len(vague):
+        holds[vague] = ~hold_nothing(records[vague], problem)
+    return holes, theta, turn, place, off, holds
 
 
 def places_off(records: Array, problem: Problem) -> Array:
@@ -274,19 +337,24 @@ def places_off(records: Array, problem: Problem) -> Array:
     return off
 
 
-def keys_bounding(records: Array, off: Array, problem: Problem, query: Query) -> Array:
+def keys_bounding(
+    records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
+) -> Array:
     """Keys (N, R) that no fixture ranks before whose locators touch as those of records (N, 19) do.
 
     Parameters
     ----------
     off : (N,) how far places may be off in mm.
+    pairs : (N, 3) bounds of the pairs of clamps; None where they are not known.
     """
-    quality = best_figures(records, off, problem, query)
+    quality = best_figures(records, off, problem, query, pairs)
     keys = np.stack(ranking_keys(quality, query.ranking, query.tolerance), axis=1)
     return np.asarray(np.where(np.isnan(quality[:, LOCATION_ERROR, None]), -inf, keys))
 
 
-def best_figures(records: Array, off: Array, problem: Problem, query: Query) -> Array:
+def best_figures(
+    records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
+) -> Array:
     """Figures of quality (N, F), none of a fixture with these locators being better.
 
     NaN stands where nothing is known.
@@ -332,9 +400,12 @@ def best_figures(records: Array, off: Array, problem: Problem, query: Query) -> 
     out[:, TILT] = np.where(tilt < SQUARE_TILT + ANGLE, 0.0, tilt - ANGLE)
     out[:, SMALLEST_FACE] = face_sizes(problem.workpiece).take(faces).min(axis=1, initial=inf)
     out[:, LOCATION_ERROR] = np.where(known, error, np.nan)
+    if pairs is not None:
+        for number, column in BOUNDED.items():
+            out[:, number] = pairs[:, column]
     radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
     judging = Judging.of(2 * (touched.length - radius), query.tolerance, None)
     near = is_near_edge(edges + place[:, None]).sum(axis=1)
-    out[:, WARNINGS] = near + is_astray(error, judging.off)
+    out[:, WARNINGS] = near + is_astray(error, judging.off) + is_strong(out[:, CLAMP_AMPLIFICATION])
     out[:, PENALTY] = judging.penalty(out)
     return out if query.program is None else np.hstack([out, np.full((len(out), 1), inf)])
