@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.limits import real, refuse_long
+from workhold.model.cutting_data import CuttingData
+from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.model.moves import Moves, along, shares_between
 
@@ -133,6 +135,7 @@ class Program:
     moves : in its order.
     skipped : lines with a move that was left out, such as one to a place of the machine's own.
     notes : sentences on what was read in one way where another is thinkable.
+    forces : of the tools on the part, on every move; None where nobody asks for them.
 
     Raises
     ------
@@ -151,6 +154,7 @@ class Program:
     moves: Moves = field(factory=lambda: Moves.of_rows(()))
     skipped: tuple[int, ...] = field(default=(), converter=lines_of)
     notes: tuple[str, ...] = field(default=(), converter=notes_of)
+    forces: CuttingForces | None = None
 
     def __attrs_post_init__(self) -> None:
         if self.unit not in UNITS or self.rapid not in WAYS:
@@ -164,6 +168,8 @@ class Program:
         missing = set(np.unique(self.moves.tool).tolist()) - set(self.tools)
         if missing:
             raise InputError(f"the program uses T{min(missing)}, which is not among its tools.")
+        if self.forces is not None and len(self.forces.force) != len(self.moves):
+            raise InputError("the program has other forces than moves: give one for each.")
 
     def __repr__(self) -> str:
         tools = f"{len(self.tools)} tool{'' if len(self.tools) == 1 else 's'}"
@@ -180,6 +186,7 @@ class Program:
         clearance: float = 1.0,
         rapid: Literal["straight", "box"] = "straight",
         unit: str | None = None,
+        cutting: CuttingData | Mapping[str, Any] | None = None,
     ) -> Program:
         """Reads a program of RS-274 (G-code).
 
@@ -193,11 +200,14 @@ class Program:
         clearance : in mm.
         rapid : whether rapid moves are straight.
         unit : ``mm`` or ``inch`` where the program does not say.
+        cutting : how tools cut of which the table does not say it, for the forces on the part:
+            :class:`workhold.model.cutting_data.CuttingData`, or its fields by name.
 
         Raises
         ------
         InputError
-            With the line of what cannot be read, and with tools that are called and not known.
+            With the line of what cannot be read, and with tools that are called and not known. With what is
+            lacking for forces that are asked for, too.
         """
         read: Program = delegate("read_program")(
             path,
@@ -208,6 +218,7 @@ class Program:
             clearance=clearance,
             rapid=rapid,
             unit=unit,
+            cutting=cutting,
         )
         return read
 
@@ -291,7 +302,11 @@ class Program:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""
-        return {**self.head(), "pieces": [piece.to_dict() for piece in self.iter_swept(-inf, inf)]}
+        pieces = [piece.to_dict() for piece in self.iter_swept(-inf, inf)]
+        if self.forces is not None:
+            moved = self.pairs()[0].tolist()
+            pieces = [piece | self.forces.entry(move) for piece, move in zip(pieces, moved, strict=True)]
+        return {**self.head(), "pieces": pieces}
 
     def head(self) -> dict[str, Any]:
         """Plain data as in a result file, without the pieces."""
@@ -306,6 +321,7 @@ class Program:
             "tools": {str(number): tool.to_dict() for number, tool in self.tools.items()},
             "skipped": list(self.skipped),
             "notes": list(self.notes),
+            **({} if self.forces is None else {"forces": self.forces.to_dict()}),
         }
 
     @classmethod
@@ -320,6 +336,10 @@ class Program:
         tools = {int(key): Tool.of_entries(int(key), value) for key, value in entries["tools"].items()}
         x, y = (real(value) for value in entries["zero"])
         pieces = [SweptPiece.of_entries(one) for one in entries["pieces"]]
+        moves, said = Moves.of_rows(list(moves_of(pieces, tools))), entries.get("forces")
+        # A move has a piece for each cylinder of its tool, all with the same force.
+        each = np.array([len(tools[number].cylinders) for number in moves.tool.tolist()], np.int64)
+        first = [entries["pieces"][place] for place in (np.cumsum(each) - each).tolist()]
         return cls(
             name=str(entries["name"]),
             sha256=str(entries["sha256"]),
@@ -329,9 +349,10 @@ class Program:
             clearance=entries["clearance"],
             rapid=entries["rapid"],
             tools=tools,
-            moves=Moves.of_rows(list(moves_of(pieces, tools))),
+            moves=moves,
             skipped=[int(line) for line in entries["skipped"]],
             notes=[str(note) for note in entries.get("notes", ())],
+            forces=None if said is None else CuttingForces.of_entries(first, said),
         )
 
 
