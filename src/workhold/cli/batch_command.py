@@ -315,7 +315,8 @@ def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
     """
     wishes, seated_by, machined = words
     unit, has_program = length_unit(reading.unit), machined.program is not None
-    return wishes.asked(unit, has_program) | seated_by.asked(unit) | machined.asked(unit, reading.peg_height)
+    asked = wishes.asked(unit, has_program, machined.has_forces) | seated_by.asked(unit)
+    return asked | machined.asked(unit, reading.peg_height)
 
 
 def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -> list[HeldIn]:

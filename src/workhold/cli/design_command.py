@@ -139,7 +139,7 @@ def design(
         refuse_output_folder(folder, picture_names(), given, force)
     refuse_sheet(sheet, (*given, words.not_on_faces_cut_in), out, force)
     toolkit, tolerance = held_in.asked(shown)
-    asked = words.asked(shown, machined.program is not None) | seated_by.asked(shown)
+    asked = words.asked(shown, machined.program is not None, machined.has_forces) | seated_by.asked(shown)
     asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
     type_ = choice("--type", type_, (*toolkit.types, EVERY_TYPE))
     from workhold.kernels.base.compiling import is_first_run

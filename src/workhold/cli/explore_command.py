@@ -60,7 +60,7 @@ def explore(
 
     shown = length_unit(reading.unit)
     toolkits = toolkits_to_try(vise, toolkit, varied, shown)
-    asked = words.asked(shown, machined.program is not None)
+    asked = words.asked(shown, machined.program is not None, machined.has_forces)
     if out is not None:
         refuse_output(
             out,

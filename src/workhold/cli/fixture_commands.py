@@ -337,7 +337,7 @@ def show(
         fixture, result.workpiece, result.toolkit, loads_asked, closing_force, coefficient, stiffness
     )
     if not json_:
-        print_fixture(result, rank, cases, shown_unit)
+        print_fixture(result, rank, cases, shown_unit, (closing_force, stiffness))
     if not result.complete:
         print_remark("the search for this result was interrupted; there may be better fixtures.")
     if picture is not None:
@@ -355,7 +355,7 @@ def show(
 
         print_json(
             fixture=fixture_data(fixture, result.toolkit, rank),
-            **passing_data(result, rank),
+            **passing_data(result, rank, closing_force, stiffness),
             listed=len(result),
             complete=bool(result.complete),
             loads=[load_case_data(case) for case in cases],
@@ -365,8 +365,15 @@ def show(
         print_tables(*(f"Drawn in {path}." for path in (picture, model) if path is not None))
 
 
-def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Unit) -> None:
-    """Prints how to set up the fixture of a rank, its quality and what loads do to it."""
+def print_fixture(
+    result: Result, rank: int, cases: Sequence[LoadCase], unit: Unit, closing: tuple[float | None, float]
+) -> None:
+    """Prints how to set up the fixture of a rank, its quality and what loads do to it.
+
+    Parameters
+    ----------
+    closing : the jaw force in N, None where it is open, and how stiff the jaw is.
+    """
     from workhold.cli.tables import fixture_tables, quality_table
 
     fixture, toolkit = result[rank - 1], result.toolkit
@@ -376,4 +383,4 @@ def print_fixture(result: Result, rank: int, cases: Sequence[LoadCase], unit: Un
         print_tables(*seating_words(fixture, result, unit))
     elif not toolkit.closes_at_once and rank <= (result.query.seating or 0):
         print_tables(*by_hand_words(rank, result, unit))
-    print_tables(*passing_words(result, rank, unit), *load_tables(cases, fixture, toolkit, unit))
+    print_tables(*passing_words(result, rank, unit, *closing), *load_tables(cases, fixture, toolkit, unit))

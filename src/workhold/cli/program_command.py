@@ -9,6 +9,17 @@ import typer
 from attrs import asdict
 
 from workhold.cli.commands import option
+from workhold.cli.cutting_options import (
+    CUT_DEPTH,
+    CUT_WIDTH,
+    CUTTING_DIRECTION,
+    CUTTING_FORCE,
+    MATERIAL,
+    POWER,
+    TEETH,
+    CuttingWords,
+    asked_cutting,
+)
 from workhold.cli.options import SHOWN_UNIT
 from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
 from workhold.cli.table import Table, print_tables
@@ -16,7 +27,12 @@ from workhold.cli.values import choice, length, length_unit, optional_positive_l
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from workhold.files.program.reader import ReadProgram
+    from workhold.model.cutting_forces import CuttingForces
+    from workhold.model.program import Program
     from workhold.model.program_figures import ToolFigures
     from workhold.units import Unit
 
@@ -48,6 +64,13 @@ def program(
     thickness: str | None = option(
         PLACE, "LENGTH", "How thick the part is; heights are those of the program if not given."
     ),
+    cutting_force: str | None = CUTTING_FORCE,
+    power: str | None = POWER,
+    material: str | None = MATERIAL,
+    teeth: str | None = TEETH,
+    cut_depth: str | None = CUT_DEPTH,
+    cut_width: str | None = CUT_WIDTH,
+    cutting_direction: str | None = CUTTING_DIRECTION,
     draw: str | None = option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
     force: ForceOption = False,
     unit: str | None = SHOWN_UNIT,
@@ -63,6 +86,8 @@ def program(
     picture = asked_picture(draw, (program_file, tools), force)
     height = None if thickness is None else optional_positive_length("--thickness", thickness, shown)
     asked_unit = None if program_unit is None else choice("--program-unit", program_unit, ("mm", "inch"))
+    typed = (cutting_force, power, material, teeth, cut_depth, cut_width, cutting_direction)
+    cutting = asked_cutting(CuttingWords(*typed), shown)
     from workhold.files.program.reader import read_program_with_calls
 
     read = read_program_with_calls(
@@ -73,6 +98,7 @@ def program(
         thickness=height,
         rapid=asked_rapid(rapid),
         unit=asked_unit,
+        cutting=cutting,
     )
     if picture is not None:
         from workhold.drawing.program_picture import draw_program
@@ -127,7 +153,43 @@ def data_of(read: ReadProgram) -> dict[str, Any]:
         "calls": [{"line": line, "tool": number} for line, number in read.calls],
         "tip": {"low": low.tolist(), "high": high.tolist()},
         "figures": [asdict(one) for one in tool_figures(program)],
+        **({} if program.forces is None else {"cutting": force_data(program.forces, program.moves.tool)}),
     }
+
+
+def force_data(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dict[str, Any]]:
+    """The largest force, torque and axial forces of each tool, in N and N mm."""
+    return [
+        {
+            "tool": number,
+            "force": float(forces.force[tool == number].max()),
+            "torque": float(forces.torque[tool == number].max()),
+            "axial": [
+                float(forces.axial[tool == number, 0].min()),
+                float(forces.axial[tool == number, 1].max()),
+            ],
+        }
+        for number in dict.fromkeys(tool.tolist())
+    ]
+
+
+def force_table(program: Program, unit: Unit) -> list[Table | str]:
+    """Tabulates the largest forces of each tool, and says from what they follow; empty without forces."""
+    forces = program.forces
+    if forces is None:
+        return []
+    table = Table(("tool", f">across {unit.force}", ">torque", f">down {unit.force}", f">up {unit.force}"))
+    for one in force_data(forces, program.moves.tool):
+        up, down = -min(one["axial"][0], 0.0), max(one["axial"][1], 0.0)
+        table.add_row(
+            f"T{one['tool']}",
+            unit.force_above(one["force"]),
+            unit.moment_words(one["torque"]),
+            unit.force_above(down),
+            unit.force_above(up),
+        )
+    where = "in any direction" if forces.direction == "any" else "within 60 degrees of against the feed"
+    return ["", table, f"Forces on the part act {where}, at the tool's periphery.", *forces.reasons.values()]
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
@@ -178,6 +240,7 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
         f"Cutting takes {clock(total)} at the feeds that are written; rapid moves, dwells and tool changes "
         "come on top.",
         *program.notes,
+        *force_table(program, unit),
     )
 
 

@@ -10,10 +10,21 @@ from typing import TYPE_CHECKING, Any
 from attrs import evolve, fields, frozen
 
 from workhold.cli.commands import option, print_remark
+from workhold.cli.cutting_options import (
+    CUT_DEPTH,
+    CUT_WIDTH,
+    CUTTING_DIRECTION,
+    CUTTING_FORCE,
+    MATERIAL,
+    POWER,
+    TEETH,
+    asked_cutting,
+)
 from workhold.cli.options import PartWords
 from workhold.cli.program_command import asked_height, asked_rapid, asked_zero
 from workhold.cli.values import choice, length, optional_positive_length
 from workhold.errors import InputError
+from workhold.units import MILLIMETRE
 
 if TYPE_CHECKING:
     from workhold.model.program import Program
@@ -60,6 +71,13 @@ class ProgramWords:
         default="straight",
     )
     program_unit: str | None = option(PROGRAM, "mm|inch", "Unit of a program without G20 and G21.")
+    cutting_force: str | None = CUTTING_FORCE
+    power: str | None = POWER
+    material: str | None = MATERIAL
+    teeth: str | None = TEETH
+    cut_depth: str | None = CUT_DEPTH
+    cut_width: str | None = CUT_WIDTH
+    cutting_direction: str | None = CUTTING_DIRECTION
     thickness: str | None = option(
         PROGRAM,
         "LENGTH",
@@ -77,6 +95,26 @@ class ProgramWords:
     def files(self) -> tuple[str | None, ...]:
         """The files that are read."""
         return self.program, self.tools
+
+    @property
+    def has_forces(self) -> bool:
+        """Whether the forces of the tools are asked for, of all or in their table.
+
+        Raises
+        ------
+        InputError
+            For a table that cannot be used.
+        """
+        if self.program is None:
+            return False
+        if any(word is not None for word in (self.cutting_force, self.power, self.material)):
+            return True
+        if self.tools is None:
+            return False
+        from workhold.files.program.tool_tables import read_tools
+
+        tools, _ = read_tools(self.tools, MILLIMETRE)
+        return any(tool.cutting.asks_for_forces for tool in tools.values())
 
     def reading(self, part: str, reading: PartWords) -> PartWords:
         """How a part is read: of a drawing the peg height is no question of the reader but of the program."""
@@ -164,32 +202,54 @@ def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tu
         clearance=kept,
         rapid=asked_rapid(words.rapid),
         unit=named,
+        cutting=asked_cutting(words, unit),
     )
     for note in program.notes:
         print_remark(note)
     return program
 
 
-def passing_data(result: Result, rank: int) -> dict[str, Any]:
-    """Returns where the program's tools come nearest, as plain data; nothing without a program."""
-    from workhold.statics.program_clearance import passing_of
+def passing_data(
+    result: Result, rank: int, jaw_force: float | None = None, jaw: str | float = "screw"
+) -> dict[str, Any]:
+    """Returns where the program's tools come nearest, and which forces they ask for, as plain data.
 
-    near = passing_of(result, rank - 1)
+    Nothing without a program. Jaw force and jaw are as of :func:`passing_words`.
+    """
+    from workhold.statics.program_clearance import passing_of
+    from workhold.statics.program_forces import cutting_need_of
+
+    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
     names = ("distance", "line", "tool", "element")
-    return {} if near is None else {"program_clearance": {name: getattr(near, name) for name in names}}
+    passing = {} if near is None else {name: getattr(near, name) for name in names}
+    data = {"program_clearance": passing} if passing else {}
+    return data if need is None else data | {"program_forces": need.to_dict()}
 
 
-def passing_words(result: Result, rank: int, unit: Unit) -> list[str]:
-    """Says how near the program's tools come to the fixture of a rank, and where; nothing without one."""
+def passing_words(
+    result: Result, rank: int, unit: Unit, jaw_force: float | None = None, jaw: str | float = "screw"
+) -> list[str]:
+    """Says how near the program's tools come to the fixture of a rank, and which forces they ask for.
+
+    Nothing without a program.
+
+    Parameters
+    ----------
+    jaw_force : in N, instead of the result's.
+    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
+    """
     from workhold.statics.program_clearance import passing_of
+    from workhold.statics.program_forces import cutting_need_of
 
     program = result.query.program
     if program is None:
         return []
-    near = passing_of(result, rank - 1)
+    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
+    forces = [] if need is None else need.words(result.toolkit.moving.noun, unit)
     if near is None:
-        return [f"No tool of {program.name} comes down to where anything holds the part."]
+        return [f"No tool of {program.name} comes down to where anything holds the part.", *forces]
     return [
         f"The tools of {program.name} keep {unit.text(near.distance)} from all that holds the part; "
-        f"T{near.tool} comes nearest in line {near.line}, to the {near.element}."
+        f"T{near.tool} comes nearest in line {near.line}, to the {near.element}.",
+        *forces,
     ]

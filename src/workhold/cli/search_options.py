@@ -147,9 +147,9 @@ class QueryWords:
         "FIGURES",
         "What makes a fixture good, the first counting most: "
         "warnings,penalty,clamp-amplification,closure-margin,edge-distance if not given, with load-reaction "
-        "in third place if there are loads; also location-error, tilt, smallest-face, wrench-radius, "
-        "end-distance, jaw-force-needed, with a program program-clearance, and of two clamps clamp-freedom, "
-        "which is then in third place.",
+        "in third place if there are loads or cutting forces; also location-error, tilt, smallest-face, "
+        "wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and of two clamps "
+        "clamp-freedom, which is then in third place.",
     )
     prefer: str | None = option(
         RANKING,
@@ -163,12 +163,13 @@ class QueryWords:
         "How far pegs and faces may be off, for the location error; 0.01mm if neither this nor --vise says.",
     )
 
-    def asked(self, unit: Unit, has_program: bool = False) -> dict[str, Any]:
+    def asked(self, unit: Unit, has_program: bool = False, has_forces: bool = False) -> dict[str, Any]:
         """Keyword arguments of a query; the tolerance is None where none was typed.
 
         Parameters
         ----------
         has_program : whether fixtures are to let a program pass.
+        has_forces : whether its tools press on the part.
 
         Raises
         ------
@@ -189,7 +190,7 @@ class QueryWords:
                 zones=tuple(zone(text, unit) for text in self.keep_out or ()),
                 angles=tuple(angles(text) for text in self.angle or ()),
             ),
-            "ranking": asked_ranking(names, self.prefer, loads, has_program),
+            "ranking": asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
             "tolerance": asked_tolerance(self.tolerance, unit),
             "loads": loads,
             "jaw_force": optional_force("--jaw-force", self.jaw_force),

@@ -141,13 +141,23 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
     table looks as sorted as it is.
     """
-    from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE, RANKED, SEATING_FIGURES
+    from workhold.model.quality import (
+        FIGURES,
+        JAW_FORCE_NEEDED,
+        LOCATION_ERROR,
+        PROGRAM_FIGURE,
+        RANKED,
+        SEATING_FIGURES,
+    )
     from workhold.model.setup import settings_of
     from workhold.statics.judging import unfit
 
     ranked = [figure for key in result.query.ranking for figure in RANKED if figure.key == key]
     others = [] if FIGURES[LOCATION_ERROR] in ranked else [FIGURES[LOCATION_ERROR]]
     others += [] if PROGRAM_FIGURE in ranked else [PROGRAM_FIGURE]
+    program, needed = result.query.program, FIGURES[JAW_FORCE_NEEDED]
+    if program is not None and program.forces is not None and needed not in ranked:
+        others.insert(0, needed)
     figures = [f for f in [*ranked, *others] if len(result) and f.key in result[0].figures]
     if result.seating:
         # First what it is ranked by, then how wide open the part is caught, and what a reading must show.

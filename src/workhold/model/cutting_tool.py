@@ -10,6 +10,7 @@ from attrs import field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import real, refuse_long
+from workhold.model.cutting_data import CuttingData
 
 __all__ = ["Cylinder", "Tool"]
 
@@ -59,6 +60,7 @@ class Tool:
     cylinders : in any order; they may overlap.
     diameter : of the flute, in mm.
     name : what the workshop calls it.
+    cutting : what is known of how it cuts; a file of a result has the forces instead.
 
     Raises
     ------
@@ -70,6 +72,7 @@ class Tool:
     cylinders: tuple[Cylinder, ...] = field(converter=cylinders_of)
     diameter: float = field(converter=real)
     name: str = ""
+    cutting: CuttingData = field(factory=CuttingData, eq=False)
 
     def __attrs_post_init__(self) -> None:
         if not self.cylinders or not 0.0 < self.diameter < inf or self.number < 0:

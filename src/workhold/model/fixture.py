@@ -191,7 +191,8 @@ class Fixture:
         makes no difference between fixtures.
     seating : what else its pegs can do with the part, a ``model.seating.Seating``; None where that was not
         asked.
-    passing : of a file that is verified, what it says of the program's tools; None of all others.
+    passing, asking : of a file that is verified, what it says of where the program's tools pass, and of the
+        forces that they ask for; None of all others.
     """
 
     type: str
@@ -204,6 +205,7 @@ class Fixture:
     listed: Listed | None = field(default=None, eq=False)
     seating: Any = field(default=None, eq=False)
     passing: Any = field(default=None, eq=False, repr=False)
+    asking: Any = field(default=None, eq=False, repr=False)
 
     def __repr__(self) -> str:
         which = "Fixture" if self.listed is None else f"Fixture {self.listed.rank} of {self.listed.count}"

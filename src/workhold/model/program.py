@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.limits import real, refuse_long
+from workhold.model.cutting_data import CuttingData
+from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.model.moves import Moves, along, shares_between
 from workhold.model.swept_piece import (
@@ -99,6 +101,7 @@ class Program:
     moves : in its order.
     skipped : lines with a move that was left out, such as one to a place of the machine's own.
     notes : sentences on what was read in one way where another is thinkable.
+    forces : of the tools on the part, on every move; None where nobody asks for them.
 
     Raises
     ------
@@ -117,6 +120,7 @@ class Program:
     moves: Moves = field(factory=lambda: Moves.of_rows(()))
     skipped: tuple[int, ...] = field(default=(), converter=lines_of)
     notes: tuple[str, ...] = field(default=(), converter=notes_of)
+    forces: CuttingForces | None = None
 
     def __attrs_post_init__(self) -> None:
         if self.unit not in UNITS or self.rapid not in WAYS:
@@ -130,6 +134,8 @@ class Program:
         missing = set(np.unique(self.moves.tool).tolist()) - set(self.tools)
         if missing:
             raise InputError(f"the program uses T{min(missing)}, which is not among its tools.")
+        if self.forces is not None and len(self.forces.force) != len(self.moves):
+            raise InputError("the program has other forces than moves: give one for each.")
 
     def __repr__(self) -> str:
         tools = f"{len(self.tools)} tool{'' if len(self.tools) == 1 else 's'}"
@@ -146,6 +152,7 @@ class Program:
         clearance: float = 1.0,
         rapid: Literal["straight", "box"] = "straight",
         unit: str | None = None,
+        cutting: CuttingData | Mapping[str, Any] | None = None,
     ) -> Program:
         """Reads a program of RS-274 (G-code).
 
@@ -159,11 +166,14 @@ class Program:
         clearance : in mm.
         rapid : whether rapid moves are straight.
         unit : ``mm`` or ``inch`` where the program does not say.
+        cutting : how tools cut of which the table does not say it, for the forces on the part:
+            :class:`workhold.model.cutting_data.CuttingData`, or its fields by name.
 
         Raises
         ------
         InputError
-            With the line of what cannot be read, and with tools that are called and not known.
+            With the line of what cannot be read, and with tools that are called and not known. With what is
+            lacking for forces that are asked for, too.
         """
         read: Program = delegate("read_program")(
             path,
@@ -174,6 +184,7 @@ class Program:
             clearance=clearance,
             rapid=rapid,
             unit=unit,
+            cutting=cutting,
         )
         return read
 
@@ -269,7 +280,16 @@ class Program:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""
-        return {**self.head(), "pieces": [piece.to_dict() for piece in self.iter_swept(-inf, inf)]}
+        return {**self.head(), "pieces": list(self.iter_entries())}
+
+    def iter_entries(self) -> Iterator[dict[str, Any]]:
+        """Yields all swept pieces as in a result file, with the forces of their moves."""
+        pieces = (piece.to_dict() for piece in self.iter_swept(-inf, inf))
+        if self.forces is None:
+            yield from pieces
+            return
+        for piece, move in zip(pieces, self.pairs()[0].tolist(), strict=True):
+            yield piece | self.forces.entry(move)
 
     def head(self) -> dict[str, Any]:
         """Plain data as in a result file, without the pieces."""
@@ -284,6 +304,7 @@ class Program:
             "tools": {str(number): tool.to_dict() for number, tool in self.tools.items()},
             "skipped": list(self.skipped),
             "notes": list(self.notes),
+            **({} if self.forces is None else {"forces": self.forces.to_dict()}),
         }
 
     @classmethod
@@ -299,7 +320,11 @@ class Program:
         """
         tools = {int(key): Tool.of_entries(int(key), value) for key, value in entries["tools"].items()}
         x, y = (real(value) for value in entries["zero"])
-        pieces = [one if isinstance(one, bytes) else packed_piece(one) for one in entries["pieces"]]
+        rows, said = entries["pieces"], entries.get("forces")
+        moves = moves_of([one if isinstance(one, bytes) else packed_piece(one) for one in rows], tools)
+        # A move has a piece for each cylinder of its tool, all with the same force; packed ones have none.
+        each = np.array([len(tools[number].cylinders) for number in moves.tool.tolist()], np.int64)
+        first = [rows[place] for place in (np.cumsum(each) - each).tolist()]
         return cls(
             name=str(entries["name"]),
             sha256=str(entries["sha256"]),
@@ -309,7 +334,8 @@ class Program:
             clearance=entries["clearance"],
             rapid=entries["rapid"],
             tools=tools,
-            moves=moves_of(pieces, tools),
+            moves=moves,
             skipped=[int(line) for line in entries["skipped"]],
             notes=[str(note) for note in entries.get("notes", ())],
+            forces=None if said is None else CuttingForces.of_entries(first, said),
         )

@@ -32,9 +32,9 @@ from workhold.model.workpiece import Workpiece
 __all__ = ["DEFAULT_RANKING", "PREFERENCES", "Query", "asked_ranking"]
 
 T = TypeVar("T")
+Loaded = Sequence[Load] | bool
 
-# docs/quality.md, "Which comes first", says why. With loads, the load reaction stands for the clamp
-# amplification.
+# docs/quality.md, "Which comes first", says why. With loads the load reaction is in third place.
 DEFAULT_RANKING = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
 # Of two clamps the one whose forces may differ most: it is set up without a torque wrench.
 PAIR_RANKING = (
@@ -46,6 +46,7 @@ PAIR_RANKING = (
     "edge_distance",
 )
 LISTINGS = ("best", "all")
+LOAD_KEYS = (FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key)
 SEATING_KEYS = {figure.key for figure in SEATING_FIGURES}
 # Orders by what a user wants most.
 PREFERENCES = {
@@ -129,15 +130,13 @@ class Query:
     contact_margin : smallest distance in mm between a contact and the end of its feature.
     restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no
         restriction.
-    ranking : figures of quality, the first counting most, named as in ``model.quality``. None stands for
-        warnings, penalty, load reaction or, without loads, clamp amplification, closure margin and edge
-        distance.
+    ranking : figures of quality, the first counting most, named as in ``model.quality``. None is the usual
+        order, see :data:`DEFAULT_RANKING`.
     tolerance : how far pegs and faces may be off, for the location error; None is the usual one. The
         workpiece's departure is added to that of the faces.
     loads : what the fixture must resist, for the load reaction.
     best : seek and list only this many, the best ones; None lists all.
-    jaw_force : in N, with which the vise will be closed, to warn of pegs that let go under a load; None where
-        it is open.
+    jaw_force : in N, with which the vise is closed, to warn of pegs that let go; None where it is open.
     listing : with two clamps, "best" lists one fixture for each seat and pair of directions with the number
         of pairs of clamps there, "all" lists every one. None stands for "best"; other toolkits take only
         None.
@@ -147,8 +146,8 @@ class Query:
         back, by this length in mm from where they hold it. Wrong seats farther open do not count.
     foolproof : with seating, list only fixtures without a wrong seat that a caliper could take for the right
         one.
-    program : what the machine does while the part is held: list only fixtures that its tools do not come
-        near, see :class:`workhold.model.program.Program`; None where that is not known.
+    program : of the machine: list only fixtures that its tools do not come near, and judge them under its
+        forces; None where it is not known.
     peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm, where there is a
         program; the solid's where the part is read from one.
 
@@ -184,7 +183,7 @@ class Query:
         pairs = self.toolkit.travels > 1
         object.__setattr__(self, "seating", counting_number("seating", self.seating))
         object.__setattr__(
-            self, "ranking", chosen_ranking(self.ranking, self.loads, pairs, self.seating is not None)
+            self, "ranking", chosen_ranking(self.ranking, self.is_loaded, pairs, self.seating is not None)
         )
         if PROGRAM_FIGURE.key in self.ranking and self.program is None:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
@@ -232,9 +231,15 @@ class Query:
         return self.program, self.peg_height
 
     @property
+    def is_loaded(self) -> bool:
+        """Whether anything acts on the part: a load, or the tools of the program."""
+        return bool(self.loads) or (self.program is not None and self.program.forces is not None)
+
+    @property
     def without_program(self) -> Query:
         """The query of fixtures that no program has to pass."""
-        ranking = [key for key in self.ranking if key != PROGRAM_FIGURE.key]
+        of_program = {PROGRAM_FIGURE.key} if self.loads else {PROGRAM_FIGURE.key, *LOAD_KEYS}
+        ranking = [key for key in self.ranking if key not in of_program]
         return evolve(self, program=None, peg_height=None, ranking=ranking or None)
 
     @property
@@ -251,7 +256,9 @@ class Query:
         needed = len(known) < len(self.ranking)
         return evolve(
             self,
-            ranking=[*dict.fromkeys((*known, *for_loads(DEFAULT_RANKING, self.loads)))] if needed else known,
+            ranking=[*dict.fromkeys((*known, *for_loads(DEFAULT_RANKING, self.is_loaded)))]
+            if needed
+            else known,
             best=None if self.best is None else max(self.best, self.seating),
             seating=None,
             opening=None,
@@ -307,7 +314,7 @@ def chosen_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tu
 
 
 def chosen_ranking(
-    names: Sequence[str] | None, loads: Sequence[Load], pairs: bool = False, seated: bool = False
+    names: Sequence[str] | None, loaded: Loaded, pairs: bool = False, seated: bool = False
 ) -> tuple[str, ...]:
     """Keys of the figures to rank by, from their names as a user writes them; None is the default ranking.
 
@@ -318,7 +325,7 @@ def chosen_ranking(
         loads, of two clamps where there is one, and of seating where that is not asked for.
     """
     if names is None:
-        return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loads)
+        return for_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
     keys = []
     for name in names:
         number = ranked_number(name)
@@ -332,7 +339,7 @@ def chosen_ranking(
                 f"the {RANKED[number].words} is known of fixtures whose seating is worked out: give of how "
                 "many, such as seating 100."
             )
-        if number in (LOAD_REACTION, JAW_FORCE_NEEDED) and not loads:
+        if number in (LOAD_REACTION, JAW_FORCE_NEEDED) and not loaded:
             raise InputError(
                 f"there is no load to rank by the {FIGURES[number].words}: give at least one load."
             )
@@ -349,7 +356,7 @@ def chosen_ranking(
 def asked_ranking(
     names: str | Sequence[str] | None,
     preference: str | None,
-    loads: Sequence[Load],
+    loaded: Loaded,
     has_program: bool = False,
 ) -> tuple[str, ...] | None:
     """The names of figures given, or the keys for a preference; None, the default, where both are None.
@@ -363,18 +370,18 @@ def asked_ranking(
         return words(names)
     if names is not None:
         raise InputError("figures to rank by and a preference are two orders: give one of them.")
-    return preferred_ranking(preference, loads, has_program)
+    return preferred_ranking(preference, loaded, has_program)
 
 
-def for_loads(ranking: tuple[str, ...], loads: Sequence[Load]) -> tuple[str, ...]:
+def for_loads(ranking: tuple[str, ...], loaded: Loaded) -> tuple[str, ...]:
     """An order with the load reaction instead of the clamp amplification where there are loads."""
-    if not loads:
+    if not loaded:
         return ranking
-    loaded, bare = FIGURES[LOAD_REACTION].key, FIGURES[CLAMP_AMPLIFICATION].key
-    return tuple(loaded if key == bare else key for key in ranking)
+    reaction, bare = FIGURES[LOAD_REACTION].key, FIGURES[CLAMP_AMPLIFICATION].key
+    return tuple(reaction if key == bare else key for key in ranking)
 
 
-def preferred_ranking(preference: str, loads: Sequence[Load], has_program: bool = False) -> tuple[str, ...]:
+def preferred_ranking(preference: str, loaded: Loaded, has_program: bool = False) -> tuple[str, ...]:
     """Keys of the figures to rank by for what a user wants most: square, strong, precise or roomy.
 
     With a program a roomy fixture is first of all one that its tools pass by far.
@@ -390,4 +397,4 @@ def preferred_ranking(preference: str, loads: Sequence[Load], has_program: bool 
     order = PREFERENCES[word]
     if word == "roomy" and has_program:
         order = (order[0], PROGRAM_FIGURE.key, *order[1:])
-    return for_loads(order, loads)
+    return for_loads(order, loaded)

@@ -32,6 +32,7 @@ from workhold.model.quality import (
     CLOSURE_MARGIN,
     FIGURES,
     JAW_FORCE_NEEDED,
+    LOAD_REACTION,
     PENALTY,
     PROGRAM_CLEARANCE,
     SMALLEST_FACE,
@@ -46,6 +47,7 @@ from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import Judging
 from workhold.statics.loads import jaw_forces_needed
 from workhold.statics.program_clearance import nearest_moves
+from workhold.statics.program_forces import cutting_figures
 
 __all__ = ["face_sizes", "load_rows", "main_direction", "measured_fixture", "quality_of", "tilts"]
 
@@ -113,6 +115,7 @@ def quality_of(
     touched : the workpiece's contact features, where they are known already.
     jaw_force : in N, for the warning that a peg lets go under a load.
     passed : a program and the height of pegs in mm, for the program clearance in a column more; None without.
+        Where it has forces they are loads like the others.
 
     Returns
     -------
@@ -156,6 +159,10 @@ def quality_of(
             if loads
             else np.nan
         )
+        if passed is not None and passed[0].forces is not None:
+            found = cutting_figures(contact_matrices, known, passed[0])
+            chosen = [LOAD_REACTION, JAW_FORCE_NEEDED]
+            filled[:, chosen] = np.fmax(filled[:, chosen], found)
         filled[:, CLAMP_FREEDOM] = np.nan
         if toolkit.tips > 1:
             filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = closures(contact_matrices.closing)

@@ -16,13 +16,13 @@ scale. The figures are those of ``statics.quality``, of which nothing is used.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import permutations, product
 
 from attrs import field, frozen
 from flint import arb, arb_mat
 
-from workhold.model.fixture import Fixture, Pair
+from workhold.model.fixture import Fixture
 from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.query import Query
 from workhold.model.requirements import Load
@@ -40,23 +40,20 @@ from workhold.verification.ball_geometry import (
     root,
 )
 from workhold.verification.contacts import Balance, BallContact, BallPose, wrench_radius
+from workhold.verification.force_walk import ForceWalk, force_walk_of
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
-from workhold.verification.seat import CLAMPS, LOCATORS, SeatBalance
+from workhold.verification.seat import SeatBalance
 from workhold.verification.tolerances import (
     FIGURE_AGREEMENT,
     FILLED,
     HAIR,
-    NO_REACTION,
     ROUNDING,
     SAME_END,
     TANGENT,
-    Finding,
-    number,
-    rule,
 )
 from workhold.verification.touching import Barrier, barriers, edge_distances, end_distance, length_of
 
-__all__ = ["Measure", "box_center", "figure_missing", "pair_numbers", "written_numbers"]
+__all__ = ["COUNTS", "RANGES", "Measure", "box_center", "figure_missing", "parts_spared"]
 
 # Figures of which any number in a range may be right.
 COUNTS = ("warnings", "penalty")
@@ -119,6 +116,7 @@ class Measure:
     corners : (C, 4) such rows of the joints of the outer loop that may be farthest from some point.
     peg, face : how far they may be off, in mm.
     loads : as asked for.
+    walk : along the program, where that has forces.
     direction : main direction of the part in degrees (``verification.judging``).
     jaw_force : in N, None where none was said.
     beside : the barriers on the contact feature of each face and radius, as far as known
@@ -135,6 +133,7 @@ class Measure:
     peg: arb
     face: arb
     loads: tuple[DirectedLoad, ...]
+    walk: ForceWalk | None
     direction: arb
     jaw_force: float | None
     beside: dict[tuple[int, float, float], list[Barrier]] = field(factory=dict, init=False)
@@ -157,6 +156,7 @@ class Measure:
             arb(query.tolerance.peg),
             arb(query.tolerance.face),
             tuple(DirectedLoad.of(load) for load in query.loads),
+            None if query.program is None else force_walk_of(query.program),
             main_direction(list(outline.faces.values())),
             query.jaw_force,
         )
@@ -192,7 +192,7 @@ class Measure:
             "tilt": tilt(pose, self.direction),
             "smallest_face": least([contact.size for contact in contacts]),
         }
-        if self.loads:
+        if self.loads or self.walk is not None:
             out["load_reaction"] = self.load_reaction(inverse, balance)
             out["jaw_force_needed"] = self.jaw_force_needed(inverse, balance)
         part = parts_spared(balance)
@@ -251,11 +251,13 @@ class Measure:
         return most
 
     def under_loads(self, most: arb, a: arb, b: arb, c: arb) -> arb:
-        """The largest of ``most`` and of a f_x + b f_y + c m under all loads of force f and moment m."""
+        """The largest of ``most`` and of a f_x + b f_y + c m under all loads and the program."""
         for load in self.loads:
             for x, y in load.points:
                 most = most.max(load.moment * c + load.force * load.largest(a - y * c, b + x * c))
-        return most
+        return (
+            most if self.walk is None else most.max(self.walk.worst(a, b, c, max(float(most.lower()), 0.0)))
+        )
 
     def location_error(self, inverse: Sequence[Sequence[arb]], faces: Sequence[int]) -> arb:
         """Largest movement in mm of a point of the silhouette, over all corners of the box of tolerances.
@@ -332,11 +334,11 @@ def hull(points: Sequence[Point]) -> list[Point]:
     return chain
 
 
-def figure_missing(fixture: Fixture, loads: Sequence[Load]) -> str:
+def figure_missing(fixture: Fixture, query: Query) -> str:
     """A sentence on a figure of quality that is missing or superfluous, without a full stop; or nothing."""
     for figure in FIGURES:
         of_loads = figure in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED])
-        wanted, why = bool(loads) or not of_loads, "no loads"
+        wanted, why = query.is_loaded or not of_loads, "no loads"
         if figure is FIGURES[CLAMP_FREEDOM]:
             wanted, why = len(fixture.travels) > 1, "no two clamps"
         if wanted != (figure.key in fixture.quality):
@@ -348,52 +350,3 @@ def parts_spared(balance: Balance | SeatBalance) -> arb:
     """The relative error to which forces and figures of the file agree with the derived ones."""
     amplification = largest(balance.forces)
     return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
-
-
-def written_numbers(
-    fixture: Fixture, names: Sequence[str], balance: Balance | SeatBalance, figures: Mapping[str, arb]
-) -> Iterator[Finding]:
-    """Whether the forces of pegs of some names and the figures of quality of the file are the derived ones.
-
-    The file's numbers were computed in double precision from a rounded pose. An error of the pose moves a
-    fixture by as many times more as its forces exceed the clamping force, and its forces by that factor
-    again. A derived end distance is a range where the clearance passes slowly through zero, and so is a count
-    beside the edge of what it counts. Any number in the range is right.
-    """
-    part = parts_spared(balance)
-    for name, peg, force in zip(names, fixture.pegs, balance.forces, strict=True):
-        yield from written(f"the force of {name}", peg.force, force, part * abs(force))
-    for key, derived in figures.items():
-        if key in fixture.quality:
-            if key in COUNTS and not fixture.quality[key].is_integer():
-                yield Finding(
-                    True, f"its {key} is {fixture.quality[key]:.12g} in the file, which is no whole number"
-                )
-            spare = part * abs(derived) + (2 * derived.rad() if key in RANGES else 0)
-            yield from written(f"its {key.replace('_', ' ')}", fixture.quality[key], derived, spare)
-
-
-def pair_numbers(pair: Pair, names: Sequence[str], balance: SeatBalance) -> Iterator[Finding]:
-    """Whether the reactions and the ends of the ratio in the file are the derived ones."""
-    part = parts_spared(balance)
-    for name, said, derived in zip(names, pair.reactions, balance.reactions, strict=True):
-        for clamp, value, force in zip(CLAMPS, said, derived, strict=True):
-            yield from written(f"the force of {name} under {clamp}", value, force, part * (1 + abs(force)))
-    # The ends follow from reactions that are off.
-    said, ratio = pair.ratio, balance.ratio
-    least = [abs(b) for _, b in balance.reactions[:LOCATORS] if abs(b) > NO_REACTION]
-    loss = 1 + largest([1 / b for b in least]) if least else arb(1)
-    yield from written("the lower end of its ratio", said[0], ratio.low, part * loss * (1 + ratio.low))
-    if (ratio.high is None) != (said[1] == float("inf")):
-        end = "has none" if ratio.high is None else f"is {number(ratio.high)}"
-        yield Finding(True, f"the upper end of its ratio {end}, and the file says otherwise")
-    elif ratio.high is not None:
-        yield from written("the upper end of its ratio", said[1], ratio.high, part * loss * (1 + ratio.high))
-
-
-def written(name: str, value: float, derived: arb, spare: arb) -> Iterator[Finding]:
-    """Whether a number of the file is the derived one, to a hair and what may be spared besides."""
-    slack = HAIR + spare - abs(derived - value)
-    if not slack > 0:
-        words = f"{name} is {value:.12g} in the file and comes to {float(derived.mid()):.12g}"
-        yield from rule(slack, words, words)

@@ -77,6 +77,7 @@ def fixture_from(item: Any) -> Fixture:
         quality_from(item),
         " ".join(directions) or None,
         passing=item.get(PROGRAM_FIGURE.key),
+        asking=item.get("program_forces"),
     )
     if is_pair:
         low, high = two_numbers(item, "ratio", least=1)

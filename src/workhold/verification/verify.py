@@ -19,10 +19,11 @@ from workhold.model.workpiece import Workpiece
 from workhold.verification.account import account_faults, seat_faults
 from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, norm
 from workhold.verification.contacts import Balance, BallContact, BallPose, closure_findings
-from workhold.verification.figures import Measure, figure_missing, pair_numbers, written_numbers
+from workhold.verification.figures import Measure, figure_missing
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
+from workhold.verification.program_forces import program_force_findings
 from workhold.verification.repeats import KnownFixtures, PartRotations, pattern_faults
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
@@ -31,6 +32,7 @@ from workhold.verification.seating import SeatingJudge
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 from workhold.verification.tool_walk import program_fault
 from workhold.verification.touching import touching_findings
+from workhold.verification.written_numbers import pair_numbers, written_numbers
 
 __all__ = [
     "Judge",
@@ -192,6 +194,7 @@ class Judge:
         names, faces = self.hardware.names, self.hardware.shared_faces(fixture, contacts)
         figures = measure.figures(contacts, faces, pose, balance)
         yield from written_numbers(fixture, names, balance, figures)
+        yield from program_force_findings(fixture, self.query, self.hardware, contacts, pose, balance)
 
 
 def flat_findings(
@@ -331,7 +334,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         bits = max(bits, ruling.bits)
         if verdict != "refuted":
             broken = broken_restriction(fixture, query, judge.hardware)
-            broken = broken or figure_missing(fixture, query.loads) or seating.fault(fixture)
+            broken = broken or figure_missing(fixture, query) or seating.fault(fixture)
             broken = broken or program_fault(fixture, query, judge.hardware)
             verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)

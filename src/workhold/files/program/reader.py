@@ -20,6 +20,8 @@ from workhold.files.program.tool_tables import commented_tools, read_tools
 from workhold.files.program.words import ProgramText, program_text
 from workhold.files.text import read_limited
 from workhold.limits import real
+from workhold.model.cutting_data import CuttingData
+from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
@@ -76,6 +78,7 @@ def read_program_with_calls(
     clearance: float = 1.0,
     rapid: Literal["straight", "box"] = "straight",
     unit: str | None = None,
+    cutting: CuttingData | Mapping[str, Any] | None = None,
 ) -> ReadProgram:
     """Reads a program and says which tools it calls.
 
@@ -109,7 +112,12 @@ def read_program_with_calls(
         notes=[*notes_on(control, listing), *notes],
     )
     # Where it runs is checked by now.
-    program = evolve(program, moves=moves_of(control, found, np.array([*program.zero, height])))
+    moves = moves_of(control, found, np.array([*program.zero, height]))
+    try:
+        forces = forces_on(moves, found, CuttingData.of(cutting))
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    program = evolve(program, moves=moves, forces=forces)
     return ReadProgram(program, tuple(control.calls), content.count(b"\n") + 1)
 
 

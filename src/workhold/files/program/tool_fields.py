@@ -8,15 +8,27 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.limits import real
+from workhold.model.cutting_data import CuttingData
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.units import Unit, unit_named
 
 __all__ = ["FIELDS", "SHAPE", "is_bare", "tool_of_fields"]
 
 LENGTHS = ("diameter", "flute_length", "shank_diameter", "stickout", "holder_diameter", "holder_length")
-# A corner or a point is inside the flat end as which every tool is taken.
-IGNORED = ("corner_radius", "point_angle", "flutes")
-FIELDS = ("name", "unit", *LENGTHS, *IGNORED)
+# How it cuts; flutes are teeth. A corner or a point is inside the flat end as which every tool is taken.
+CUTTING = (
+    "cutting_force",
+    "power",
+    "material",
+    "teeth",
+    "cut_depth",
+    "cut_width",
+    "point_angle",
+    "helix_angle",
+)
+OTHERS = ("corner_radius", "flutes")
+FIELDS = ("name", "unit", *LENGTHS, *CUTTING, *OTHERS)
+UNSURE = ("teeth", "point_angle")
 SHAPE = (
     "tool.{number} = {{diameter = 10, flute_length = 22, stickout = 40, holder_diameter = 40, "
     "holder_length = 50}}"
@@ -60,9 +72,46 @@ def tool_of_fields(number: int, fields: Mapping[str, Any], place: str, unit: Uni
     if "diameter" not in lengths:
         raise InputError(f"{place} has no diameter: give one.")
     try:
-        return Tool(number, stack(lengths, place), lengths["diameter"], str(fields.get("name") or ""))
+        cutting = cutting_of(fields, unit)
+        name = str(fields.get("name") or "")
+        return Tool(number, stack(lengths, place), lengths["diameter"], name, cutting)
     except InputError as error:
         raise InputError(str(error) if str(error).startswith(place) else f"{place}: {error}") from error
+
+
+def cutting_of(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
+    """How a tool cuts, from its fields.
+
+    A table that was written for another program may say of flutes and of a point what cannot be used here.
+    That is refused only where it is the force that is asked for.
+
+    Parameters
+    ----------
+    unit : of lengths.
+
+    Raises
+    ------
+    InputError
+        For what cannot be.
+    """
+    given = {key: fields[key] for key in CUTTING if fields.get(key) is not None}
+    if fields.get("flutes") is not None:
+        given.setdefault("teeth", fields["flutes"])
+    for key in ("cut_depth", "cut_width"):
+        if key in given:
+            given[key] = unit.length(real(given[key]))
+    if not given.keys() & {"cutting_force", "power", "material"}:
+        given = {key: value for key, value in given.items() if key not in UNSURE or is_usable(key, value)}
+    return CuttingData(**given)
+
+
+def is_usable(key: str, value: Any) -> bool:
+    """Whether a field of how a tool cuts is one."""
+    try:
+        CuttingData(**{key: value})
+    except InputError:
+        return False
+    return True
 
 
 def stack(lengths: Mapping[str, float], place: str) -> list[Cylinder]:

@@ -222,6 +222,24 @@ class NearestMovePart(FormPart):
     element: str
 
 
+class AskedForcePart(FormPart):
+    """A force that a program asks for, in N, and the contact that it is about."""
+
+    force: float
+    line: Whole | None
+    tool: Whole | None
+    element: str | None
+
+
+class CuttingNeedPart(FormPart):
+    """The jaw force that keeps all contacts along the program, and the largest force of one."""
+
+    jaw: AskedForcePart
+    contact: AskedForcePart
+    jaw_force: float
+    room: float | None
+
+
 class FixturePart(FormPart):
     """One fixture; best first."""
 
@@ -240,6 +258,7 @@ class FixturePart(FormPart):
     quality: dict[str, float] = Field(default_factory=dict)
     seating: SeatingPart | None = None
     program_clearance: NearestMovePart | None = None
+    program_forces: CuttingNeedPart | None = None
 
 
 class ResultFile(Head):

@@ -6,7 +6,6 @@ import json
 import struct
 from collections.abc import Iterator
 from itertools import islice
-from math import inf
 from typing import Any
 
 from workhold.errors import InputError
@@ -24,8 +23,8 @@ def program_text(program: Program) -> Iterator[str]:
     """The JSON of a program as ``Program.to_dict`` has it, in parts."""
     start = json.dumps(program.head())
     yield f'{start[:-1]}, "pieces": ['
-    separator, pieces = "", program.iter_swept(-inf, inf)
-    while some := [json.dumps(piece.to_dict()) for piece in islice(pieces, AT_ONCE)]:
+    separator, pieces = "", program.iter_entries()
+    while some := [json.dumps(piece) for piece in islice(pieces, AT_ONCE)]:
         yield separator + ", ".join(some)
         separator = ", "
     yield "]}"

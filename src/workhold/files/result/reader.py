@@ -314,7 +314,7 @@ def clamp_travel(
 def measured(table: FixtureTable, query: Query) -> FixtureTable:
     """The table with the figures of quality that the file does not give."""
     wanted = np.isnan(table.quality)
-    if not query.loads:
+    if not query.is_loaded:
         wanted[:, [LOAD_REACTION, JAW_FORCE_NEEDED]] = False
     if not wanted.any():
         return table

@@ -25,10 +25,11 @@ from workhold.fixels.fields import FLAT
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.program import Program
 from workhold.model.quality import PROGRAM_CLEARANCE
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
-from workhold.model.result import Result
+from workhold.model.result import FixtureTable, Result
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
 from workhold.model.solid import SolidOutline
@@ -109,6 +110,7 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
     from workhold.statics.program_clearance import element_name, nearest_moves
 
     assert result.query.passed is not None
+    program = result.query.passed[0]
     toolkit, (_, table) = result.toolkit, as_written(result.table.take(rows))
     near = nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
     out = []
@@ -122,7 +124,19 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
             }
             line = f'{line[:-1]}, "program_clearance": {json.dumps(said)}}}'
         out.append(line)
-    return out
+    return out if program.forces is None else with_forces(out, table, result, program)
+
+
+def with_forces(lines: list[str], table: FixtureTable, result: Result, program: Program) -> list[str]:
+    """The lines of some fixtures, each with the forces that the program's tools ask for."""
+    from workhold.statics.program_forces import cutting_needs
+
+    jaw_force = result.query.jaw_force
+    needs = cutting_needs(table, result.workpiece, result.toolkit, program, jaw_force)
+    return [
+        line if need is None else f'{line[:-1]}, "program_forces": {json.dumps(need.to_dict())}}}'
+        for line, need in zip(lines, needs, strict=True)
+    ]
 
 
 def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:

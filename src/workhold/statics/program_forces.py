@@ -1,0 +1,263 @@
+"""What the tools of a program ask of a fixture: the jaw force that keeps all contacts, and the peg forces.
+
+The peg forces are those of ``statics.loads``: f = f0 + F h, with f0 linear in the load. So the jaw force
+below which peg i lets go, -f0_i / h_i, is linear in the load as well. ``statics.path_forces`` has the worst
+place of the path for both.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from math import ceil, floor, inf, log10
+from typing import Any
+
+import numpy as np
+from attrs import asdict, frozen
+from numpy.typing import NDArray
+
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.program import Program
+from workhold.model.result import FixtureTable, Result, peg_places
+from workhold.model.workpiece import Workpiece
+from workhold.statics.contact_matrix import ContactMatrices, Touched
+from workhold.statics.loads import jaw_stiffness
+from workhold.statics.path_pieces import path_forces
+from workhold.statics.program_clearance import element_name
+from workhold.units import Unit
+
+__all__ = ["AskedForce", "CuttingNeed", "cutting_figures", "cutting_need_of", "cutting_needs"]
+
+Array = NDArray[np.float64]
+# Fixtures looked at together.
+BLOCK = 1 << 12
+
+
+@frozen
+class AskedForce:
+    """A force that a program asks for.
+
+    Parameters
+    ----------
+    force : in N.
+    line, tool : of the program, where it does; None where nothing is asked for.
+    element : the contact that it is about, such as "peg L-A1"; None there.
+    """
+
+    force: float
+    line: int | None
+    tool: int | None
+    element: str | None
+
+
+@frozen
+class CuttingNeed:
+    """What the tools of a program ask of one fixture.
+
+    Parameters
+    ----------
+    jaw : the jaw force above which no contact lets go along the whole path, and the contact that does below.
+    contact : the largest force of a contact at ``jaw_force``, and whose it is.
+    jaw_force : the one given or, where none is, the one needed, in N.
+    room : by how much the force given exceeds the one needed, in N; None where none is given.
+    """
+
+    jaw: AskedForce
+    contact: AskedForce
+    jaw_force: float
+    room: float | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data as in a result file."""
+        return asdict(self)
+
+    def words(self, mover: str, unit: Unit) -> list[str]:
+        """What a machinist has to know, in sentences.
+
+        Parameters
+        ----------
+        mover : what presses, such as a jaw.
+        unit : of the forces.
+
+        Examples
+        --------
+        >>> from workhold.units import MILLIMETRE
+        >>> need = CuttingNeed(
+        ...     AskedForce(2050.2, 412, 3, "peg R-A1"), AskedForce(3500, 412, 3, "peg L-A1"), 3000, 949.8
+        ... )
+        >>> for sentence in need.words("jaw", MILLIMETRE):
+        ...     print(sentence)
+        Jaw force at least 2.1 kN, asked for by line 412, T3: with less the part leaves peg R-A1.
+        The 3000 N given leave 949 N of room.
+        With 3000 N peg L-A1 presses with up to 3.5 kN, in line 412, T3.
+        """
+        if self.jaw.line is None:
+            return [f"The tools of the program push the part off nothing, at any {mover} force."]
+        name = mover[:1].upper() + mover[1:]
+        said = [
+            f"{name} force at least {force_up(self.jaw.force, unit)}, asked for by line {self.jaw.line}, "
+            f"T{self.jaw.tool}: with less the part leaves {self.jaw.element}."
+        ]
+        if self.room is not None:
+            given = unit.force_words(self.jaw_force)
+            if self.room >= 0.0:
+                said.append(f"The {given} given leave {unit.force_words(floor_to(self.room))} of room.")
+            else:
+                lacking = f"{unit.force_above(-self.room)} {unit.force}"
+                said.append(f"The {given} given are {lacking} too little.")
+        if self.contact.line is not None:
+            most = force_up(self.contact.force, unit)
+            at = f"line {self.contact.line}, T{self.contact.tool}"
+            with_ = f"With {unit.force_words(self.jaw_force)} {self.contact.element}"
+            said.append(f"{with_} presses with up to {most}, in {at}.")
+        return said
+
+
+def force_up(force: float, unit: Unit) -> str:
+    """A force in N in words, rounded up to two figures to stay on the safe side.
+
+    >>> from workhold.units import INCH, MILLIMETRE
+    >>> force_up(2050.2, MILLIMETRE), force_up(312.0, MILLIMETRE), force_up(2050.2, INCH)
+    ('2.1 kN', '320 N', '470 lbf')
+    """
+    value = force / unit.newtons
+    if value <= 0.0:
+        return f"0 {unit.force}"
+    step = 10.0 ** (floor(log10(value)) - 1)
+    up = ceil(value / step * (1.0 - 1e-12)) * step
+    return f"{up / 1000:.2g} kN" if unit.force == "N" and up >= 1000 else f"{up:.0f} {unit.force}"
+
+
+def floor_to(force: float) -> float:
+    """A force in N without its decimals, so that no more is promised than there is."""
+    return float(floor(force)) if force >= 1.0 else force
+
+
+def cutting_figures(matrices: ContactMatrices, touched: Touched, program: Program) -> Array:
+    """Load reactions and jaw forces needed (N, 2) of fixtures along a program, in N; never negative."""
+    known = np.flatnonzero(np.isfinite(matrices.inverses).all(axis=(1, 2)))
+    out = np.full((len(matrices.inverses), 2), np.nan)
+    inverses, held = matrices.inverses[known], matrices.inverses[known, 3]
+    path = path_forces(program, center_of(touched))
+    for start in range(0, len(known), BLOCK):
+        part = slice(start, start + BLOCK)
+        rows = known[part]
+        free = np.swapaxes(inverses[part, :3], 1, 2) / scale(touched)
+        out[rows, 0] = path.worst(reactions(free, held[part])).value
+        locked = answers(free, matrices.closing[rows], inf)
+        out[rows, 1] = path.worst(-locked / held[part, :, None]).value
+    return out
+
+
+def center_of(touched: Touched) -> tuple[float, float]:
+    """The point that moments are taken about."""
+    return float(touched.center[0]), float(touched.center[1])
+
+
+def scale(touched: Touched) -> Array:
+    """What inverses of contact matrices are divided by, so that moments are in N mm."""
+    return np.array([1.0, 1.0, touched.length])
+
+
+def reactions(free: Array, held: Array) -> Array:
+    """Functions (N, P (P - 1), 3) of the load, of which the largest value is the load reaction.
+
+    Parameters
+    ----------
+    free : (N, P, 3) peg forces per unit of load where the jaw keeps its force.
+    held : (N, P) the same per unit of jaw force.
+    """
+    count = held.shape[1]
+    one, other = np.nonzero(~np.eye(count, dtype=bool))
+    ratio = held[:, one] / held[:, other]
+    found: Array = free[:, one] - ratio[..., None] * free[:, other]
+    return found
+
+
+def answers(free: Array, closing: Array, stiffness: float) -> Array:
+    """Peg forces (N, P, 3) per unit of load behind jaws of a stiffness, see ``statics.loads``.
+
+    Parameters
+    ----------
+    free : the same for a jaw that keeps its force.
+    closing : (N, P, M) peg forces per unit of the force of each jaw or clamp.
+    """
+    if stiffness == 0.0:
+        return free
+    back = np.swapaxes(closing, 1, 2)
+    springs = np.eye(closing.shape[2]) / stiffness + back @ closing
+    found: Array = free - closing @ np.linalg.solve(springs, back @ free)
+    return found
+
+
+def cutting_needs(
+    table: FixtureTable,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    program: Program,
+    jaw_force: float | None,
+    jaw: str | float = "screw",
+) -> list[CuttingNeed | None]:
+    """What the tools of a program ask of each fixture of a table; None where its forces are not known.
+
+    Parameters
+    ----------
+    jaw_force : in N, with which the vise is closed; None where that is open.
+    jaw : what closes it, see :func:`workhold.statics.loads.jaw_stiffness`.
+    """
+    touched, carriers = Touched.of(workpiece, toolkit), toolkit.peg_carriers(table.arrangement)
+    pegs = np.stack(peg_places(table, toolkit, workpiece), axis=2)
+    pose = np.column_stack([table.theta, table.position])
+    matrices = touched.contact_matrices(pegs, pose, carriers, table.face.astype(np.int64))
+    path = path_forces(program, center_of(touched))
+    named = partial(asked_force, table, toolkit, program)
+    known = np.flatnonzero(np.isfinite(matrices.inverses).all(axis=(1, 2)))
+    out: list[CuttingNeed | None] = [None] * len(table)
+    for start in range(0, len(known), BLOCK):
+        rows = known[start : start + BLOCK]
+        held = matrices.inverses[rows, 3]
+        free = np.swapaxes(matrices.inverses[rows, :3], 1, 2) / scale(touched)
+        own = answers(free, matrices.closing[rows], jaw_stiffness(jaw))
+        need = path.worst(-own / held[..., None])
+        force = need.value if jaw_force is None else np.full(len(rows), float(jaw_force))
+        # Each contact by itself, because each has its own share of the jaw force.
+        each = path.worst(own.reshape(-1, 1, 3))
+        total = each.value.reshape(held.shape) + force[:, None] * held
+        largest = total.argmax(axis=1)
+        at = each.move.reshape(held.shape)[np.arange(len(rows)), largest]
+
+        for k, row in enumerate(rows.tolist()):
+            out[row] = CuttingNeed(
+                jaw=named(row, float(need.value[k]), int(need.move[k]), int(need.which[k])),
+                contact=named(row, float(total[k, largest[k]]), int(at[k]), int(largest[k])),
+                jaw_force=float(force[k]),
+                room=None if jaw_force is None else float(jaw_force - need.value[k]),
+            )
+    return out
+
+
+def asked_force(
+    table: FixtureTable, toolkit: Toolkit, program: Program, row: int, value: float, move: int, contact: int
+) -> AskedForce:
+    """A force that a move asks for of a contact of a fixture of a table; of none where the move is -1."""
+    if move < 0:
+        return AskedForce(value, None, None, None)
+    name = element_name(table, toolkit, row, contact)
+    return AskedForce(value, int(program.moves.line[move]), int(program.moves.tool[move]), name)
+
+
+def cutting_need_of(
+    result: Result, index: int, jaw_force: float | None = None, jaw: str | float = "screw"
+) -> CuttingNeed | None:
+    """What the tools of a result's program ask of the fixture of an index; None without forces.
+
+    Parameters
+    ----------
+    jaw_force : in N, instead of the result's.
+    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
+    """
+    program = result.query.program
+    if program is None or program.forces is None:
+        return None
+    force = result.query.jaw_force if jaw_force is None else jaw_force
+    row = result.table.take(slice(index, index + 1))
+    return cutting_needs(row, result.workpiece, result.toolkit, program, force, jaw)[0]

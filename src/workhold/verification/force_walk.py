@@ -1,0 +1,177 @@
+"""What a program's tools ask of a fixture, by a walk along its moves with bounds.
+
+All moves are walked, not those that remain in the search. What is linear in the load is, for the worst
+direction at a place p of the tip, a function V(p) of the place; see :meth:`ForceWalk.at`. Moves stand in
+blocks with a circle around each: V changes by at most F |c| per mm. Blocks that cannot hold the greatest
+value are left. On an arc of the radius r every direction's value has a second derivative of at most
+
+    M = F (3 |c| r + u)
+
+in the angle, u being the size of the coefficients of the force there: the place's and the direction's own
+derivatives are at most r and 1. So V is at most M w^2 / 8 above the greater of its values at the ends of a
+stretch of the angle w. Stretches are halved until that says enough. Numbers are doubles: the rounding and the
+uncertainty of the coefficients are added to the result.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import pi
+
+import numpy as np
+from attrs import frozen
+from flint import arb
+from numpy.typing import NDArray
+
+from workhold.model.cutting_forces import CuttingForces
+from workhold.model.program import Program
+from workhold.verification.tool_walk import ToolWalk, walk_of
+
+__all__ = ["ForceWalk", "force_walk_of"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# Moves in a block, parts of the value to which it is worked out, and of the sizes by which it is rounded.
+RUN, FINE, ROUNDED = 64, 1e-10, 1e-13
+MOST_HALVINGS = 60
+# Radians: half the range of directions about against the feed.
+SIXTY = pi / 3
+
+
+@frozen(eq=False)
+class ForceWalk:
+    """The moves of a program that press on the part.
+
+    Parameters
+    ----------
+    walk : where they go.
+    forces : on all moves.
+    move : (R,) numbers of the moves that press.
+    first : (B,) where blocks of them begin.
+    center, reach : (B, 2) and (B,) circles around blocks, in mm.
+    force, torque : (B,) the largest of each block.
+    far : no point of the path is farther from the origin, in mm.
+    """
+
+    walk: ToolWalk
+    forces: CuttingForces
+    move: IntArray
+    first: IntArray
+    center: Array
+    reach: Array
+    force: Array
+    torque: Array
+    far: float
+
+    @classmethod
+    def of(cls, program: Program, forces: CuttingForces) -> ForceWalk:
+        """The walk along a program with its forces."""
+        walk, moves = walk_of(program), program.moves
+        move = np.flatnonzero((forces.force != 0.0) | (forces.torque != 0.0))
+        first = np.arange(0, len(move), RUN)
+        ends = [moves.start[move, :2], moves.end[move, :2]]
+        bulging = np.where(walk.is_round[move], walk.radius[move], 0.0)[:, None]
+        middle = np.where(walk.is_round[move, None], walk.center[move], ends[0])
+        low = np.minimum(np.minimum(*ends), middle - bulging)
+        high = np.maximum(np.maximum(*ends), middle + bulging)
+        lows = np.array([low[k : k + RUN].min(axis=0) for k in first]).reshape(-1, 2)
+        highs = np.array([high[k : k + RUN].max(axis=0) for k in first]).reshape(-1, 2)
+        far = np.maximum(np.abs(lows), np.abs(highs))
+        return cls(
+            walk,
+            forces,
+            move,
+            first,
+            (lows + highs) / 2,
+            np.hypot(*(highs - lows).T) / 2,
+            np.array([forces.force[move[k : k + RUN]].max() for k in first]),
+            np.array([forces.torque[move[k : k + RUN]].max() for k in first]),
+            float(np.hypot(*far.T).max(initial=0.0)),
+        )
+
+    def worst(
+        self, a: arb, b: arb, c: arb, known: float = 0.0, line: object = None, tool: object = None
+    ) -> arb:
+        """The largest a g_x + b g_y + c m of a tool along the path, moments about the origin, or ``known``.
+
+        Parameters
+        ----------
+        known : 0 or more, because the tool may do nothing as well; what is less does not matter.
+        line, tool : of the program, the moves to look at; None for all.
+        """
+        if not all(one.is_finite() for one in (a, b, c)):
+            return arb(float("nan"))
+        middle = float(a.mid()), float(b.mid()), float(c.mid())
+        off = [float(one.rad()) for one in (a, b, c)]
+        if line is None:
+            found, most = self.search(*middle, known), float(self.force.max(initial=0.0))
+        else:
+            moves = self.walk.program.moves
+            own = (moves.line[self.move] == line) & (moves.tool[self.move] == tool)
+            found, most = self.look(self.move[own], *middle, known), float(self.force.max(initial=0.0))
+        turning = float(self.torque.max(initial=0.0)) + most * self.far
+        spare = most * (off[0] + off[1]) + turning * off[2]
+        size = most * (abs(middle[0]) + abs(middle[1])) + turning * abs(middle[2])
+        return arb(found, spare + ROUNDED * size + FINE * found)
+
+    def search(self, a: float, b: float, c: float, known: float) -> float:
+        """The largest value over all blocks, the most promising first."""
+        x, y = a - self.center[:, 1] * c, b + self.center[:, 0] * c
+        bounds = self.force * (np.hypot(x, y) + abs(c) * self.reach) + abs(c) * self.torque
+        found = known
+        for block in np.argsort(-bounds):
+            if bounds[block] <= found:
+                break
+            found = self.look(self.move[self.first[block] : self.first[block] + RUN], a, b, c, found)
+        return found
+
+    def look(self, moves: IntArray, a: float, b: float, c: float, found: float) -> float:
+        """The largest value on some moves, to a part of it; ``found`` if that is more."""
+        low, high = np.zeros(len(moves)), np.ones(len(moves))
+        ends = [self.at(moves, share, a, b, c) for share in (low, high)]
+        found = max(found, float(np.maximum(*ends).max(initial=0.0)))
+        round_ = self.walk.is_round[moves] & (self.forces.force[moves] > 0.0)
+        moves, low, high = moves[round_], low[round_], high[round_]
+        before, after = (values[round_] for values in ends)
+        for _ in range(MOST_HALVINGS):
+            if not len(moves):
+                break
+            radius, (x, y) = self.walk.radius[moves], self.walk.center[moves].T
+            size = np.hypot(a - y * c, b + x * c) + abs(c) * radius
+            turned = np.abs(self.walk.sweep[moves]) * (high - low)
+            bent = self.forces.force[moves] * (3.0 * abs(c) * radius + size)
+            kept = np.maximum(before, after) + bent * turned * turned / 8.0 > found * (1.0 + FINE) + 1e-300
+            moves, low, high, before, after = (one[kept] for one in (moves, low, high, before, after))
+            middle = (low + high) / 2
+            values = self.at(moves, middle, a, b, c)
+            found = max(found, float(values.max(initial=0.0)))
+            moves = np.concatenate([moves, moves])
+            low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+            before, after = np.concatenate([before, values]), np.concatenate([values, after])
+        return found
+
+    def at(self, moves: IntArray, share: Array, a: float, b: float, c: float) -> Array:
+        """V (R,) of moves at shares of them: the largest over all directions that count.
+
+        The coefficients of a force at a place p are (a - p_y c, b + p_x c). In the direction nearest to
+        theirs it does most. The torque does |c| T more, whichever way round.
+        """
+        x, y = self.walk.at(moves, share).T
+        x, y = a - y * c, b + x * c
+        size, apart = np.hypot(x, y), np.zeros(len(moves))
+        if self.forces.direction == "feed":
+            move = self.walk.program.moves
+            chord = move.end[moves, :2] - move.start[moves, :2]
+            heading = np.arctan2(chord[:, 1], chord[:, 0]) + self.walk.sweep[moves] * (share - 0.5)
+            off = np.abs(np.angle(np.exp(1j * (np.arctan2(y, x) - heading - pi))))
+            apart = np.maximum(off - SIXTY, 0.0)
+        return np.asarray(
+            self.forces.force[moves] * size * np.cos(apart) + self.forces.torque[moves] * abs(c)
+        )
+
+
+@lru_cache(maxsize=8)
+def force_walk_of(program: Program) -> ForceWalk | None:
+    """The walk along a program with its forces; None where it has none."""
+    return None if program.forces is None else ForceWalk.of(program, program.forces)
