@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.program import Program
-from workhold.model.result import FixtureTable, Result, peg_places
+from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, Touched
 from workhold.statics.loads import jaw_stiffness
