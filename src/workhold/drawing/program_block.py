@@ -26,7 +26,9 @@ def write_program(column: TextColumn, sheet: Sheet) -> None:
     details = sheet.details
     assert details.program is not None
     heading(column, "Program")
-    path = PlannedPath(details.program, sheet.fixture, details.passing, details.peg_height)
+    # On supports the pegs stand farther out of the plate than over the part's lower side.
+    top = details.peg_height if sheet.heights is None else sheet.heights.peg_top
+    path = PlannedPath(details.program, sheet.fixture, details.passing, top)
     write_path(column, path, sheet.lengths)
 
 
