@@ -1,6 +1,6 @@
-"""What the clamps of a seat say of its pairs before anything is proven: bounds of freedom, margin and amplification.
+"""What the clamps of a seat say of its pairs before anything is proven.
 
-Contacts of three locators and one clamp already tell what the locators take up of the clamp's force. So of
+Contacts of three locators and one clamp already say what the locators take up of the clamp's force. So of
 any two at one seat it is known to some digits whether they close, how far their forces may differ, and what
 the strongest peg carries. ``listing.seat_order`` asks for it where a figure of the clamps is ranked by.
 
@@ -55,7 +55,7 @@ MANY = 1 << 20
 
 
 def first_of_clamps(query: Query) -> int | None:
-    """The place in a query's ranking of the first figure that pairs of clamps bound; None where there is none."""
+    """The place in a ranking of the first figure that pairs of clamps bound; None where there is none."""
     keys = {FIGURES[number].key for number in BOUNDED}
     return next((place for place, key in enumerate(query.ranking) if key in keys), None)
 

@@ -17,8 +17,8 @@ may stop once as many fixtures are kept as are asked for, and the next bound is 
 Then no further seat holds one that is listed. Seats of equal bounds are looked at, for what ranks alike is
 listed in the order of holes.
 
-What pairs of clamps bound (``listing.pair_bounds``) takes longer. So it is asked of groups only that are as
-good as the next by all figures before the first of those, or that are next to be looked at anyway.
+What pairs of clamps bound (``listing.pair_bounds``) takes longer. So it is asked only of groups that are next
+to be looked at, or as good as these by all figures before the first of those.
 
 Seats are taken whole, with all contacts that may be theirs. A group is one of holes and orientation. Contacts
 whose orientation is not well known are put together with all others of the same holes. So a group holds every
@@ -30,11 +30,11 @@ contacts stand by themselves, after all others.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from math import inf, pi, tau
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import evolve
 from numpy.typing import NDArray
 
 from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
@@ -47,7 +47,7 @@ from workhold.listing.canonical_form import candidates_of
 from workhold.listing.packed_contacts import PackedContacts
 from workhold.listing.pair_bounds import BOUNDED, first_of_clamps, pair_bounds
 from workhold.listing.ranking import ranking_keys
-from workhold.listing.results import RankedTable
+from workhold.listing.seat_groups import SeatGroups, in_order_of_bounds
 from workhold.model.clamps import LOCATORS
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -68,7 +68,7 @@ from workhold.statics.contact_matrix import Touched, locators_inverse, outward_n
 from workhold.statics.judging import Judging, is_astray, is_near_edge, is_strong
 from workhold.statics.quality import extremes, face_sizes, main_direction, tilts
 
-__all__ = ["SeatGroups", "ordered_groups"]
+__all__ = ["ordered_groups"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -85,8 +85,6 @@ APART = 4e-8
 # is less than half of ``SAME_POSE``.
 HOLES = -1 << 24
 STEPS = ((1 << 24) - 1) / tau
-# Contacts of the first seats that are looked at together; then twice as many each time.
-FIRST_CONTACTS = 1 << 12
 # What figures may be off by: as parts of one, and in degrees.
 SHARE, ANGLE = 1e-6, 1e-4
 # Bounds that are off by more than this part of one are none.
@@ -99,78 +97,6 @@ NO_CONTACT = np.iinfo(np.int64).max
 ROUNDS = 3
 # The best that figures can be which locators do not bound; of others infinity, or 0 where less is better.
 BEST = {CLOSURE_MARGIN: 0.2, CLAMP_FREEDOM: 90.0}
-
-
-@frozen(eq=False)
-class SeatGroups:
-    """Contacts of all directions in groups that hold whole seats, those first that may rank first.
-
-    Parameters
-    ----------
-    order : (M,) numbers of the contacts, counted through all directions, group by group.
-    ends : (G,) where each group ends in the order.
-    bounds : (G, R) keys to rank by, none of a fixture in the group being better, in lexicographic order.
-    sharpened : the bounds of groups, given with their contacts, by the pairs of their clamps; None where these
-        bound nothing that is ranked by, or all are known already.
-    alike : how many keys, the first ones, no pairs bound.
-    """
-
-    order: IntArray
-    ends: IntArray
-    bounds: Array
-    sharpened: Callable[[IntArray, IntArray], Array] | None = None
-    alike: int = 0
-
-    def reach(self, last: Array | None) -> int:
-        """The number of groups, the first ones, that may hold what ranks no worse than keys (R,).
-
-        They are all groups where ``last`` is None.
-        """
-        if last is None:
-            return len(self.ends)
-        return len(self.ends) - int(is_worse(self.bounds, last).sum())
-
-    def batches(self, kept: RankedTable, together: int = FIRST_CONTACTS) -> Iterator[IntArray]:
-        """Numbers of contacts, sorted, of more and more groups, until what is kept cannot get better."""
-        first = 0
-        while first < (end := self.reach(kept.last)):
-            begin = int(self.ends[first - 1]) if first else 0
-            end = min(end, int(np.searchsorted(self.ends, begin + together)) + 1)
-            if self.sharpened is None:
-                yield np.sort(self.order[begin : self.ends[end - 1]])
-            else:
-                same = (self.bounds[:, : self.alike] == self.bounds[first, : self.alike]).all(axis=1)
-                end = max(end, int(np.flatnonzero(same)[-1]) + 1)
-                yield from self.between(first, end).batches(kept, together)
-            first, together = end, 2 * together
-        kept.has_dropped |= first < len(self.ends)
-
-    def followed_by(self, last: IntArray) -> SeatGroups:
-        """The groups, and one after them of contacts (N,) that hold nothing."""
-        if len(last) == 0:
-            return self
-        order, ends = np.concatenate([self.order, last]), np.append(self.ends, len(self.order) + len(last))
-        return SeatGroups(order, ends, np.concatenate([self.bounds, np.full((1, self.bounds.shape[1]), inf)]))
-
-    def between(self, first: int, end: int) -> SeatGroups:
-        """Some of the groups, with the bounds by their pairs, and in the order of these."""
-        assert self.sharpened is not None
-        begin = int(self.ends[first - 1]) if first else 0
-        order, ends = self.order[begin : self.ends[end - 1]], self.ends[first:end] - begin
-        starts = np.concatenate([[0], ends[:-1]])
-        bounds = np.where(
-            self.bounds[first:end, :1] == -inf, self.bounds[first:end], self.sharpened(order, starts)
-        )
-        return in_order_of_bounds(order, starts, bounds)
-
-
-def is_worse(keys: Array, last: Array) -> BoolArray:
-    """Which keys (N, R) come after others (R,) in lexicographic order."""
-    worse, equal = np.zeros(len(keys), np.bool_), np.ones(len(keys), np.bool_)
-    for values, one in zip(keys.T, last.tolist(), strict=True):
-        worse |= equal & (values > one)
-        equal &= values == one
-    return worse
 
 
 def ordered_groups(
@@ -221,15 +147,6 @@ def ordered_groups(
 
     # The first key is of what is fit for a workshop.
     return evolve(groups, sharpened=sharpened, alike=alike + 1)
-
-
-def in_order_of_bounds(order: IntArray, starts: IntArray, bounds: Array) -> SeatGroups:
-    """Groups that begin at some places (G,) of an order (M,), in the order of their bounds (G, R)."""
-    by_bound = np.lexsort(bounds.T[::-1])
-    sizes = np.diff(starts, append=len(order))[by_bound]
-    ends = np.cumsum(sizes)
-    shifts = np.repeat(starts[by_bound] - (ends - sizes), sizes)
-    return SeatGroups(order[np.arange(len(order)) + shifts], ends, bounds[by_bound])
 
 
 def group_bounds(

@@ -1,4 +1,4 @@
-r"""What no pair of clamps at a seat exceeds: clamp freedom, closure margin, and the least clamp amplification.
+r"""What no pair of clamps at a seat exceeds: clamp freedom and closure margin, and the least amplification.
 
 Let the locators carry b_1 f_1 + b_2 f_2, each entry known to within e. Where a force is larger, no condition
 that a locator be pressed is stricter. So the interval of f_2 / f_1 for b + e holds the true one, and that for
@@ -34,7 +34,7 @@ FREE, WIDE = 90.0, 0.2
 
 @inner
 def widened_range(one: Array, other: Array, off: float, off_other: float) -> tuple[float, float]:
-    """The ends of the interval of f2 / f1 in which all locators are pressed, forces being larger by ``off``."""
+    """The ends of the interval of f2 / f1 in which locators are pressed, were forces larger by ``off``."""
     low, high = 0.0, inf
     for k in range(3):
         a, b = one[LOCATOR + k] + off, other[LOCATOR + k] + off_other
@@ -107,7 +107,7 @@ def bounds_of_pairs(
     asked : (4, 4) 1 for pairs of directions that are asked for, else 0.
     wants_margin : whether closure margins are bounded by their pairs; by 1/5 alone if not.
     out : (S, 3) receives the largest clamp freedom in degrees, the largest closure margin and the least clamp
-        amplification that a pair may have; -inf, -inf and inf where none can close.
+        amplification of a pair. They are -inf, -inf and inf where none can close.
     work : (2, 3) work space.
     """
     for n in range(len(starts) - 1):

@@ -1,0 +1,102 @@
+"""Groups of contacts that hold whole seats, and the order of looking at them (``listing.seat_order``)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import inf
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.listing.results import RankedTable
+
+__all__ = ["SeatGroups", "in_order_of_bounds", "is_worse"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Contacts of the first seats that are looked at together; then twice as many each time.
+FIRST_CONTACTS = 1 << 12
+
+
+@frozen(eq=False)
+class SeatGroups:
+    """Contacts of all directions in groups that hold whole seats, those first that may rank first.
+
+    Parameters
+    ----------
+    order : (M,) numbers of the contacts, counted through all directions, group by group.
+    ends : (G,) where each group ends in the order.
+    bounds : (G, R) keys to rank by, none of a fixture in the group being better, in lexicographic order.
+    sharpened : the bounds of groups, given with their contacts, by the pairs of their clamps; None where
+        these bound nothing that is ranked by, or all are known already.
+    alike : how many keys, the first ones, no pairs bound.
+    """
+
+    order: IntArray
+    ends: IntArray
+    bounds: Array
+    sharpened: Callable[[IntArray, IntArray], Array] | None = None
+    alike: int = 0
+
+    def reach(self, last: Array | None) -> int:
+        """The number of groups, the first ones, that may hold what ranks no worse than keys (R,).
+
+        They are all groups where ``last`` is None.
+        """
+        if last is None:
+            return len(self.ends)
+        return len(self.ends) - int(is_worse(self.bounds, last).sum())
+
+    def batches(self, kept: RankedTable, together: int = FIRST_CONTACTS) -> Iterator[IntArray]:
+        """Numbers of contacts, sorted, of more and more groups, until what is kept cannot get better."""
+        first = 0
+        while first < (end := self.reach(kept.last)):
+            begin = int(self.ends[first - 1]) if first else 0
+            end = min(end, int(np.searchsorted(self.ends, begin + together)) + 1)
+            if self.sharpened is None:
+                yield np.sort(self.order[begin : self.ends[end - 1]])
+            else:
+                same = (self.bounds[:, : self.alike] == self.bounds[first, : self.alike]).all(axis=1)
+                end = max(end, int(np.flatnonzero(same)[-1]) + 1)
+                yield from self.between(first, end).batches(kept, together)
+            first, together = end, 2 * together
+        kept.has_dropped |= first < len(self.ends)
+
+    def followed_by(self, last: IntArray) -> SeatGroups:
+        """The groups, and one after them of contacts (N,) that hold nothing."""
+        if len(last) == 0:
+            return self
+        order, ends = np.concatenate([self.order, last]), np.append(self.ends, len(self.order) + len(last))
+        return SeatGroups(order, ends, np.concatenate([self.bounds, np.full((1, self.bounds.shape[1]), inf)]))
+
+    def between(self, first: int, end: int) -> SeatGroups:
+        """Some of the groups, with the bounds by their pairs, and in the order of these."""
+        assert self.sharpened is not None
+        begin = int(self.ends[first - 1]) if first else 0
+        order, ends = self.order[begin : self.ends[end - 1]], self.ends[first:end] - begin
+        starts = np.concatenate([[0], ends[:-1]])
+        bounds = np.where(
+            self.bounds[first:end, :1] == -inf, self.bounds[first:end], self.sharpened(order, starts)
+        )
+        return in_order_of_bounds(order, starts, bounds)
+
+
+def is_worse(keys: Array, last: Array) -> BoolArray:
+    """Which keys (N, R) come after others (R,) in lexicographic order."""
+    worse, equal = np.zeros(len(keys), np.bool_), np.ones(len(keys), np.bool_)
+    for values, one in zip(keys.T, last.tolist(), strict=True):
+        worse |= equal & (values > one)
+        equal &= values == one
+    return worse
+
+
+def in_order_of_bounds(order: IntArray, starts: IntArray, bounds: Array) -> SeatGroups:
+    """Groups that begin at some places (G,) of an order (M,), in the order of their bounds (G, R)."""
+    by_bound = np.lexsort(bounds.T[::-1])
+    sizes = np.diff(starts, append=len(order))[by_bound]
+    ends = np.cumsum(sizes)
+    shifts = np.repeat(starts[by_bound] - (ends - sizes), sizes)
+    return SeatGroups(order[np.arange(len(order)) + shifts], ends, bounds[by_bound])
