@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from attrs import evolve
 
 import workhold
 
@@ -137,6 +138,18 @@ def test_fixtures_know_their_rank_however_they_are_reached(monkeypatch: pytest.M
     assert len(ranks) > 4 and [fixture.listing.rank for fixture in found] == ranks
     assert [found[k].listing.rank for k in (0, 3, -1)] == [1, 4, ranks[-1]]
     assert [fixture == found[fixture.listing.row] for fixture in found] == [True] * len(found)
+
+
+@pytest.mark.parametrize("clamps", [1, 2])
+def test_a_fixture_beside_a_wall_is_the_same_alone_and_in_turn(clamps: int) -> None:
+    """Each has the ends, faces and clamps of its own, though all are made at once where one follows the other."""
+    # Its widest hull edge lies on the wall with two corners.
+    arrow = workhold.Workpiece.from_loops("arrow", [[[0, 0, 0], [20, 9, 0], [41, 0, 0], [13, 37, 0]]])
+    fence = workhold.Fence(10, 2, clamp_radius=3, travel=(6, 40), wall_offset=10, columns=6, rows=6)
+    found = workhold.design(arrow, evolve(fence, clamps=clamps, directions=None))
+    in_turn = list(found)
+    assert len({tuple(peg.beside for peg in one.pegs[:2]) for one in in_turn}) > 1
+    assert in_turn == [found[k] for k in range(len(found))]
 
 
 def test_a_fixture_taken_along_takes_no_more_than_itself() -> None:

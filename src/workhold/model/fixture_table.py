@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,15 @@ from workhold.model.quality import CLOSURE_MARGIN, FIGURES, known_figures_of
 from workhold.model.wall import ENDS
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["BLOCK", "FixtureTable", "fixture_at", "flat_angles", "peg_places", "unknown_quality"]
+__all__ = [
+    "BLOCK",
+    "FixtureTable",
+    "fixture_at",
+    "fixtures_of",
+    "flat_angles",
+    "peg_places",
+    "unknown_quality",
+]
 
 # Fixtures looked at together when all are gone through.
 BLOCK = 4096
@@ -200,40 +208,54 @@ def fixture_at(
     table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece, listed: Listed | None = None
 ) -> Fixture:
     """Makes the :class:`Fixture` of one row of a table; ``listed`` is where it is listed, if it is."""
-    one = table.take(slice(index, index + 1))
-    arrangement, carriers = toolkit.arrangements[one.arrangement[0]], toolkit.carriers
-    across, along = peg_places(one, toolkit, workpiece)
-    forces = one.working_force[0].tolist()
-    flats = flat_angles(one, toolkit, workpiece)[0]
-    pegs = []
-    for k, number in enumerate(arrangement.carriers):
-        carrier, column, row = carriers[number], int(one.column[0, k]), int(one.row[0, k])
-        place = None if carrier.has_lattice else carrier.place_name(column, row)
-        beside = None
-        if carrier.contact is WALL_END:
-            end, flush = k - arrangement.carriers.index(number), workpiece.flush
-            place, beside = (
-                f"{carrier.noun} {ENDS[end]}",
-                flush.touching[flush.number(one.theta)[0]][end].beside,
+    return next(fixtures_of(table.take(slice(index, index + 1)), toolkit, workpiece, [listed]))
+
+
+def fixtures_of(
+    table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, listed: Iterable[Listed | None]
+) -> Iterator[Fixture]:
+    """Makes the fixtures of all rows of a table, at least one; ``listed`` says where each is listed.
+
+    What arrays say of pegs is taken from them for all rows at once.
+    """
+    across, along = (places.tolist() for places in peg_places(table, toolkit, workpiece))
+    columns, rows, faces = table.column.tolist(), table.row.tolist(), table.face.tolist()
+    forces, flats = table.working_force.tolist(), flat_angles(table, toolkit, workpiece)
+    theta, travels = table.theta.tolist(), table.jaw_separation.reshape(len(table), -1).tolist()
+    pairs = pairs_of_clamps(table) if table.force.ndim == 3 else [None] * len(table)
+    edges = workpiece.flush.number(table.theta).tolist() if toolkit.ends_on_walls else []
+    for n, where in enumerate(listed):
+        arrangement = toolkit.arrangements[table.arrangement[n]]
+        pegs = []
+        for k, number in enumerate(arrangement.carriers):
+            carrier, column, row = toolkit.carriers[number], columns[n][k], rows[n][k]
+            place, beside = None if carrier.has_lattice else carrier.place_name(column, row), None
+            if carrier.contact is WALL_END:
+                end = k - arrangement.carriers.index(number)
+                place, beside = f"{carrier.noun} {ENDS[end]}", workpiece.flush.touching[edges[n]][end].beside
+            at = across[n][k], along[n][k]
+            pegs.append(
+                Peg(carrier.name, column, row, *at, faces[n][k], forces[n][k], place, beside, flats[n][k])
             )
-        at, face = (float(across[0, k]), float(along[0, k])), int(one.face[0, k])
-        pegs.append(Peg(carrier.name, column, row, *at, face, forces[k], place, beside, flats[k]))
-    x, y = (float(v) for v in table.position[index])
-    return Fixture(
-        type=arrangement.name,
-        pegs=tuple(pegs),
-        pose=Pose(whole_turn_degrees(float(table.theta[index])), x, y),
-        jaw_separation=float(np.ravel(one.jaw_separation)[0]),
-        quality=known_figures_of(table.quality[index].tolist()),
-        direction=arrangement.direction,
-        pair=pair_at(one) if one.force.ndim == 3 else None,
-        listed=listed,
-    )
+        yield Fixture(
+            type=arrangement.name,
+            pegs=tuple(pegs),
+            pose=Pose(whole_turn_degrees(theta[n]), *table.position[n].tolist()),
+            jaw_separation=travels[n][0],
+            quality=known_figures_of(table.quality[n].tolist()),
+            direction=arrangement.direction,
+            pair=pairs[n],
+            listed=where,
+        )
 
 
-def pair_at(one: FixtureTable) -> Pair:
-    """What is particular to the two clamps of the only fixture of a table."""
-    low, high = (float(values[0]) for values in ratios(one.force))
-    first, second = one.jaw_separation[0].tolist()
-    reactions = tuple((a, b) for a, b in one.force[0].tolist())
-    return Pair((first, second), (low, high), reactions, int(one.pairs[0]))
+def pairs_of_clamps(table: FixtureTable) -> list[Pair]:
+    """What is particular to the two clamps of each fixture of a table."""
+    ends, travels = zip(*(one.tolist() for one in ratios(table.force)), strict=True), table.jaw_separation
+    reactions = (tuple((a, b) for a, b in pegs) for pegs in table.force.tolist())
+    return [
+        Pair((first, second), interval, given, count)
+        for (first, second), interval, given, count in zip(
+            travels.tolist(), ends, reactions, table.pairs.tolist(), strict=True
+        )
+    ]

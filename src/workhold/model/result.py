@@ -11,7 +11,7 @@ from attrs import define, evolve, field
 from workhold.delegates import delegate
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
-from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at
+from workhold.model.fixture_table import BLOCK, FixtureTable, fixture_at, fixtures_of
 from workhold.model.query import Query
 from workhold.model.search_report import Proof, cut_note, fitted_note
 from workhold.model.seating import Seating
@@ -90,8 +90,9 @@ class Result:
     def __iter__(self) -> Iterator[Fixture]:
         for start in range(0, len(self), BLOCK):
             block = self.table.take(slice(start, start + BLOCK))
-            for index in range(len(block)):
-                yield self.made(block, index, start + index)
+            where = map(self.listed, range(start, start + len(block)))
+            made = fixtures_of(block, self.toolkit, self.workpiece, where)
+            yield from map(self.seated, made, range(start, start + len(block)))
 
     @overload
     def __getitem__(self, index: int) -> Fixture: ...
@@ -105,12 +106,11 @@ class Result:
         if not -len(self) <= index < len(self):
             raise IndexError(f"fixture {index} of {len(self)}")
         index %= len(self)
-        row = self.table.take(slice(index, index + 1))
-        return self.made(row, 0, index)
+        made = fixture_at(self.table, self.toolkit, index, self.workpiece, self.listed(index))
+        return self.seated(made, index)
 
-    def made(self, table: FixtureTable, row: int, index: int) -> Fixture:
-        """The fixture of an index, which is in a row of a table."""
-        made = fixture_at(table, self.toolkit, row, self.workpiece, self.listed(index))
+    def seated(self, made: Fixture, index: int) -> Fixture:
+        """The fixture of an index with its seating, where that is known."""
         return evolve(made, seating=self.seating[index]) if index < len(self.seating) else made
 
     def part(self, rows: slice) -> Result:
