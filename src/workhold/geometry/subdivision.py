@@ -19,7 +19,7 @@ from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin, tau
 
 import numpy as np
-from attrs import Factory, define, frozen
+from attrs import Factory, define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -50,6 +50,8 @@ class CutCarrier:
     segment: Segment
     spans: list[tuple[float, float]] = Factory(list)
     cuts: list[float] = Factory(list)
+    # The number of spans, and the points (N, 2) of their ends, once these were asked for.
+    ends: tuple[int, NDArray[np.float64]] | None = field(init=False, default=None, eq=False, repr=False)
 
     @property
     def slack(self) -> float:
@@ -96,6 +98,20 @@ class CutCarrier:
                 last += tau
         self.spans.append((min(first, last), max(first, last)))
         self.cuts += [first, last]
+
+    def ends_near(self, segment: Segment) -> list[Point]:
+        """Ends of spans that lie within twice ``ONE`` of a segment's line or circle."""
+        if self.ends is None or self.ends[0] != len(self.spans):
+            found = [self.at(position) for position in {end for span in self.spans for end in span}]
+            self.ends = len(self.spans), np.array(found).reshape(-1, 2)
+        points = self.ends[1]
+        if isinstance(segment, Line):
+            (x, y), (tx, ty) = segment.middle, segment.tangent
+            away = np.abs((points[:, 0] - x) * ty - (points[:, 1] - y) * tx)
+        else:
+            x, y = segment.center
+            away = np.abs(np.hypot(points[:, 0] - x, points[:, 1] - y) - segment.radius)
+        return [(float(px), float(py)) for px, py in points[away <= 2 * ONE]]
 
     def covers(self, position: float) -> bool:
         """Whether a span holds a position, ends included."""
@@ -203,8 +219,7 @@ def cut_each_other(a: CutCarrier, b: CutCarrier) -> None:
     """Cuts two carriers where both are covered and meet, or where a span of one ends on the other."""
     points = list(carrier_intersections(a.segment, b.segment))
     for one, other in ((a, b), (b, a)):
-        for position in {end for span in one.spans for end in span}:
-            point = one.at(position)
+        for point in one.ends_near(other.segment):
             foot = other.at(other.position(point))
             if hypot(point[0] - foot[0], point[1] - foot[1]) <= ONE:
                 points.append(point)

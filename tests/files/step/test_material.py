@@ -59,9 +59,9 @@ def test_inside_of_a_border_is_found_at_the_heights_of_its_corners() -> None:
     """Points level with corners, and with the ends of arcs, are on the right side; so are those in holes."""
     corners = [(0.0, 0.0), (30.0, 0.0), (30.0, 20.0), (0.0, 20.0)]
     lines = [(*a, b[0] - a[0], b[1] - a[1]) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
-    one = np.zeros(4, np.int64)
     arcs = np.array([(20.0, 10.0, 5.0, 0.0, np.pi)])
-    border = PlaneFaces(np.array([(7.0, 0.5, 0.0)]), np.array(lines), one, arcs, one[:1])
+    planes, boxes = np.array([(7.0, 0.5, 0.0)]), np.array([(0.0, 0.0, 30.0, 20.0)])
+    border = PlaneFaces(planes, np.array(lines), np.array([0, 4]), arcs, np.array([0, 1]), boxes)
     for x, y in [(5.0, 10.0), (14.9, 10.0), (25.1, 10.0), (20.0, 4.9), (1e-3, 1e-3)]:
         assert border.heights((x, y)) == [7.0 + 0.5 * x]
     for point in [(20.0, 10.0), (24.9, 10.0), (-1.0, 0.0), (31.0, 20.0), (31.0, 10.0)]:

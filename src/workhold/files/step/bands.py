@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from math import pi, tau
 
 import numpy as np
 from attrs import define, field, frozen
@@ -23,14 +22,13 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.files.step.edge_curves import EdgeCurve
 from workhold.files.step.faces import SolidFace
-from workhold.geometry.segment import Arc, Line, Point, Segment
+from workhold.files.step.wall_edges import WallEdge
+from workhold.geometry.segment import Arc, Point, Segment
 from workhold.geometry.subdivision import BorderPiece, CutCarrier
 from workhold.model.solid import Band
 
-__all__ = ["ONE_HEIGHT", "Walls", "length"]
+__all__ = ["Walls", "length"]
 
-# Heights that differ by less, in mm, are one.
-ONE_HEIGHT = 1e-9
 # Edges this far from a carrier in mm, and farther, are not asked whether they lie on it.
 NEAR = 1e-4
 
@@ -42,15 +40,15 @@ class Wall:
     Parameters
     ----------
     index : of the face.
-    edges : its edges that are not upright, each with its points' positions (N,) on the carrier.
+    edges : its edges that are not upright.
     """
 
     index: int
-    edges: tuple[tuple[EdgeCurve, NDArray[np.float64]], ...]
+    edges: tuple[WallEdge, ...]
 
     def intervals(self, position: float, beside: float) -> list[Band]:
         """Ranges of z in mm that the face covers at a position, see :meth:`Walls.band`; the lowest first."""
-        heights = sorted(z for edge, places in self.edges for z in heights_at(edge, places, position, beside))
+        heights = sorted(z for edge in self.edges for z in edge.heights(position, beside))
         return list(zip(heights[0::2], heights[1::2], strict=False))
 
 
@@ -73,6 +71,7 @@ class Walls:
     # Of each of them (x, y) of both ends and a radius of 0, or those of an arc's centre twice and its radius.
     places: NDArray[np.float64] = field(init=False)
     found: dict[int, list[Wall]] = field(init=False, factory=dict)
+    beside: dict[tuple[int, float, float], list[Wall]] = field(init=False, factory=dict)
 
     def __attrs_post_init__(self) -> None:
         self.upright = [
@@ -107,9 +106,20 @@ class Walls:
             for k in self.near(carrier.segment).tolist():
                 edge, segment = self.upright[k]
                 if carrier.holds(segment):
-                    edges[edge.face].append((edge, positions(carrier, edge.points)))
+                    edges[edge.face].append(WallEdge.over(carrier, edge))
             self.found[id(carrier)] = [Wall(index, tuple(own)) for index, own in edges.items()]
         return self.found[id(carrier)]
+
+    def over_piece(self, piece: BorderPiece) -> list[Wall]:
+        """The walls that stand on a piece's carrier, with what they have of edges near the piece."""
+        key = id(piece.carrier), piece.low, piece.high
+        if key not in self.beside:
+            near = [
+                Wall(wall.index, tuple(one for one in wall.edges if one.is_near(piece.low, piece.high)))
+                for wall in self.over(piece.carrier)
+            ]
+            self.beside[key] = [wall for wall in near if wall.edges]
+        return self.beside[key]
 
     def near(self, segment: Segment) -> NDArray[np.intp]:
         """Numbers of upright faces' edges that may lie on a segment's line or circle."""
@@ -136,15 +146,23 @@ class Walls:
         beside : where the position is an end of the piece, a small step into it. The band is then the limit
             from there, because at the end itself other edges begin.
         """
-        covered = [
-            (*band, wall.index)
-            for wall in self.over(piece.carrier)
-            for band in self.covered(wall, piece, position, beside)
-        ]
+        covered = self.ranges(piece, position, beside)
         if not covered:
             return None, ()
         band = min(one[0] for one in covered), max(one[1] for one in covered)
         return band, tuple(sorted({one[2] for one in covered}))
+
+    def ranges(self, piece: BorderPiece, position: float, beside: float) -> list[tuple[float, float, int]]:
+        """Ranges of z in mm that walls cover at a position, each with the wall's index, see :meth:`band`."""
+        return [
+            (*band, wall.index)
+            for wall in self.over_piece(piece)
+            for band in self.covered(wall, piece, position, beside)
+        ]
+
+    def is_single(self, piece: BorderPiece) -> bool:
+        """Whether one range of one wall is the band all along a piece."""
+        return len(self.ranges(piece, (piece.low + piece.high) / 2, 0.0)) == 1
 
     def covered(self, wall: Wall, piece: BorderPiece, position: float, beside: float) -> list[Band]:
         """Ranges of z in mm that a wall covers within the heights of pegs, see :meth:`band`.
@@ -163,57 +181,6 @@ class Walls:
     def within(self, band: Band) -> Band:
         """What of a range lies within the heights of pegs; of no length or less where nothing does."""
         return max(band[0], self.low), min(band[1], self.high)
-
-
-def positions(carrier: CutCarrier, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Positions (N,) of points on a carrier, on a circle without jumps."""
-    found = np.array([carrier.position((x, y)) for x, y in points[:, :2].tolist()])
-    return found if isinstance(carrier.segment, Line) else np.unwrap(found)
-
-
-def heights_at(edge: EdgeCurve, places: NDArray[np.float64], position: float, beside: float) -> list[float]:
-    """The z in mm at which an edge passes a position, as its limit from a step beside.
-
-    Parameters
-    ----------
-    places : positions (N,) of the edge's points.
-    """
-    found = []
-    for turn in (0.0,) if isinstance(edge.segment, Line) else (-tau, 0.0, tau):
-        away = places - (position + turn + beside)
-        # A position that is just that of a point is passed once.
-        for k in np.flatnonzero((away[:-1] > 0) != (away[1:] > 0)):
-            ends = sorted((float(places[k]), float(places[k + 1])))
-            wanted = min(max(position + turn, ends[0]), ends[1])
-            first, last = float(edge.points[k, 2]), float(edge.points[k + 1, 2])
-            share = (wanted - float(places[k])) / float(places[k + 1] - places[k])
-            if len(places) == 2 or abs(last - first) <= ONE_HEIGHT or share in (0.0, 1.0):
-                found.append(first + share * (last - first))
-            else:
-                found.append(refined(edge, int(k), places, wanted))
-    return found
-
-
-def refined(edge: EdgeCurve, k: int, places: NDArray[np.float64], position: float) -> float:
-    """The z in mm at which a curved edge passes a position between its points k and k + 1."""
-    segment = edge.segment
-    assert segment is not None
-    own = segment.parameter((float(edge.points[k, 0]), float(edge.points[k, 1])))
-    step = 1.0 if isinstance(segment, Arc) else direction_of(segment, edge.points, places)
-
-    def along(point: tuple[float, float, float]) -> float:
-        value = segment.parameter((point[0], point[1]))
-        if isinstance(segment, Arc):
-            value = own + (value - own + pi) % tau - pi
-        return value
-
-    return edge.point_at(k, along, own + step * (position - float(places[k])))[2]
-
-
-def direction_of(segment: Segment, points: NDArray[np.float64], places: NDArray[np.float64]) -> float:
-    """1 where positions on the carrier grow with the segment's own parameter, else -1."""
-    own = np.array([segment.parameter((x, y)) for x, y in points[:, :2].tolist()])
-    return 1.0 if float(np.dot(own - own.mean(), places - places.mean())) > 0 else -1.0
 
 
 def length(band: Band) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,13 +13,14 @@ from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Drawing
-from workhold.files.questions import HEAD_ROOM, LEAST_BAND, PEG_HEIGHT, SECTION
+from workhold.files.questions import HEAD_ROOM, LEAST_BAND, PEG_HEIGHT
 from workhold.files.step.departures import other_axis_remarks
 from workhold.files.step.heights import HEAD_ROOM as USUAL_ROOM
 from workhold.files.step.heights import LEAST_BAND as USUAL_BAND
-from workhold.files.step.heights import HeightOutline, StandingSolid, standing
+from workhold.files.step.heights import StandingSolid, standing
 from workhold.files.step.level_faces import bottom_loops, top_loops
 from workhold.files.step.library import load_step_library
+from workhold.files.step.other_curves import OtherCurveError
 from workhold.files.step.reader import drawing_of, guarded, plain_drawing, prepare, read_solid
 from workhold.files.step.solids import (
     Solid,
@@ -33,8 +33,8 @@ from workhold.files.step.solids import (
     solid_remarks,
     sub_shapes,
 )
+from workhold.files.step.which_height import advice, height_remarks, height_table, vertices_of
 from workhold.geometry.loop import loop_segments, signed_area
-from workhold.geometry.segment import Segment
 from workhold.model.solid import HeightRow, SolidOutline
 
 __all__ = [
@@ -48,10 +48,8 @@ __all__ = [
     "shapes_usual",
 ]
 
-# Heights of the pegs that the table looks at, at most.
-MOST_ROWS = 60
-# Edges of a solid times heights that the table looks at, at most: of parts with many faces it has fewer rows.
-MOST_EDGES = 20_000
+# Faces times sections of a solid of which the library makes a silhouette within seconds.
+MOST_SECTIONS = 3_000
 
 
 @frozen
@@ -180,15 +178,33 @@ def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing 
         As :func:`workhold.files.step.reader.read_step`.
     """
     chosen = chosen_solid(solids, view.part_number)
+    solid = guarded(lambda: turned_up(chosen, view))
     try:
-        drawing = guarded(lambda: drawn(chosen.shape, view, is_advised=False), ValueError)
+        drawing = guarded(lambda: drawn(chosen.shape, solid, view, is_advised=False), ValueError)
     except InputError as error:
+        refusal = error
+    else:
+        return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
+    # A curve of the border is known to be neither line nor arc, and sections may offer others in its place.
+    is_curve = isinstance(refusal.__cause__, OtherCurveError)
+    try:
+        if is_curve and sections_take_long(solid):
+            raise refusal
         silhouette = read_solid(solids, view.axis, None, view.part_number, None)
-        if guarded(lambda: is_prism(standing(along(chosen.shape, axis_named(view.axis))))):
-            return silhouette
-        unknown = f"At which heights its faces are touched is not known: {error}"
-        return evolve(silhouette, remarks=(*silhouette.remarks, unknown))
-    return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
+    except InputError:
+        if is_curve:
+            raise advised(refusal, solid, view) from refusal
+        raise
+    if guarded(lambda: is_prism(solid)):
+        return silhouette
+    unknown = f"At which heights its faces are touched is not known: {refusal}"
+    return evolve(silhouette, remarks=(*silhouette.remarks, unknown))
+
+
+def sections_take_long(solid: StandingSolid) -> bool:
+    """Whether a silhouette made of sections would take the library longer than anybody waits."""
+    heights = {round(z, 5) for face in solid.faces if face.lie != "upright" for z in (face.low, face.high)}
+    return len(heights) * len(solid.faces) > MOST_SECTIONS
 
 
 def plain_heights(drawing: HeightDrawing) -> Any:
@@ -212,7 +228,7 @@ def read_by_height(content: bytes, view: HeightView) -> HeightDrawing:
     load_step_library()
     solids = read_solids(content)
     chosen = chosen_solid(solids, view.part_number)
-    drawing = drawn(chosen.shape, view)
+    drawing = drawn(chosen.shape, turned_up(chosen, view), view)
     remarks = (*lost_remarks(content, solids), *solid_remarks(solids, chosen, view.part_number))
     return evolve(drawing, remarks=(*remarks, *drawing.remarks))
 
@@ -230,7 +246,7 @@ def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
     if not solids:
         raise InputError(f"only a solid has heights, and the shape holds none: leave {PEG_HEIGHT} out.")
     chosen = chosen_solid(solids, view.part_number)
-    drawing = drawn(chosen.shape, view)
+    drawing = drawn(chosen.shape, turned_up(chosen, view), view)
     return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
 
 
@@ -251,11 +267,23 @@ def shapes_usual(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Dra
     return usual_drawing(solids, view) if solids else None
 
 
-def drawn(shape: Any, view: HeightView, *, is_advised: bool = True) -> HeightDrawing:
+def turned_up(chosen: Solid, view: HeightView) -> StandingSolid:
+    """A solid as it is looked at.
+
+    Raises
+    ------
+    InputError
+        For an axis that there is not.
+    """
+    return standing(along(chosen.shape, axis_named(view.axis)))
+
+
+def drawn(shape: Any, solid: StandingSolid, view: HeightView, *, is_advised: bool = True) -> HeightDrawing:
     """The outline of a solid, with remarks on what may be touched and on a height that offers more.
 
     Parameters
     ----------
+    shape : the solid as the file has it.
     is_advised : whether a refusal names a height that helps, for which many are looked at.
 
     Raises
@@ -263,15 +291,12 @@ def drawn(shape: Any, view: HeightView, *, is_advised: bool = True) -> HeightDra
     InputError
         As :func:`read_by_height`.
     """
-    axis = axis_named(view.axis)
-    solid = standing(along(shape, axis))
-    room = USUAL_ROOM if view.head_room is None else view.head_room
-    least = USUAL_BAND if view.least_band is None else view.least_band
+    axis, (room, least) = axis_named(view.axis), lengths_of(view)
     try:
         outline = solid.outline(view.peg_height, room, least)
     except InputError as error:
-        helps = f"; {advice(solid, room, least)}" if is_advised else ""
-        raise InputError(f"along {axis}: {error}{helps}.") from error
+        refusal = InputError(f"along {axis}: {error}.")
+        raise advised(refusal, solid, view) if is_advised else refusal from error
     loops = [vertices_of(loop) for loop in outline.loops]
     areas = [signed_area(loop_segments(loop)) for loop in loops]
     order = sorted(range(len(loops)), key=lambda k: -areas[k])
@@ -293,102 +318,17 @@ def drawn(shape: Any, view: HeightView, *, is_advised: bool = True) -> HeightDra
     return HeightDrawing(tuple(loops[k] for k in order), found, tuple(remarks), tuple(rows))
 
 
-def vertices_of(loop: Sequence[Any]) -> NDArray[np.float64]:
-    """Vertices (N, 3) of a loop of strips, each running to the next."""
-    return np.array([(*strip.start, strip.bulge) for strip in loop])
-
-
-def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
-    """Area, border, touchable border and shortest band of an outline, in mm² and mm."""
-    border = touchable = area = 0.0
-    bands = []
-    for loop in outline.loops:
-        segments: Sequence[Segment] = loop_segments(vertices_of(loop))
-        area += signed_area(segments)
-        border += sum(segment.length for segment in segments)
-        for segment, strip in zip(segments, loop, strict=True):
-            if strip.band is not None:
-                touchable += segment.length
-                bands.append(strip.band[1] - strip.band[0])
-    return area, border, touchable, min(bands, default=0.0)
-
-
-def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
-    """Ranges of peg heights with what their outlines offer, without those whose outline is refused."""
-    levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
-    levels |= {round(z - room, 6) for z in levels} | {round(solid.height, 6)}
-    heights = sorted(z for z in levels if least < z <= solid.height + SAME_HEIGHT)
-    most = min(MOST_ROWS, max(2, MOST_EDGES // len(solid.edges)))
-    if len(heights) > most:
-        heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
-    rows: list[HeightRow] = []
-    for low, high in pairwise([0.0, *heights]):
-        try:
-            figures = measures(solid.outline(high, room, least))
-        except InputError:
-            continue
-        row = HeightRow(low, high, *figures)
-        if rows and rows[-1].high == low and is_like(rows[-1], row):
-            rows[-1] = evolve(row, low=rows[-1].low)
-        else:
-            rows.append(row)
-    return rows
-
-
-def is_like(a: HeightRow, b: HeightRow) -> bool:
-    """Whether two ranges offer the same outline, as far as its figures show."""
-    pairs = ((a.area, b.area), (a.border, b.border), (a.touchable, b.touchable))
-    return all(abs(one - other) <= 1e-6 * max(one, 1.0) for one, other in pairs)
-
-
-def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
-    """The range with the longest touchable border; of equal ones that of the highest pegs."""
-    most = max((row.touchable for row in rows), default=0.0)
-    return max(
-        (row for row in rows if row.touchable >= most * (1 - 1e-9) > 0),
-        key=lambda row: row.high,
-        default=None,
+def lengths_of(view: HeightView) -> tuple[float, float]:
+    """Head room and shortest band in mm, the usual ones where none are given."""
+    return (
+        USUAL_ROOM if view.head_room is None else view.head_room,
+        USUAL_BAND if view.least_band is None else view.least_band,
     )
 
 
-def advice(solid: StandingSolid, room: float, least: float) -> str:
-    """What to give instead, in words."""
-    best = longest(height_table(solid, room, least))
-    if best is None:
-        return f"give another axis, or {SECTION}"
-    return f"give {PEG_HEIGHT} {best.high:.6g}, or another axis"
-
-
-def height_remarks(
-    outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow], feet: int
-) -> list[str]:
-    """What an outline by height is, what may be touched of it, and a height at which more may be."""
-    _, border, touchable, band = measures(outline)
-    reach = (
-        "pegs are taken to reach as high"
-        if outline.peg_height == found.height
-        else f"the outline is what pegs of {outline.peg_height:.6g} mm, with {outline.head_room:g} mm free "
-        "above, can meet"
-    )
-    remarks = [f"The part is {found.height:.6g} mm high along {found.axis}; {reach}."]
-    if feet > 1:
-        remarks.append(f"It has {feet} separate pieces, between which pegs may stand.")
-    if touchable < border * (1 - 1e-9):
-        remarks.append(
-            f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of the outline, and only these are "
-            f"touched; the shortest is {band:.4g} mm high there."
-        )
-    elif band < min(outline.peg_height, found.height) - SAME_HEIGHT:
-        remarks.append(f"The shortest upright face on the outline is {band:.4g} mm high there.")
-    return [*remarks, *better_height(rows, touchable)]
-
-
-def better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
-    """A sentence on the height of pegs that could touch most, if that is more than a length in mm."""
-    best = longest(rows)
-    if best is None or best.touchable <= touchable * (1 + 1e-6):
-        return []
-    return [f"With {PEG_HEIGHT} {best.high:.6g} most could be touched: {best.touchable:.4g} mm."]
+def advised(refusal: InputError, solid: StandingSolid, view: HeightView) -> InputError:
+    """A refusal with what to give instead."""
+    return InputError(f"{str(refusal).removesuffix('.')}; {advice(solid, *lengths_of(view))}.")
 
 
 def is_prism(solid: StandingSolid) -> bool:

@@ -12,11 +12,22 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, DISGUISE, SHORTEST
+from workhold.files.step.crossings import crossing
 from workhold.files.step.faces import SolidFace, surface_of
 from workhold.files.step.solids import sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
-__all__ = ["EdgeCurve", "curve_of", "edge_curves", "height"]
+__all__ = [
+    "ONE_HEIGHT",
+    "EdgeCurve",
+    "Found",
+    "Point3",
+    "curve_of",
+    "curve_point",
+    "edge_curves",
+    "extremes",
+    "height",
+]
 
 # Points along a curve that is neither a line nor an arc in the plane, at which its two sides are looked at.
 SAMPLES = 33
@@ -26,6 +37,8 @@ ONE_HEIGHT = 1e-9
 EXACT_ON, WHOLE_TURN = 1e-7, 1e-9
 GOLDEN = (sqrt(5.0) - 1.0) / 2.0
 Point3 = tuple[float, float, float]
+# What a curve is seen from above: a line or an arc, or points (N, 2) of any other curve.
+Found = Segment | NDArray[np.float64]
 
 
 @frozen
@@ -67,19 +80,25 @@ class EdgeCurve:
         if len(self.points) == 2:
             share = (wanted - first) / (last - first)
             return point3(self.points[0] + share * (self.points[1] - self.points[0]))
-        for _ in range(60):
-            middle = (a + b) / 2
-            if (value(curve_point(self.curve, middle)) < wanted) == (first < wanted):
-                a = middle
-            else:
-                b = middle
-        return curve_point(self.curve, (a + b) / 2)
+        sign = 1.0 if first < wanted else -1.0
+        return curve_point(
+            self.curve,
+            crossing(
+                lambda t: sign * (value(curve_point(self.curve, t)) - wanted),
+                (a, sign * (first - wanted)),
+                (b, sign * (last - wanted)),
+            ),
+        )
 
     def crossings(self, z: float) -> list[Point]:
         """Points (x, y) at which the edge passes a height."""
         heights = self.points[:, 2] - z
         passes = np.flatnonzero(heights[:-1] * heights[1:] < 0)
-        return [self.point_at(int(k), height, z)[:2] for k in passes]
+        at_points = 1 + np.flatnonzero((heights[1:-1] == 0.0) & (heights[:-2] * heights[2:] < 0))
+        return [
+            *(self.point_at(int(k), height, z)[:2] for k in passes),
+            *(point3(self.points[k])[:2] for k in at_points),
+        ]
 
     def turning_points(self) -> list[Point]:
         """Points (x, y) within the edge at which it is highest or lowest around."""

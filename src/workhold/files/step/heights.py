@@ -23,9 +23,11 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.step.bands import Walls
-from workhold.files.step.edge_curves import EdgeCurve, edge_curves
-from workhold.files.step.faces import SLOPING, SolidFace, plane_height, solid_faces
+from workhold.files.step.edge_curves import EdgeCurve, Found, edge_curves
+from workhold.files.step.faces import SolidFace, plane_height, solid_faces
+from workhold.files.step.folds import folds
 from workhold.files.step.material import Material
+from workhold.files.step.other_curves import FLAT, other_curve, refuse_others
 from workhold.files.step.projected import ProjectedCurves, projected_curves
 from workhold.files.step.solids import bounding_box, sub_shapes
 from workhold.files.step.strips import Strip, strips_of_loop
@@ -35,10 +37,6 @@ __all__ = ["HEAD_ROOM", "LEAST_BAND", "HeightOutline", "StandingSolid"]
 
 # What is kept free above the pegs, and the shortest band that may be touched, both in mm.
 HEAD_ROOM, LEAST_BAND = 0.5, 1.0
-# How far beside a curve its two sides are looked at, in mm.
-BESIDE = 4e-4
-# What flat faces are called.
-FLAT = ("level plane", "wall", SLOPING)
 
 
 @frozen
@@ -72,6 +70,7 @@ class StandingSolid:
     edges: list[EdgeCurve] = field(init=False)
     edge_boxes: NDArray[np.float64] = field(init=False)
     material: Material = field(init=False)
+    folds: dict[int, list[Found]] = field(init=False, factory=dict)
 
     def __attrs_post_init__(self) -> None:
         self.faces = solid_faces(self.shape)
@@ -86,6 +85,12 @@ class StandingSolid:
         top = max(face.high for face in self.faces)
         level = [face.high for face in self.faces if face.lie == "level" and top - face.high <= SAME_HEIGHT]
         return max(level, default=top)
+
+    def folds_of(self, index: int) -> list[Found]:
+        """Where the face of a number stands upright, seen from above; found once."""
+        if index not in self.folds:
+            self.folds[index] = folds(self.faces[index])
+        return self.folds[index]
 
     def outline(
         self, peg_height: float | None = None, head_room: float = HEAD_ROOM, least_band: float = LEAST_BAND
@@ -122,8 +127,8 @@ class StandingSolid:
         def inside(point: tuple[float, float]) -> bool:
             return self.material.reaches_into(point, low, high)
 
-        curves = projected_curves(self.faces, self.edges, low, high)
-        self.refuse_others(curves, low, high)
+        curves = projected_curves(self.faces, self.edges, low, high, self.folds_of)
+        refuse_others(curves.others, self.faces, inside)
         more = walls.cuts() if walls else []
         carriers = subdivide(curves.segments, (*curves.cuts, *more))
         pieces = border_pieces(carriers, inside)
@@ -132,26 +137,6 @@ class StandingSolid:
                 f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
             )
         return self.closed(pieces, curves)
-
-    def refuse_others(self, curves: ProjectedCurves, low: float, high: float) -> None:
-        """Refuses a curve that is neither line nor arc where material lies on one side of it only.
-
-        Raises
-        ------
-        InputError
-            Naming the face.
-        """
-        # The face that makes the curve rather than the flat one that it cuts.
-        for index, points in sorted(curves.others, key=lambda one: self.faces[one[0]].kind in FLAT):
-            for before, (x, y), after in zip(points[:-2], points[1:-1], points[2:], strict=True):
-                dx, dy = after - before
-                size = float(np.hypot(dx, dy))
-                if size < 10 * BESIDE:
-                    continue
-                nx, ny = -dy / size * BESIDE, dx / size * BESIDE
-                left = self.material.reaches_into((float(x + nx), float(y + ny)), low, high)
-                if left != self.material.reaches_into((float(x - nx), float(y - ny)), low, high):
-                    raise other_curve(self.faces[index])
 
     def closed(self, pieces: Sequence[BorderPiece], curves: ProjectedCurves) -> list[list[BorderPiece]]:
         """The loops of a border's pieces.
@@ -168,14 +153,6 @@ class StandingSolid:
                 kinds = [self.faces[index] for index, _ in curves.others]
                 raise other_curve(min(kinds, key=lambda face: face.kind in FLAT)) from error
             raise
-
-
-def other_curve(face: SolidFace) -> InputError:
-    """The refusal of a face whose border in the outline is neither line nor arc."""
-    return InputError(
-        f"the outline has a curve that is neither line nor arc: a {face.kind} at heights "
-        f"{max(round(face.low, 6), 0):.6g} to {face.high:.6g} mm"
-    )
 
 
 def standing(shape: Any) -> StandingSolid:

@@ -42,9 +42,13 @@ class Material:
     edges: Sequence[EdgeCurve]
     flat: PlaneFaces = field(init=False)
     meeting: list[Any] = field(init=False)
+    # (F, 6) of each face met: its box seen from above, and its lowest and highest z, in mm.
     boxes: NDArray[np.float64] = field(init=False)
     below: float = field(init=False)
     known: dict[Point, list[tuple[float, float]]] = field(init=False, factory=dict)
+    # Heights at which an upright line passes a face that is not flat, by the line's point and the face.
+    hits: dict[tuple[Point, int], list[float]] = field(init=False, factory=dict)
+    classifier: Any = field(init=False, default=None)
 
     def __attrs_post_init__(self) -> None:
         from OCP.IntCurvesFace import IntCurvesFace_Intersector
@@ -52,7 +56,7 @@ class Material:
         self.flat, others = PlaneFaces.of(self.faces, self.edges)
         met = [self.faces[k] for k in others]
         self.meeting = [IntCurvesFace_Intersector(face.shape, ON_FACE) for face in met]
-        self.boxes = np.array([face.box for face in met]).reshape(-1, 4)
+        self.boxes = np.array([(*face.box, face.low, face.high) for face in met]).reshape(-1, 6)
         self.below = min(face.low for face in self.faces) - 1.0
 
     def intervals(self, point: Point) -> list[tuple[float, float]]:
@@ -78,25 +82,46 @@ class Material:
         from OCP.gp import gp_Pnt
         from OCP.TopAbs import TopAbs_State
 
-        classifier = BRepClass3d_SolidClassifier(self.shape, gp_Pnt(*point, z), 1e-7)
-        return bool(classifier.State() == TopAbs_State.TopAbs_IN)
+        if self.classifier is None:
+            # It looks at the whole solid first, which takes much longer than each of its answers.
+            self.classifier = BRepClass3d_SolidClassifier(self.shape)
+        self.classifier.Perform(gp_Pnt(*point, z), 1e-7)
+        return bool(self.classifier.State() == TopAbs_State.TopAbs_IN)
 
     def heights(self, point: Point) -> list[float]:
         """Sorted z in mm at which the upright line through a point passes a face."""
-        from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
+        found = self.flat.heights(point)
+        for index in np.flatnonzero(self.near(point)).tolist():
+            found += self.hits_of(point, index)
+        return sorted(found)
 
-        line = gp_Lin(gp_Pnt(point[0], point[1], self.below), gp_Dir(0.0, 0.0, 1.0))
+    def near(self, point: Point) -> NDArray[np.bool_]:
+        """Which faces that are not flat may lie over a point, seen by their boxes."""
         (x, y), boxes = point, self.boxes
         near = (boxes[:, 0] - ON_FACE <= x) & (x <= boxes[:, 2] + ON_FACE)
-        near &= (boxes[:, 1] - ON_FACE <= y) & (y <= boxes[:, 3] + ON_FACE)
-        found = self.flat.heights(point)
-        for index in np.flatnonzero(near):
+        return near & (boxes[:, 1] - ON_FACE <= y) & (y <= boxes[:, 3] + ON_FACE)
+
+    def hits_of(self, point: Point, index: int) -> list[float]:
+        """The z in mm at which the upright line through a point passes a face that is not flat."""
+        from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
+
+        key = point, index
+        if key not in self.hits:
             face = self.meeting[index]
-            face.Perform(line, -1.0, 1e7)
-            if face.IsDone():
-                found += [self.below + face.WParameter(k) for k in range(1, face.NbPnt() + 1)]
-        return sorted(found)
+            face.Perform(gp_Lin(gp_Pnt(*point, self.below), gp_Dir(0.0, 0.0, 1.0)), -1.0, 1e7)
+            met = range(1, face.NbPnt() + 1) if face.IsDone() else ()
+            self.hits[key] = [self.below + face.WParameter(k) for k in met]
+        return self.hits[key]
 
     def reaches_into(self, point: Point, low: float, high: float) -> bool:
         """Whether some material over a point lies strictly between two z in mm."""
+        # A face has material on one of its sides, so one hit within is enough. Flat faces are asked first,
+        # because they answer much faster.
+        inner = low + 2 * SAME_HEIGHT, high - 2 * SAME_HEIGHT
+        if self.flat.meets(point, *inner):
+            return True
+        near = self.near(point) & (self.boxes[:, 4] < inner[1]) & (self.boxes[:, 5] > inner[0])
+        for index in np.flatnonzero(near).tolist():
+            if any(inner[0] < z < inner[1] for z in self.hits_of(point, index)):
+                return True
         return any(min(end, high) - max(start, low) > SAME_HEIGHT for start, end in self.intervals(point))

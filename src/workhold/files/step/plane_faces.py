@@ -22,8 +22,11 @@ from workhold.geometry.segment import Arc, Line, Point
 __all__ = ["PlaneFaces"]
 
 Array = NDArray[np.float64]
-# The direction of rays: one in which no line of a drawing is likely to run, nor two of its points to lie.
-RAY = (0.7548776662, 0.6558656181)
+# How much wider than the library says, in mm, the boxes of faces are taken.
+ROUND = 1e-6
+# The direction of rays, and another: ones in which no line of a drawing is likely to run, nor two of its
+# points to lie.
+RAY, OTHER_RAY = (0.7548776662, 0.6558656181), (-0.5698402910, 0.8217609881)
 
 
 @frozen(eq=False)
@@ -34,16 +37,18 @@ class PlaneFaces:
     ----------
     planes : (F, 3) of each face: z in mm at the origin, and how much it rises along x and y.
     lines : (L, 4) start and step of the straight edges, in mm.
-    line_face : (L,) the face of each.
+    line_ends : (F + 1,) where the edges of each face begin, and those of the last end.
     arcs : (A, 5) centre, radius, middle angle and half the sweep of the round edges.
-    arc_face : (A,) the face of each.
+    arc_ends : (F + 1,) where the round edges of each face begin, and those of the last end.
+    boxes : (F, 4) least x and y, greatest x and y of each face, in mm.
     """
 
     planes: Array
     lines: Array
-    line_face: NDArray[np.int64]
+    line_ends: NDArray[np.int64]
     arcs: Array
-    arc_face: NDArray[np.int64]
+    arc_ends: NDArray[np.int64]
+    boxes: Array
 
     @classmethod
     def of(cls, faces: Sequence[SolidFace], edges: Sequence[EdgeCurve]) -> tuple[PlaneFaces, list[int]]:
@@ -58,48 +63,76 @@ class PlaneFaces:
             if edge.is_other:
                 planes.pop(edge.face, None)
         number = {face: k for k, face in enumerate(planes)}
-        lines, line_face, arcs, arc_face = [], [], [], []
+        lines: list[list[tuple[float, ...]]] = [[] for _ in number]
+        arcs: list[list[tuple[float, ...]]] = [[] for _ in number]
         for edge in edges:
             if edge.face not in number:
                 continue
             if isinstance(edge.segment, Line):
                 (x0, y0), (x1, y1) = edge.segment.start, edge.segment.end
-                lines.append((x0, y0, x1 - x0, y1 - y0))
-                line_face.append(number[edge.face])
+                lines[number[edge.face]].append((x0, y0, x1 - x0, y1 - y0))
             elif isinstance(edge.segment, Arc):
                 one = edge.segment
-                arcs.append((*one.center, one.radius, one.mid_angle, one.half_sweep))
-                arc_face.append(number[edge.face])
+                arcs[number[edge.face]].append((*one.center, one.radius, one.mid_angle, one.half_sweep))
         others = [k for k, face in enumerate(faces) if face.lie != "upright" and k not in number]
         made = cls(
             np.array(list(planes.values())).reshape(-1, 3),
-            np.array(lines).reshape(-1, 4),
-            np.array(line_face, np.int64),
-            np.array(arcs).reshape(-1, 5),
-            np.array(arc_face, np.int64),
+            np.array([row for own in lines for row in own]).reshape(-1, 4),
+            np.cumsum([0, *map(len, lines)]),
+            np.array([row for own in arcs for row in own]).reshape(-1, 5),
+            np.cumsum([0, *map(len, arcs)]),
+            np.array([faces[k].box for k in number]).reshape(-1, 4) + ROUND * np.array([-1, -1, 1, 1]),
         )
         return made, others
 
     def heights(self, point: Point) -> list[float]:
         """The z in mm at which the upright line through a point meets the faces, in any order."""
-        (x, y), (dx, dy) = point, RAY
-        px, py, sx, sy = self.lines.T
+        levels = self.levels(point)
+        return [float(levels[k]) for k in np.flatnonzero(self.near(point)).tolist() if self.holds(k, point)]
+
+    def meets(self, point: Point, low: float, high: float) -> bool:
+        """Whether the upright line through a point meets a face between two z in mm; two rays must agree."""
+        levels = self.levels(point)
+        near = self.near(point) & (low < levels) & (levels < high)
+        return any(
+            self.holds(k, point) and self.holds(k, point, OTHER_RAY) for k in np.flatnonzero(near).tolist()
+        )
+
+    def levels(self, point: Point) -> Array:
+        """The z (F,) in mm of each face's plane at a point."""
+        levels: Array = self.planes[:, 0] + self.planes[:, 1] * point[0] + self.planes[:, 2] * point[1]
+        return levels
+
+    def near(self, point: Point) -> NDArray[np.bool_]:
+        """Which faces (F,) have a point in their box."""
+        (x, y), boxes = point, self.boxes
+        return (boxes[:, 0] <= x) & (x <= boxes[:, 2]) & (boxes[:, 1] <= y) & (y <= boxes[:, 3])
+
+    def holds(self, face: int, point: Point, ray: Point = RAY) -> bool:
+        """Whether a face of a number holds a point, seen from above.
+
+        Parameters
+        ----------
+        ray : unit vector, see the head of the file.
+        """
+        (x, y), (dx, dy) = point, ray
+        px, py, sx, sy = self.lines[self.line_ends[face] : self.line_ends[face + 1]].T
         across = dx * sy - dy * sx
         with np.errstate(divide="ignore", invalid="ignore"):
             along = ((px - x) * sy - (py - y) * sx) / across
             share = ((px - x) * dy - (py - y) * dx) / across
-        met = [self.line_face[(along > 0) & (share >= 0) & (share < 1)]]
-        cx, cy, radius, middle, half = self.arcs.T
-        ahead = (cx - x) * dx + (cy - y) * dy
-        aside = (cx - x) * dy - (cy - y) * dx
-        square = radius * radius - aside * aside
-        root = np.sqrt(np.maximum(square, 0.0))
-        for away in (ahead - root, ahead + root):
-            angle = np.arctan2(y + away * dy - cy, x + away * dx - cx)
-            apart = np.abs((angle - middle + pi) % tau - pi)
-            met.append(self.arc_face[(square > 0) & (away > 0) & (apart <= half)])
-        inside = np.bincount(np.concatenate(met), minlength=len(self.planes)) % 2 == 1
-        return [float(z + a * x + b * y) for z, a, b in self.planes[inside]]
+        met = int(np.count_nonzero((along > 0) & (share >= 0) & (share < 1)))
+        cx, cy, radius, middle, half = self.arcs[self.arc_ends[face] : self.arc_ends[face + 1]].T
+        if len(cx):
+            ahead = (cx - x) * dx + (cy - y) * dy
+            aside = (cx - x) * dy - (cy - y) * dx
+            square = radius * radius - aside * aside
+            root = np.sqrt(np.maximum(square, 0.0))
+            for away in (ahead - root, ahead + root):
+                angle = np.arctan2(y + away * dy - cy, x + away * dx - cx)
+                apart = np.abs((angle - middle + pi) % tau - pi)
+                met += int(np.count_nonzero((square > 0) & (away > 0) & (apart <= half)))
+        return met % 2 == 1
 
 
 def plane_of(face: SolidFace) -> tuple[float, float, float] | None:

@@ -15,7 +15,9 @@ from math import pi, tan
 from attrs import frozen
 
 from workhold.conventions import SAME_HEIGHT
-from workhold.files.step.bands import ONE_HEIGHT, Walls, length
+from workhold.files.step.bands import Walls, length
+from workhold.files.step.crossings import bisected, narrowed
+from workhold.files.step.edge_curves import ONE_HEIGHT
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
 from workhold.model.solid import Band
@@ -29,6 +31,8 @@ SAME_BAND = 1e-5
 # Shares of a piece below this are not worth a strip of their own.
 LEAST_SHARE = 1e-4
 NOTHING = (0.0, 0.0)
+# Steps in which a piece is searched, and halvings of the one that holds what is searched.
+STEPS, HALVINGS = 32, 50
 
 
 @frozen
@@ -139,7 +143,7 @@ def strips_of_run(run: Sequence[Ends], walls: Walls, least: float) -> list[Strip
         while share < 1.0:
             here = band_at(one, walls, share)
             if length(here) < least - SAME_HEIGHT:
-                begin = first_share(share, partial(is_long, one, walls, None, least))
+                begin = first_long(one, walls, share, least)
                 close(k, share)
                 strips += strips_between(one, share, one, begin, None, [one])
                 share = begin
@@ -150,7 +154,7 @@ def strips_of_run(run: Sequence[Ends], walls: Walls, least: float) -> list[Strip
             if length(whole) >= least - SAME_HEIGHT:
                 common = whole
                 break
-            end = first_share(share, partial(is_short, one, walls, sofar, least))
+            end = first_short(one, walls, share, sofar, least)
             if end - share > LEAST_SHARE:
                 common = overlap(sofar, band_at(one, walls, end))
                 close(k, end)
@@ -174,33 +178,84 @@ def band_at(one: Ends, walls: Walls, share: float) -> Band:
     return walls.band(one.piece, one.at(share))[0] or NOTHING
 
 
-def is_long(one: Ends, walls: Walls, sofar: Band | None, least: float, share: float) -> bool:
-    """Whether the band at a share of a piece has enough in common with what there is so far."""
-    return length(overlap(sofar, band_at(one, walls, share))) >= least - ONE_HEIGHT
-
-
-def is_short(one: Ends, walls: Walls, sofar: Band | None, least: float, share: float) -> bool:
-    """Whether the band at a share of a piece has too little in common with what there is so far."""
-    return not is_long(one, walls, sofar, least, share)
-
-
 def overlap(a: Band | None, b: Band) -> Band:
     """What two bands have in common; the second alone without a first."""
     return b if a is None else (max(a[0], b[0]), min(a[1], b[1]))
 
 
-def first_share(start: float, holds: Callable[[float], bool], steps: int = 32) -> float:
-    """The least share after a start from which on something holds that does not there; 1 for never."""
-    low = start
-    for step in range(1, steps + 1):
-        high = start + (1.0 - start) * step / steps
-        if holds(high):
-            for _ in range(50):
-                middle = (low + high) / 2
-                low, high = (low, middle) if holds(middle) else (middle, high)
-            return high
-        low = high
-    return 1.0
+def around(a: Band, b: Band) -> Band:
+    """The least range that holds both bands; it holds those between them, because both ends are monotone."""
+    return min(a[0], b[0]), max(a[1], b[1])
+
+
+def first_long(one: Ends, walls: Walls, share: float, least: float) -> float:
+    """The least share after one from which on a piece's band is at least as long as asked; 1 for none."""
+
+    def may_be(a: Band, b: Band) -> bool:
+        # Both ends of the band lie between those at both ends, whatever walls make it.
+        return length(around(a, b)) >= least - SAME_HEIGHT
+
+    def spare(band: Band) -> float:
+        return length(band) - (least - ONE_HEIGHT)
+
+    return first_share(share, partial(band_at, one, walls), spare, may_be)
+
+
+def first_short(one: Ends, walls: Walls, share: float, sofar: Band, least: float) -> float:
+    """The least share after one at which too little of a piece's band is common with a band; 1 for none."""
+    is_single = walls.is_single(one.piece)
+
+    def spare(band: Band) -> float:
+        return length(overlap(sofar, band)) - (least - ONE_HEIGHT)
+
+    def may_be(a: Band, b: Band) -> bool:
+        # The band of one wall holds what it has in common at both ends.
+        return not is_single or spare(overlap(a, b)) < 0.0
+
+    return first_share(share, partial(band_at, one, walls), lambda band: -spare(band), may_be)
+
+
+def first_share(
+    start: float,
+    band: Callable[[float], Band],
+    value: Callable[[Band], float],
+    may_be: Callable[[Band, Band], bool],
+) -> float:
+    """The least share after a start from which on a band's value, below 0 there, is not; 1 for never.
+
+    Parameters
+    ----------
+    may_be : whether the value may be 0 or more somewhere between two shares with some bands.
+    """
+    bands = {0: band(start)}
+
+    def share_of(step: int) -> float:
+        return start + (1.0 - start) * step / STEPS
+
+    def band_of(step: int) -> Band:
+        if step not in bands:
+            bands[step] = band(share_of(step))
+        return bands[step]
+
+    def first_step(low: int, high: int) -> int | None:
+        if not may_be(band_of(low), band_of(high)):
+            return None
+        if high - low == 1:
+            return high if value(band_of(high)) >= 0.0 else None
+        middle = (low + high) // 2
+        found = first_step(low, middle)
+        return first_step(middle, high) if found is None else found
+
+    step = first_step(0, STEPS)
+    if step is None:
+        return 1.0
+    low, high = share_of(step - 1), share_of(step)
+
+    def at(share: float) -> float:
+        return value(band(share))
+
+    known = narrowed(at, (low, value(band_of(step - 1))), (high, value(band_of(step))))
+    return bisected(low, high, lambda share: at(share) >= 0.0, known, HALVINGS)[1]
 
 
 def strips_between(

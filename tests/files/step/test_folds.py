@@ -1,0 +1,88 @@
+"""Folds of leaning faces, and cuts through them, that are lines and circles: their outlines are exact."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import pi, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol, BRepPrimAPI_MakeTorus
+from OCP.collections import Array1_gp_Pnt
+from OCP.GC import GC_MakeSegment
+from OCP.Geom import Geom_BezierCurve
+from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt
+from step_shapes import box, cut, cylinder, fused
+
+from workhold.files.step.crossings import bisected, crossing
+from workhold.files.step.heights import standing
+from workhold.files.step.other_curves import OtherCurveError
+from workhold.files.step.which_height import measures
+
+
+def area_at(shape: Any, high: float) -> float:
+    """Area in mm² of the outline of pegs as high as told, with no head room."""
+    return measures(standing(shape).outline(high, 0.0))[0]
+
+
+def test_lying_ring_is_seen_as_circles_and_lines() -> None:
+    """A ring with a level axis, turned by any angle, is seen as two half circles with lines between: 4 R r + pi r^2."""
+    for angle in (0.0, 0.3, 2.0):
+        axis = gp_Ax2(gp_Pnt(3, -2, 7), gp_Dir(np.cos(angle), np.sin(angle), 0))
+        ring = BRepPrimAPI_MakeTorus(axis, 20, 5).Solid()
+        assert area_at(ring, 60.0) == pytest.approx(4 * 20 * 5 + pi * 25, rel=1e-7)
+
+
+def spun(waist: float) -> Any:
+    """A spline from (10, 0) over (waist, 10) to (10, 20), closed by lines, turned about z."""
+    poles = Array1_gp_Pnt(1, 3)
+    for k, (x, z) in enumerate([(10, 0), (waist, 10), (10, 20)], start=1):
+        poles.SetValue(k, gp_Pnt(x, 0, z))
+    corners = [gp_Pnt(10, 0, 20), gp_Pnt(0, 0, 20), gp_Pnt(0, 0, 0), gp_Pnt(10, 0, 0)]
+    wire = BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(Geom_BezierCurve(poles)).Edge())
+    for a, b in pairwise(corners):
+        wire.Add(BRepBuilderAPI_MakeEdge(GC_MakeSegment(a, b).Value()).Edge())
+    axis = gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
+    return BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), axis).Shape()
+
+
+@pytest.mark.parametrize(("high", "radius"), [(60.0, 13.0), (5.0, 10.0 + 12 * 0.25 * 0.75), (15.0, 13.0)])
+def test_turned_spline_is_seen_as_circles(high: float, radius: float) -> None:
+    """The Bezier curve is x = 10 + 12 t (1 - t), z = 20 t: widest at t = 1/2, and at t = z / 20 below that."""
+    assert area_at(spun(16.0), high) == pytest.approx(pi * radius**2, rel=1e-9)
+
+
+def test_curve_of_the_border_is_found_where_it_reaches_out_little() -> None:
+    """A slanted hole's ellipse is refused, also where it is a small part of what is there; one out of sight is not."""
+    slanted = cylinder(4, 80, (30, 20, -20), (0.3, 0, 1))
+    with pytest.raises(OtherCurveError, match="a cylinder of radius 4 mm aslant"):
+        standing(cut(box(60, 40, 20), slanted)).outline()
+    hidden = fused(cut(box(60, 40, 20), slanted), box(60, 40, 5, (0, 0, -5)))
+    assert measures(standing(hidden).outline())[0] == pytest.approx(2400)
+
+
+@pytest.mark.parametrize("root", [0.1, 1 / 3, sqrt(0.5), 0.999])
+@pytest.mark.parametrize("power", [1, 3])
+def test_crossing_is_that_of_bisection(root: float, power: int) -> None:
+    """Where a value passes 0 is found to the last digit that bisection alone would give, and sooner."""
+    asked: list[float] = []
+
+    def value(t: float) -> float:
+        asked.append(t)
+        return float(t**power - root**power)
+
+    ends = (0.0, value(0.0)), (1.0, value(1.0))
+    plain = sum(bisected(0.0, 1.0, lambda t: value(t) >= 0.0, (0.0, 1.0), 60)) / 2
+    asked.clear()
+    assert crossing(value, *ends) == plain
+    assert len(asked) <= (25 if power == 1 else 80)
+
+
+def test_crossing_of_a_value_that_falls() -> None:
+    """The end with the value below 0 may be the greater one."""
+    assert crossing(lambda t: 0.25 - t, (1.0, -0.75), (0.0, 0.25)) == pytest.approx(0.25, abs=1e-15)
