@@ -28,6 +28,13 @@ def write_program(column: TextColumn, sheet: Sheet) -> None:
     heading(column, "Program")
     path = PlannedPath(details.program, sheet.fixture, details.passing, details.peg_height)
     write_path(column, path, sheet.lengths)
+    if details.cutting is not None:
+        moving, unit = sheet.toolkit.moving.noun, sheet.lengths.unit
+        needed, *others = details.cutting.words(moving, unit, len(sheet.fixture.travels))
+        column.y += 3
+        column.paragraph(needed, BODY, bold=True)
+        for sentence in others:
+            column.paragraph(sentence, NOTE)
 
 
 def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill: str = BLACK) -> None:
