@@ -131,3 +131,74 @@ def test_explore_and_batch_take_a_program(run: Any, file: Path, tmp_path: Path) 
     records = [path.read_text() for path in (tmp_path / "out" / "work").rglob("*") if path.is_file()]
     passed = [text for text in records if '"program_clearance"' in text]
     assert len(passed) == 1 and '"peg_height": 10.0' in passed[0]
+
+
+FORCES = ("--material", "aluminium", "--teeth", "2", "--cut-depth", "3")
+
+
+def test_forces_reach_the_table_the_sentences_and_the_sheet(run: Any, file: Path, tmp_path: Path) -> None:
+    file.write_text(PROGRAM.replace("T1 M6", "T1 M6 S3000"))
+    out, sheet = tmp_path / "widget.json", tmp_path / "widget.svg"
+    words = ["--program", file, "--thickness", "10", "--best", "3", "--threads", "1", "--out", out]
+    designed = run("design", "widget", *HELD, *words, *FORCES, "--sheet", sheet)
+    assert designed.exit_code == 0, designed.stderr
+    assert "jaw force needed N" in designed.stdout and "load reaction N" in designed.stdout
+    entry = json.loads(out.read_text())["fixtures"][0]["program_forces"]
+    assert entry["jaw_force"] == entry["jaw"]["force"] > 0 and entry["room"] is None
+    shown = run("show", out, "1")
+    assert f"asked for by line {entry['jaw']['line']}, T1: with less the part leaves" in shown.stdout
+    text = " ".join(sheet.read_text().split())
+    assert "Jaw force at least" in text
+    given = run("show", out, "1", "--jaw-force", "9000", "--jaw", "constant")
+    assert "The 9000 N given leave" in given.stdout and "With 9000 N peg" in given.stdout
+    little = run("show", out, "1", "--jaw-force", "1", "--json")
+    need = json.loads(little.stdout)["program_forces"]
+    assert need["jaw"] == entry["jaw"] and need["room"] == pytest.approx(1 - entry["jaw"]["force"])
+
+
+def test_forces_rank_where_they_are_asked_for(
+    run: Any, searched: dict[str, Any], file: Path, tmp_path: Path
+) -> None:
+    tools = tmp_path / "tools.toml"
+    tools.write_text("tool.1 = {diameter = 6, cutting_force = 120}\n")
+    words = ["--program", file, "--thickness", "10"]
+    for more in (["--tools", tools], ["--power", "2hp"], FORCES):
+        outcome = run("design", "widget", *HELD, *words, *more, "--prefer", "strong")
+        if "--power" in more:
+            assert outcome.exit_code == 2 and "does not say the spindle's speed, S" in outcome.stderr
+            continue
+        if more is FORCES:
+            assert outcome.exit_code == 2 and "spindle's speed, S" in outcome.stderr
+            continue
+        assert outcome.exit_code == 0, outcome.stderr
+        assert searched["asked"].ranking[1] == "load_reaction"
+    bare = run("design", "widget", *HELD, *words, "--rank-by", "jaw-force-needed")
+    assert bare.exit_code == 2 and "there is no load to rank by" in bare.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--material", "butter"], "the material 'butter' is not known"),
+        (["--power", "much"], "--power 'much' is not a power above 0"),
+        (["--power", "2", "--material", "steel"], "power and material are two ways to the same force"),
+        (["--cutting-force", "-3"], "--cutting-force"),
+        (["--teeth", "2.5"], "--teeth"),
+        (["--cutting-force", "90", "--cutting-direction", "up"], "--cutting-direction 'up' is not known"),
+    ],
+)
+def test_words_about_forces_that_mean_nothing_are_refused(
+    run: Any, file: Path, words: list[str], said: str
+) -> None:
+    outcome = run("design", "widget", *HELD, "--program", file, "--thickness", "10", *words)
+    assert outcome.exit_code == 2 and said in outcome.stderr
+    read = run("program", file, *words)
+    assert read.exit_code == 2 and said in read.stderr
+
+
+def test_the_program_command_states_forces_of_tools(run: Any, file: Path) -> None:
+    said = run("program", file, "--cutting-force", "0.2kN")
+    assert said.exit_code == 0 and "T1: up to 200 N as given." in said.stdout
+    data = json.loads(run("program", file, "--cutting-force", "200", "--json").stdout)["cutting"]
+    assert data == [{"tool": 1, "force": 200.0, "torque": 600.0, "axial": [pytest.approx(-115.47), 280.0]}]
+    assert "cutting" not in json.loads(run("program", file, "--json").stdout)

@@ -98,7 +98,7 @@ def first_supported(result: Result, ranks: list[int], thickness: float) -> tuple
     """The first of some fixtures that three supports hold up, and these; the first one where none has any."""
     query = result.query
     for rank in ranks:
-        supports = supports_under(result, rank, thickness, query.loads, query.jaw_force)
+        supports = supports_under(result, rank, thickness, None, query.jaw_force)
         if supports is not None:
             if rank != ranks[0]:
                 print_remark(

@@ -245,7 +245,7 @@ def passing_words(
     if program is None:
         return []
     near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
-    forces = [] if need is None else need.words(result.toolkit.moving.noun, unit)
+    forces = [] if need is None else need.words(result.toolkit.moving.noun, unit, result.toolkit.travels)
     if near is None:
         return [f"No tool of {program.name} comes down to where anything holds the part.", *forces]
     return [

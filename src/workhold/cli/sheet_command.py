@@ -180,7 +180,7 @@ def sheet(
         result = result_with(result_file, rank)
         if supports:
             in_space["supports"] = chosen_supports(
-                result, rank, settings["thickness"], given or result.query.loads, settings["jaw_force"]
+                result, rank, settings["thickness"], given or None, settings["jaw_force"]
             )
     if first_setup is not None:
         in_space["first_side"] = first_side_of(result, rank, first_setup)

@@ -48,7 +48,7 @@ def supports_under(
     result: Result,
     rank: int,
     thickness: float | None,
-    loads: Sequence[Load],
+    loads: Sequence[Load] | None,
     jaw_force: float | None,
 ) -> ChosenSupports | None:
     """The best three supports of the usual sizes under a fixture; None where no three hold the part.
@@ -78,7 +78,7 @@ def chosen_supports(
     result: Result,
     rank: int,
     thickness: float | None,
-    loads: Sequence[Load],
+    loads: Sequence[Load] | None,
     jaw_force: float | None,
 ) -> ChosenSupports:
     """The best three supports of the usual sizes under a fixture.

@@ -209,7 +209,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         return
     request = SupportRequest.of(result.workpiece, thickness, toolkit=result.toolkit)
     found = supports_of_best(fixtures, result.query, request, each=1)
-    with_loads = bool(result.query.loads)
+    with_loads = result.query.is_loaded
     table = Table((">rank", "supports", *columns_of(unit, with_loads)))
     for rank, one in enumerate(found, 1):
         if one.triples:

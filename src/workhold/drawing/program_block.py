@@ -30,6 +30,13 @@ def write_program(column: TextColumn, sheet: Sheet) -> None:
     top = details.peg_height if sheet.heights is None else sheet.heights.peg_top
     path = PlannedPath(details.program, sheet.fixture, details.passing, top)
     write_path(column, path, sheet.lengths)
+    if details.cutting is not None:
+        moving, unit = sheet.toolkit.moving.noun, sheet.lengths.unit
+        needed, *others = details.cutting.words(moving, unit, len(sheet.fixture.travels))
+        column.y += 3
+        column.paragraph(needed, BODY, bold=True)
+        for sentence in others:
+            column.paragraph(sentence, NOTE)
 
 
 def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill: str = BLACK) -> None:

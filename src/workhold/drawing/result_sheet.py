@@ -25,6 +25,7 @@ from workhold.seating.clamping import by_hand
 from workhold.seating.solver import Solver
 from workhold.statics.loads import load_cases
 from workhold.statics.program_clearance import passing_of
+from workhold.statics.program_forces import cutting_need_of
 from workhold.statics.quality import measured_fixture
 from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
@@ -135,6 +136,8 @@ def result_details(
     if peg_height is None and reach is not None:
         # The query's height is above where the part lies, the sheet's above the plates.
         peg_height = reach + lift_of(supports, support_height)
+    cutting = cutting_need_of(result, rank - 1, jaw_force, jaw)
+    listed_holes = [peg.hole for peg in result[rank - 1].pegs]
     details = SheetDetails(
         number=rank if number is None else number,
         count=len(result) if count is None else count,
@@ -164,6 +167,9 @@ def result_details(
         first_side=first_side,
         program=program,
         passing=passing_of(result, rank - 1),
+        cutting=None
+        if cutting is None
+        else cutting.in_holes(listed_holes, [peg.hole for peg in fixture.pegs]),
         listed_as=listed_as,
     )
     return fixture, details

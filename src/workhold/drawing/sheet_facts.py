@@ -26,6 +26,7 @@ from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go
 from workhold.statics.loads import LoadCase
 from workhold.statics.program_clearance import Passing
+from workhold.statics.program_forces import CuttingNeed
 from workhold.units import MILLIMETRE, Unit
 
 __all__ = ["PAPERS", "Caution", "SheetDetails", "caliper_check", "cautions_of", "edge_distances"]
@@ -67,6 +68,7 @@ class SheetDetails:
     first_side : the set-up before this one, which had another side of the part up; None where there was none.
     program, passing : what the machine does while the part is held, and where its tools come nearest to what
         holds it; None where that is not known.
+    cutting : the jaw force that the program's tools ask for; None where their forces are not known.
     listed_as : what ``number`` counts.
     """
 
@@ -98,6 +100,7 @@ class SheetDetails:
     first_side: FirstSide | None = None
     program: Program | None = None
     passing: Passing | None = None
+    cutting: CuttingNeed | None = None
     listed_as: str = "Fixture"
 
 
@@ -230,9 +233,12 @@ def cautions_of(
                 f"Under {name} {peg.hole} lets go at the {lengths.unit.force_words(details.jaw_force)} given"
             )
             found.append(Caution("load", f"{words}: clamp with more than {more} {lengths.unit.force}."))
+    if details.cutting is not None and (details.cutting.room or 0.0) < 0.0:
+        sentences = details.cutting.words(toolkit.moving.noun, lengths.unit, len(fixture.travels))
+        found.append(Caution("load", " ".join(sentences[:2])))
     if details.seating is not None:
-        sentences = SeatingSentences(details.seating, fixture, toolkit, lengths)
-        return found + [Caution(kind, sentence) for kind, sentence in sentences.cautions()]
+        seated = SeatingSentences(details.seating, fixture, toolkit, lengths)
+        return found + [Caution(kind, sentence) for kind, sentence in seated.cautions()]
     if details.others:
         holes = "holes" if toolkit.tips else "four holes"
         ways = "one other way" if details.others == 1 else f"{details.others} other ways"

@@ -203,15 +203,17 @@ def write_clamp(column: TextColumn, sheet: Sheet, setting: LengthSetting, share:
         column.fact("stroke it has", f"{lengths.short_number(least)} to {lengths.short(most)}")
     force, unit = sheet.details.jaw_force, lengths.unit
     fact_or_field(column, f"{clamp.noun} force", None if force is None else unit.force_words(share * force))
-    if sheet.details.loads:
+    if sheet.details.loads or sheet.details.cutting is not None:
         needed = share * needed_force(sheet)
         column.fact("the loads need at least", f"{unit.force_above(needed)} {unit.force}", bold=True)
     fact_or_field(column, "torque of its screw", None)
 
 
 def needed_force(sheet: Sheet) -> float:
-    """The clamp force, of two clamps added up, that the loads need, in N."""
-    return max(case.needed.value for case in sheet.details.loads)
+    """The clamp force, of two clamps added up, that the loads and the program need, in N."""
+    cutting = sheet.details.cutting
+    needs = [case.needed.value for case in sheet.details.loads]
+    return max([*needs, 0.0 if cutting is None else cutting.jaw.force])
 
 
 def write_order(column: TextColumn, sheet: Sheet) -> None:

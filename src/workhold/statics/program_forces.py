@@ -7,17 +7,18 @@ place of the path for both.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from math import ceil, floor, inf, log10
 from typing import Any
 
 import numpy as np
-from attrs import asdict, frozen
+from attrs import asdict, evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.program import Program
 from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.program import Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, Touched
@@ -40,8 +41,8 @@ class AskedForce:
     Parameters
     ----------
     force : in N.
-    line, tool : of the program, where it does; None where nothing is asked for.
-    element : the contact that it is about, such as "peg L-A1"; None there.
+    line, tool : of the program, where it does; None where the force is the same without any tool.
+    element : the contact that it is about, such as "peg L-A1"; None where no tool pushes the part off one.
     """
 
     force: float
@@ -71,13 +72,24 @@ class CuttingNeed:
         """Plain data as in a result file."""
         return asdict(self)
 
-    def words(self, mover: str, unit: Unit) -> list[str]:
+    def in_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
+        """The same with holes under other names, contact by contact."""
+        names = dict(zip(before, after, strict=True))
+
+        def renamed(asked: AskedForce) -> AskedForce:
+            noun, _, hole = (asked.element or "").rpartition(" ")
+            return evolve(asked, element=f"{noun} {names[hole]}") if hole in names else asked
+
+        return evolve(self, jaw=renamed(self.jaw), contact=renamed(self.contact))
+
+    def words(self, mover: str, unit: Unit, movers: int = 1) -> list[str]:
         """What a machinist has to know, in sentences.
 
         Parameters
         ----------
         mover : what presses, such as a jaw.
         unit : of the forces.
+        movers : how many there are; of two the force is that of both together.
 
         Examples
         --------
@@ -93,9 +105,9 @@ class CuttingNeed:
         """
         if self.jaw.line is None:
             return [f"The tools of the program push the part off nothing, at any {mover} force."]
-        name = mover[:1].upper() + mover[1:]
+        name = mover[:1].upper() + mover[1:] + " force" + " of both together" * (movers > 1)
         said = [
-            f"{name} force at least {force_up(self.jaw.force, unit)}, asked for by line {self.jaw.line}, "
+            f"{name} at least {force_up(self.jaw.force, unit)}, asked for by line {self.jaw.line}, "
             f"T{self.jaw.tool}: with less the part leaves {self.jaw.element}."
         ]
         if self.room is not None:
@@ -105,11 +117,12 @@ class CuttingNeed:
             else:
                 lacking = f"{unit.force_above(-self.room)} {unit.force}"
                 said.append(f"The {given} given are {lacking} too little.")
-        if self.contact.line is not None:
-            most = force_up(self.contact.force, unit)
-            at = f"line {self.contact.line}, T{self.contact.tool}"
-            with_ = f"With {unit.force_words(self.jaw_force)} {self.contact.element}"
-            said.append(f"{with_} presses with up to {most}, in {at}.")
+        most = force_up(self.contact.force, unit)
+        at = f"in line {self.contact.line}, T{self.contact.tool}"
+        if self.contact.line is None:
+            at = "whatever the tools do"
+        with_ = f"With {unit.force_words(self.jaw_force)} {self.contact.element}"
+        said.append(f"{with_} presses with up to {most}, {at}.")
         return said
 
 
@@ -240,9 +253,9 @@ def asked_force(
     table: FixtureTable, toolkit: Toolkit, program: Program, row: int, value: float, move: int, contact: int
 ) -> AskedForce:
     """A force that a move asks for of a contact of a fixture of a table; of none where the move is -1."""
+    name = None if contact < 0 else element_name(table, toolkit, row, contact)
     if move < 0:
-        return AskedForce(value, None, None, None)
-    name = element_name(table, toolkit, row, contact)
+        return AskedForce(value, None, None, name)
     return AskedForce(value, int(program.moves.line[move]), int(program.moves.tool[move]), name)
 
 

@@ -21,6 +21,7 @@ from workhold.statics.contact_matrix import Touched
 from workhold.supports.acting import checked_force, needed_jaw_force, spatial
 from workhold.supports.choosing import Chosen, TripleChoice
 from workhold.supports.clamp_point import ClampPlaces
+from workhold.supports.cutting import acting_on
 from workhold.supports.faces import TouchableFace, area_center
 from workhold.supports.forces import PegForces, lifted_by_jaws
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
@@ -243,7 +244,8 @@ def supports_of(
         For pads too large for the holes, and a jaw force too small for a load. For more holes than can be
         looked at, and for all triples where there are too many.
     """
-    asked = spatial(query.loads if loads is None else loads, request.thickness)
+    acting = acting_on(query, request.thickness) if loads is None else loads
+    asked = spatial(acting, request.thickness)
     search = SupportSearch(query, with_program(request, query.workpiece, query.program), asked)
     return search.supports(fixture, checked_force(jaw_force), best, cancel, progress)
 
@@ -266,7 +268,8 @@ def supports_of_best(
     each : how many triples of each fixture; all other parameters as of :func:`supports_of`. Once
         ``cancel`` is set no further fixture is looked at.
     """
-    asked = spatial(query.loads if loads is None else loads, request.thickness)
+    acting = acting_on(query, request.thickness) if loads is None else loads
+    asked = spatial(acting, request.thickness)
     request = with_program(request, query.workpiece, query.program)
     search, force, every = SupportSearch(query, request, asked), checked_force(jaw_force), list(fixtures)
     out = list[Supports]()

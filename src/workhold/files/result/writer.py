@@ -25,11 +25,12 @@ from workhold.fixels.fields import FLAT
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.fixture_table import FixtureTable
 from workhold.model.program import Program
 from workhold.model.quality import PROGRAM_CLEARANCE
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
-from workhold.model.result import FixtureTable, Result
+from workhold.model.result import Result
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
 from workhold.model.solid import SolidOutline
