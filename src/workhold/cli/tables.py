@@ -347,10 +347,11 @@ def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
     table = Table((">face", "kind", f"size {unit.abbreviation}", "loop", "from", "to"), spare=1)
     first = 0
     loop_of = {}
+    several, pieces = workpiece.pieces > 1, workpiece.pieces
     for index, loop in enumerate(workpiece.loops):
-        loop_of.update(
-            dict.fromkeys(range(first, first + len(loop)), "outer" if index == 0 else f"hole {index}")
-        )
+        outer = f"piece {index + 1}" if several else "outer"
+        name = outer if index < pieces else f"hole {index - pieces + 1}"
+        loop_of.update(dict.fromkeys(range(first, first + len(loop)), name))
         first += len(loop)
     for face in workpiece.faces:
         kind, size, start, end = face_words(face, unit)

@@ -33,6 +33,7 @@ class SheetHeights:
     supported_by : height of the supports, 0 without them.
     plate_thickness : of the plates, through which pegs stand.
     peg_length : of the pegs.
+    clamped_height : of the face on which the clamp on top presses; None without one.
     bands : of each peg of the fixture the heights at which it presses; None where nobody knows.
     assumed : names of those of these that nobody said.
     """
@@ -45,6 +46,7 @@ class SheetHeights:
     peg_length: float
     bands: tuple[Band | None, ...]
     assumed: frozenset[str] = field(default=frozenset())
+    clamped_height: float | None = None
 
     @property
     def above_plate(self) -> float:
@@ -110,7 +112,17 @@ def heights_of(
         peg_length=top + lift + plate if details.peg_length is None else details.peg_length,
         bands=bands_of_pegs(fixture, workpiece, details, thickness, top),
         assumed=frozenset(assumed),
+        clamped_height=clamped_at(supports, thickness),
     )
+
+
+def clamped_at(supports: ChosenSupports | None, thickness: float) -> float | None:
+    """The height of the face on which the clamp presses in mm; None without supports."""
+    if supports is None:
+        return None
+    request = supports.supports.request
+    asked = request.clamped_height(supports.clamp.at)
+    return thickness if asked == request.thickness else min(asked, thickness)
 
 
 def lift_of(supports: ChosenSupports | None, support_height: float | None) -> float:

@@ -23,7 +23,7 @@ from workhold.geometry.segment import Point
 __all__ = ["SideFigure"]
 
 TITLE, TITLE_ROOM, NOTE_GAP = 14.0, 34.0, 8.0
-# Room above the part without and with a clamp from above, and below the plates for names, page units.
+# Room above the part without and with a clamp on top, and below the plates for names, page units.
 ABOVE, CLAMP_ROOM, NAMES_ROOM = 16.0, 74.0, 48.0
 # Size of the words of levels and dimensions, and of names; the least distance of names in a row.
 WORDS, NAMES, NAME_GAP = 12.0, 12.5, 10.0
@@ -65,6 +65,8 @@ class SideFigure:
         marks: dict[float, list[str]] = {0.0: ["the part lies here"]}
         marks.setdefault(heights.thickness, []).append("top of the part")
         marks.setdefault(heights.peg_top, []).append("top of the pegs")
+        if self.is_clamped_lower:
+            marks.setdefault(self.view.clamped_height, []).append("clamp on top presses")
         if heights.head_room and heights.known_up_to < heights.thickness:
             room = number(heights.head_room)
             marks.setdefault(heights.known_up_to, []).append(f"head room {room}")
@@ -74,6 +76,16 @@ class SideFigure:
             (height, f"{'+' if height > 0 else ''}{number(height)} {', '.join(words)}")
             for height, words in sorted(marks.items())
         ]
+
+    @property
+    def is_clamped_lower(self) -> bool:
+        """Whether the clamp on top presses below the top of the part."""
+        return self.view.clamp is not None and self.view.clamped_height < self.view.heights.thickness
+
+    @property
+    def highest(self) -> float:
+        """The height of the highest thing that is drawn."""
+        return max(self.view.heights.thickness, self.view.heights.peg_top)
 
     @property
     def dimensions(self) -> list[tuple[float, float, str]]:
@@ -123,10 +135,6 @@ class SideFigure:
         else:
             notes.append(
                 "The part is drawn as wide as its outline at every height; its true shape may be less."
-            )
-        if self.view.clamp is not None and heights.head_room is not None:
-            notes.append(
-                "The clamp on top presses on the level face at its place, at whatever height that is."
             )
         notes.append("Thick lines on the part: where pegs press, over the heights of their faces.")
         if any(one.is_hidden for one in self.view.contacts):
@@ -269,11 +277,12 @@ class SideFigure:
         scene.line(ends, BLACK, 1.2)
 
     def draw_top_clamp(self, scene: Scene, page: View) -> None:
-        """Draws the clamp from above as an arrow that ends in its tip."""
+        """Draws the clamp on top as an arrow that ends in its tip."""
         assert self.view.clamp is not None
-        x, y = page((self.view.clamp, self.view.heights.thickness))
+        x, y = page((self.view.clamp, self.view.clamped_height))
+        stem = page((self.view.clamp, self.highest))[1] - HEAD
         half = max(self.view.tip_radius * page.scale, 4.0)
-        scene.arrow((x, y - STEM - HEAD), (x, y - HEAD), SUPPORT, 3.0, 14)
+        scene.arrow((x, min(stem, y - HEAD) - STEM), (x, y - HEAD), SUPPORT, 3.0, 14)
         scene.rectangle(Box(x - half, y - HEAD, x + half, y), "#ffffff", SUPPORT, 1.8, 2.0)
 
     def draw_levels(self, scene: Scene, page: View, drawn: Box) -> None:
@@ -324,7 +333,7 @@ class SideFigure:
             scene.line([(at, row.y1 + 2), (at, row.y1 + 8), (middle, y - 9)], colour, 0.8)
             scene.text((middle, y), name, NAMES, "middle", bold=True, fill=colour)
         if view.clamp is not None:
-            x, top = page((view.clamp, view.heights.thickness))
+            x, top = page((view.clamp, self.highest))
             words_at: Point = (x + 12, top - STEM)
             scene.text(words_at, "clamp on top", NAMES, bold=True, fill=SUPPORT, halo=2.5)
 

@@ -116,7 +116,8 @@ class SideView:
     plates, walls : spans of these.
     contacts : pegs and clamps.
     pads, pad_radius : the supports.
-    clamp, tip_radius : the clamp from above; None without one.
+    clamp, tip_radius : the clamp on top; None without one.
+    clamped_height : at which it presses.
     """
 
     way: ViewWay
@@ -131,6 +132,7 @@ class SideView:
     pad_radius: float = 0.0
     clamp: float | None = None
     tip_radius: float = 0.0
+    clamped_height: float = 0.0
 
     @property
     def extent(self) -> Box:
@@ -171,6 +173,7 @@ def side_view(
         pad_radius=0.0 if request is None else request.pad_radius,
         clamp=None if supports is None else way.across(point_of(pose.apply(*supports.clamp.at))),
         tip_radius=0.0 if request is None else request.tip_radius,
+        clamped_height=heights.thickness if heights.clamped_height is None else heights.clamped_height,
     )
 
 

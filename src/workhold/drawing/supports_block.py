@@ -29,6 +29,8 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
         f"from {sheet.datum.point}",
         f"x {lengths.number(float(there[0]))}, y {lengths.words(float(there[1]))}",
     )
+    if sheet.heights is not None and sheet.heights.clamped_height is not None:
+        column.fact("at the height", lengths.words(sheet.heights.clamped_height), bold=True)
     column.fact("its round tip", f"Ø {lengths.short(2 * request.tip_radius)}", bold=True)
     write_forces(column, sheet, chosen)
     column.fact("tipping arm", lengths.words(clamp.arm))

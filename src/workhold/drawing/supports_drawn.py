@@ -1,4 +1,4 @@
-"""Supports and the clamp from above on the plan of a set-up: their signs, the triangle, and their names."""
+"""Supports and the clamp on top on the plan of a set-up: their signs, the triangle, and their names."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class PlannedSupports:
     names, places : of the holes of the three.
     holes : their carriers, columns and rows.
     pad_radius : of the pads.
-    clamp, tip_radius : of the clamp from above.
+    clamp, tip_radius : of the clamp on top.
     """
 
     names: tuple[str, ...]
@@ -113,7 +113,7 @@ def size_of(radius: float, view: View) -> float:
 
 
 def draw_supports(scene: Scene, supports: PlannedSupports, view: View) -> None:
-    """Draws the triangle of the supports, their pads, and the tip of the clamp from above."""
+    """Draws the triangle of the supports, their pads, and the tip of the clamp on top."""
     group = scene.group("supports", view)
     corners = [view(place) for place in supports.places]
     for one, other in pairwise([*corners, corners[0]]):

@@ -50,7 +50,7 @@ def hardware_of(
     ----------
     peg_length : in mm.
     supports : diameter and height in mm of three supports.
-    top_tip : diameter in mm of the tip of a clamp from above.
+    top_tip : diameter in mm of the tip of a clamp on top.
 
     Examples
     --------

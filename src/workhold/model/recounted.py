@@ -203,7 +203,7 @@ class ChosenSupports:
 
     @property
     def clamp(self) -> ClampFigures:
-        """Where the clamp from above presses, and how good it is there."""
+        """Where the clamp on top presses, and how good it is there."""
         return self.triple.clamp
 
     @property

@@ -39,6 +39,20 @@ def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
     return loops
 
 
+def reals_of(values: Iterable[Any]) -> tuple[float, ...]:
+    """Finite numbers as a tuple of floats.
+
+    Raises
+    ------
+    InputError
+        For a number that is not finite.
+    """
+    numbers = tuple(real(value) for value in values)
+    if not all(map(isfinite, numbers)):
+        raise InputError("a height of an upper face of the solid is no length: give it in mm.")
+    return numbers
+
+
 def numbers_of(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
     """Numbers of faces as tuples."""
     return tuple(tuple(int(number) for number in value) for value in values)
@@ -61,6 +75,7 @@ class SolidOutline:
         say.
     bottom, top : loops of the level faces on which the part lies, and of those with nothing above them. Outer
         ones run counter-clockwise, openings clockwise; none stand where a file does not say.
+    top_heights : for every loop of ``top`` the height of its face in mm; none where a file does not say.
 
     Raises
     ------
@@ -77,6 +92,7 @@ class SolidOutline:
     faces: tuple[tuple[int, ...], ...] = field(default=(), converter=numbers_of)
     bottom: Loops = field(default=(), converter=loops_of)
     top: Loops = field(default=(), converter=loops_of)
+    top_heights: tuple[float, ...] = field(default=(), converter=reals_of)
 
     def __attrs_post_init__(self) -> None:
         if self.axis not in AXES:
@@ -89,6 +105,11 @@ class SolidOutline:
         ):
             if not (isfinite(value) and value > least):
                 raise InputError(f"the {name} {value:g} is not a length: give one in mm.")
+        if len(self.top_heights) not in (0, len(self.top)):
+            raise InputError(
+                f"there are {len(self.top)} loops of upper faces and {len(self.top_heights)} heights: "
+                "give one for each."
+            )
         for band in self.bands:
             if band is not None and not (isfinite(band[0]) and 0.0 <= band[0] <= band[1] < 1e9):
                 raise InputError(f"the band {band[0]:g} to {band[1]:g} mm is none: give its lower end first.")
@@ -116,6 +137,7 @@ class SolidOutline:
             faces=workpiece.get("solid_faces") or (),
             bottom=workpiece.get("bottom") or (),
             top=workpiece.get("top") or (),
+            top_heights=workpiece.get("top_heights") or (),
         )
 
     @property

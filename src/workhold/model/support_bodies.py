@@ -25,10 +25,18 @@ from workhold.model.recounted import ChosenSupports
 from workhold.model.shown import shown
 from workhold.model.support_triples import SupportPad, Supports, Triple
 
-__all__ = ["bodies_on_supports", "bodies_with_supports", "supported_sizes"]
+__all__ = [
+    "bodies_on_supports",
+    "bodies_with_supports",
+    "clamp_pieces",
+    "clamped_height",
+    "supported_sizes",
+]
 
-# Of the screw on top, in mm: how high its tip, its spindle and its knob are, and their radii in tips.
-SCREW = ((3.0, 1.0), (18.0, 0.6), (6.0, 1.5))
+# Of the screw on top, in mm: how high its tip and its knob are, and the least height of its spindle; their
+# radii in tips. The knob stands so far above part and pegs that it touches neither.
+TIP, SPINDLE, KNOB = (3.0, 1.0), (18.0, 0.6), (6.0, 1.5)
+KNOB_ROOM = 5.0
 
 
 def supported_sizes(
@@ -120,10 +128,28 @@ def pad_bodies(
         yield FixtureBody(f"support {pad.hole}", BodyKind.SUPPORT, tuple(slabs), way_open(carrier))
 
 
+def clamp_pieces(low: float, highest: float) -> tuple[tuple[float, float], ...]:
+    """Heights in mm of the pieces of the clamp on top, from its tip upward, and their radii in tips.
+
+    Parameters
+    ----------
+    low : where the tip presses.
+    highest : of what the knob has to stand above.
+    """
+    spindle = max(SPINDLE[0], highest + KNOB_ROOM - low - TIP[0])
+    return TIP, (spindle, SPINDLE[1]), KNOB
+
+
+def clamped_height(supports: Supports, triple: Triple, sizes: BodySizes) -> float:
+    """The height in mm of the upper face on which the clamp presses."""
+    asked = supports.request.clamped_height(triple.clamp.at)
+    return sizes.thickness if asked == supports.request.thickness else min(asked, sizes.thickness)
+
+
 def screw(supports: Supports, triple: Triple, fixture: Fixture, sizes: BodySizes) -> FixtureBody:
-    """The clamp on top."""
-    center, low, slabs = fixture.pose.apply(*triple.clamp.at), sizes.thickness, []
-    for height, share in SCREW:
+    """The clamp on top, its tip on the upper face at its place."""
+    center, low, slabs = fixture.pose.apply(*triple.clamp.at), clamped_height(supports, triple, sizes), []
+    for height, share in clamp_pieces(low, max(sizes.thickness, sizes.top, sizes.others)):
         outline = tuple(peg_outline(center, share * supports.request.tip_radius))
         slabs.append(Slab(outline, (), low, low + height))
         low += height

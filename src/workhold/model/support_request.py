@@ -1,4 +1,4 @@
-"""What is asked of supports and a clamp from above, and the loads in space.
+"""What is asked of supports and a clamp on top, and the loads in space.
 
 Glossary
 --------
@@ -20,7 +20,9 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.loop import checked_vertices
+from workhold.geometry.loop import checked_vertices, loop_segments
+from workhold.geometry.segment import segment_rows
+from workhold.kernels.base.distance import is_inside
 from workhold.limits import real, refuse_long, refuse_strong
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.requirements import ANY_DIRECTION, Load, Zone, all_zones, direction_range, point_pairs
@@ -39,6 +41,11 @@ Span = tuple[float, float]
 def optional_real(value: Any) -> float | None:
     """A number, or None."""
     return None if value is None else real(value)
+
+
+def optional_reals(values: Iterable[Any] | None) -> tuple[float, ...] | None:
+    """Numbers as a tuple, or None."""
+    return None if values is None else tuple(real(value) for value in values)
 
 
 def pair_of(values: Any) -> Span:
@@ -197,6 +204,7 @@ class SupportRequest:
     pad_margin : smallest distance from a pad to the border of the face it supports.
     bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first;
         None is the outline with its holes.
+    top_heights : height in mm of the face of every loop of ``top``; None where all lie at the thickness.
     bottom_zones, top_zones : keep-outs from below and from above.
     inside : smallest distance from the clamp to each side of the supports' triangle; the tip's radius if not
         given.
@@ -227,6 +235,7 @@ class SupportRequest:
     inside: float = field(default=Factory(lambda self: self.tip_radius, takes_self=True), converter=real)
     reach: tuple[tuple[float, float, float, float], ...] | None = field(default=None, converter=rings_of)
     point: Span | None = field(default=None, converter=optional_pair)
+    top_heights: tuple[float, ...] | None = field(default=None, converter=optional_reals)
 
     def __attrs_post_init__(self) -> None:
         for name, value in (
@@ -248,6 +257,11 @@ class SupportRequest:
                     "give "
                     "a band between 0 and the thickness, the smaller height first."
                 )
+        if self.top_heights is not None and len(self.top_heights) != len(self.top or ()):
+            raise InputError(
+                f"there are {len(self.top or ())} loops of upper faces and {len(self.top_heights)} heights: "
+                "give one for each."
+            )
         if self.point is not None and not all(map(isfinite, self.point)):
             raise InputError("the clamp's point is not a place: give finite coordinates in mm.")
 
@@ -292,7 +306,22 @@ class SupportRequest:
             tip_radius=TIP_RADIUS if tip_radius is None else tip_radius,
             bottom=None if solid is None else solid.bottom or None,
             top=None if solid is None else solid.top or None,
+            top_heights=None if solid is None else solid.top_heights or None,
         )
+
+    def clamped_height(self, point: tuple[float, float]) -> float:
+        """The height in mm of the upper face at a point (x, y); the thickness where nobody says."""
+        found = self.thickness
+        for height in sorted(set(self.top_heights or ())):
+            loops = [
+                loop
+                for loop, own in zip(self.top or (), self.top_heights or (), strict=True)
+                if own == height
+            ]
+            rows = segment_rows([segment for loop in loops for segment in loop_segments(loop)])
+            if is_inside(*point, rows):
+                found = min(height, self.thickness)
+        return found
 
     def for_fixture(
         self, fixture: Fixture, solid: SolidOutline | None, peg_height: float | None = None

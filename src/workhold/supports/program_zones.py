@@ -26,7 +26,7 @@ from workhold.contact.swept import Swept, path_of
 from workhold.contact.trimming import distances
 from workhold.model.program import PathVertex, Program, SweptPiece
 from workhold.model.requirements import Zone, zone_of
-from workhold.model.support_bodies import SCREW
+from workhold.model.support_bodies import clamp_pieces
 from workhold.model.support_request import SupportRequest
 from workhold.model.workpiece import Workpiece
 from workhold.supports.faces import TouchableFace
@@ -52,7 +52,7 @@ def with_program(request: SupportRequest, workpiece: Workpiece, program: Program
         return TouchableFace.of(workpiece.loops if loops is None else loops)
 
     below = zones_below(program, request.pad_radius, request.pad_margin, KeyedFace(face(request.bottom)))
-    above = zones_above(program, request.thickness, request.tip_radius, KeyedFace(face(request.top)))
+    above = zones_above(program, levels_of(request), request.tip_radius, KeyedFace(face(request.top)))
 
     def further(own: tuple[Zone, ...], more: tuple[Zone, ...]) -> tuple[Zone, ...]:
         return (*own, *(zone for zone in more if zone not in own))
@@ -91,10 +91,12 @@ def zones_below(program: Program, pad_radius: float, pad_margin: float, keyed: K
 
 
 @lru_cache(maxsize=8)
-def zones_above(program: Program, thickness: float, tip_radius: float, keyed: KeyedFace) -> tuple[Zone, ...]:
+def zones_above(
+    program: Program, levels: tuple[float, ...], tip_radius: float, keyed: KeyedFace
+) -> tuple[Zone, ...]:
     """Where the tip may not stand: where tools come too near to the clamp as it is drawn."""
     return zones_of(
-        Swept.of(beside_clamp(program, thickness, tip_radius)),
+        Swept.of(beside_clamp(program, levels, tip_radius)),
         program.clearance,
         tip_radius,
         tip_radius,
@@ -103,14 +105,22 @@ def zones_above(program: Program, thickness: float, tip_radius: float, keyed: Ke
     )
 
 
-def beside_clamp(program: Program, thickness: float, tip_radius: float) -> Iterator[SweptPiece]:
+def levels_of(request: SupportRequest) -> tuple[float, ...]:
+    """The heights in mm of the faces on which the clamp may press; last that of the part."""
+    lower = {height for height in request.top_heights or () if height < request.thickness}
+    return *sorted(lower), request.thickness
+
+
+def beside_clamp(program: Program, levels: tuple[float, ...], tip_radius: float) -> Iterator[SweptPiece]:
     """What is swept at the heights of the clamp on top, wider where the clamp is wider than its tip."""
-    low = thickness
-    for height, share in SCREW:
-        wider = max(share - 1.0, 0.0) * tip_radius
-        for one in program.iter_swept(low, low + height):
-            yield SweptPiece(one.line, one.tool, one.kind, one.path, one.tip, one.radius + wider, one.heights)
-        low += height
+    for low in levels:
+        for height, share in clamp_pieces(low, levels[-1]):
+            wider = max(share - 1.0, 0.0) * tip_radius
+            for one in program.iter_swept(low, low + height):
+                yield SweptPiece(
+                    one.line, one.tool, one.kind, one.path, one.tip, one.radius + wider, one.heights
+                )
+            low += height
 
 
 def zones_of(

@@ -335,7 +335,7 @@ def keys_missing(head: Head) -> list[str]:
     # Where nobody counted pairs and seats a note says so, for which the account looks.
     spared |= {"workpiece.departure", "tolerance.departure", "vise.flat", "toolkit.flat", "pairs", "seats"}
     # A prism has no solid, and where the bands are there, nothing rests on the numbers of the solid's faces.
-    spared |= {"workpiece.solid_faces", "workpiece.bottom", "workpiece.top"} | (
+    spared |= {"workpiece.solid_faces", "workpiece.bottom", "workpiece.top", "workpiece.top_heights"} | (
         {"solid", "workpiece.bands"} if head.solid is None else set()
     )
     if head.seating is None:

@@ -147,7 +147,7 @@ async def loads(
     return {"rank": rank, "cases": cases}
 
 
-@router.post("/supports", summary="Three supports under the part, and a clamp from above")
+@router.post("/supports", summary="Three supports under the part, and a clamp on top")
 async def supports(
     request: Request, name: str, rank: Rank, form: SupportsForm, revision: Revision = None
 ) -> dict[str, Any]:

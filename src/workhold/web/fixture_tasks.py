@@ -82,7 +82,7 @@ class PaperOrder:
         :func:`workhold.drawing.result_sheet.result_details` and :func:`workhold.files.dxf.writer.setup_dxf`;
         lengths in mm.
     result_hash : of the result's file, or None where it is not known yet.
-    supports : what supports and clamp from above are asked for, and which set of them; None for none.
+    supports : what supports and clamp on top are asked for, and which set of them; None for none.
     before : the set-up of the other side before; None for none.
     """
 

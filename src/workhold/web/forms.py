@@ -60,6 +60,7 @@ class SolidForm(Form):
     faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
     top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    top_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
 
 
 class WorkpieceForm(Form):

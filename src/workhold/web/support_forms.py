@@ -1,4 +1,4 @@
-"""Requests for supports under a fixture and a clamp from above, checked by pydantic; lengths in mm."""
+"""Requests for supports under a fixture and a clamp on top, checked by pydantic; lengths in mm."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class SpatialLoadForm(Form):
 
 
 class SupportsForm(Form):
-    """What supports and the clamp from above are, and what acts on the part.
+    """What supports and the clamp on top are, and what acts on the part.
 
     Of a solid the thickness, the level faces and the heights of its walls are known. What is left out is as
     usual. ``bottom_zones`` keep pads off, ``top_zones`` the clamp. Loads are those of the search where none

@@ -1,4 +1,4 @@
-"""The task of workers that finds supports under a fixture and a clamp from above, and its answer.
+"""The task of workers that finds supports under a fixture and a clamp on top, and its answer.
 
 Glossary
 --------
@@ -155,6 +155,7 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
         "carriers": [names.index(pad.carrier) for pad in triple.supports],
         "pads": [placed(pad.x, pad.y) for pad in triple.supports],
         "at": placed(*clamp.at),
+        "clamped_height": found.request.clamped_height(clamp.at),
         "at_part": list(clamp.at),
         "nearest": placed(*nearest_of_border(corners, np.array(clamp.at))),
         "clamp_force": clamp.clamp_needed if loaded else None,

@@ -569,6 +569,11 @@ def test_faces_split_by_an_imprinted_line_are_one() -> None:
     # A step beside a face of another height stays a face of its own.
     stepped = shapes_by_height([fused(PLATE, box(20, 40, 4, (0, 0, 20)))], HeightView())
     assert len(stepped.solid.top) == 2
+    widths = {
+        height: max(x for x, *_ in loop)
+        for loop, height in zip(stepped.solid.top, stepped.solid.top_heights, strict=True)
+    }
+    assert widths == {20.0: 60.0, 24.0: 20.0}
 
 
 @pytest.mark.parametrize("name", ["casting", "counterbored", "overlapped", "slanted", "valve body"])

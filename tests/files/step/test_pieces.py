@@ -33,6 +33,7 @@ from workhold import (
 )
 from workhold import open as workhold_open
 from workhold.algebra import answer_by_algebra
+from workhold.cli.tables import face_table
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.files.step.heights import standing
@@ -193,3 +194,9 @@ def test_remark_names_the_pieces(tmp_path: Path) -> None:
     assert [len(loop) for loop in loops] == [4, 4, 2]
     again = read_workpiece(tmp_path / "result.json")
     assert again.workpiece.pieces == 2 and again.parts[0].area == pytest.approx(loaded.parts[0].area)
+
+
+def test_the_table_of_faces_names_pieces_and_holes(feet: Workpiece) -> None:
+    """Of a part in pieces each outer loop is a piece; holes are counted from 1 after these."""
+    where = {row[3] for row in face_table(feet).rows}
+    assert where == {"piece 1", "piece 2", "hole 1"}

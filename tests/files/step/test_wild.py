@@ -75,7 +75,7 @@ def figures(shape: Any, high: float, scale: float = 1.0) -> list[float]:
     area, border, touchable, band = measures(outline)
     level = [
         sum(signed_area(loop_segments(loop)) for loop in loops)
-        for loops in (bottom_loops(solid), top_loops(solid))
+        for loops in (bottom_loops(solid), [loop for loop, _ in top_loops(solid)])
     ]
     lengths = [border / scale, touchable / scale, band / scale, len(outline.loops)]
     return [area / scale**2, *lengths, *(one / scale**2 for one in level)]

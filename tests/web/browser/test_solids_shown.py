@@ -1,4 +1,4 @@
-"""A solid on the page: how it stands, supports under it and a clamp from above, and its second side."""
+"""A solid on the page: how it stands, supports under it and a clamp on top, and its second side."""
 
 from __future__ import annotations
 

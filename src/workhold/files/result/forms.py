@@ -77,6 +77,7 @@ class WorkpiecePart(FormPart):
     solid_faces: list[list[int]] | None = Field(None, description="faces of the solid over each segment")
     bottom: list[list[list[float]]] | None = Field(None, description="loops on which the solid lies")
     top: list[list[list[float]]] | None = Field(None, description="loops of its faces with nothing above")
+    top_heights: list[float] | None = Field(None, description="height in mm of the face of each of these")
 
 
 class SolidPart(FormPart):

@@ -178,7 +178,9 @@ def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
     if solid is None:
         return {}
     faces = {"solid_faces": [list(faces) for faces in solid.faces]} if solid.faces else {}
-    level = {"bottom": solid.bottom, "top": solid.top} if solid.bottom or solid.top else {}
+    level: dict[str, Any] = {"bottom": solid.bottom, "top": solid.top} if solid.bottom or solid.top else {}
+    if solid.top_heights:
+        level["top_heights"] = list(solid.top_heights)
     return {"bands": [None if band is None else list(band) for band in solid.bands], **faces, **level}
 
 

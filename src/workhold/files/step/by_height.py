@@ -18,7 +18,7 @@ from workhold.files.step.departures import other_axis_remarks
 from workhold.files.step.heights import HEAD_ROOM as USUAL_ROOM
 from workhold.files.step.heights import LEAST_BAND as USUAL_BAND
 from workhold.files.step.heights import StandingSolid, standing
-from workhold.files.step.level_faces import bottom_loops, top_loops
+from workhold.files.step.level_faces import known_levels
 from workhold.files.step.library import load_step_library
 from workhold.files.step.other_curves import OtherCurveError
 from workhold.files.step.reader import drawing_of, guarded, plain_drawing, prepare, read_solid
@@ -213,7 +213,7 @@ def plain_heights(drawing: HeightDrawing) -> Any:
     heights = (solid.height, solid.peg_height, solid.head_room, solid.least_band)
     loops = [loop.tolist() for loop in drawing.loops]
     rows = [astuple(row) for row in drawing.heights]
-    described = (solid.axis, *heights, solid.bands, solid.faces, solid.bottom, solid.top)
+    described = (solid.axis, *heights, solid.bands, solid.faces, solid.bottom, solid.top, solid.top_heights)
     return loops, described, drawing.remarks, rows
 
 
@@ -307,9 +307,9 @@ def drawn(shape: Any, solid: StandingSolid, view: HeightView, *, is_advised: boo
             f"along {axis} no upright face of the part is at least {least:g} mm high below "
             f"{outline.peg_height:g} mm: {advice(solid, room, least)}."
         )
-    level = [[loop.tolist() for loop in found] for found in (bottom_loops(solid), top_loops(solid))]
     feet = sum(area > 0 for area in areas)
-    found = SolidOutline(axis, solid.height, outline.peg_height, room, least, bands, faces, *level)
+    heights = (solid.height, outline.peg_height, room, least)
+    found = SolidOutline(axis, *heights, bands, faces, **known_levels(solid))
     plain_prism = view.peg_height is None and is_prism(solid)
     rows = [] if plain_prism else height_table(solid, room, least)
     remarks = [] if plain_prism else height_remarks(outline, found, rows, feet)

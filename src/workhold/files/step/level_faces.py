@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import pi, tan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,13 +21,23 @@ from workhold.geometry.segment import Line, Point, Segment, segment_rows
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["bottom_loops", "top_loops"]
+__all__ = ["bottom_loops", "known_levels", "top_loops"]
 
 Array = NDArray[np.float64]
 Box = tuple[float, float, float, float]
 # Points across a face, each way, at which what lies above it is asked for, and where nothing there is round;
 # along an edge; how far from the face's border, in mm.
 ACROSS, ACROSS_FLAT, ALONG, OFF = 12, 4, 33, 1e-3
+
+
+def known_levels(solid: StandingSolid) -> dict[str, list[Any]]:
+    """The level faces of a solid by the names that ``SolidOutline`` has for them."""
+    top = top_loops(solid)
+    return {
+        "bottom": [loop.tolist() for loop in bottom_loops(solid)],
+        "top": [loop.tolist() for loop, _ in top],
+        "top_heights": [height for _, height in top],
+    }
 
 
 def bottom_loops(solid: StandingSolid) -> list[Array]:
@@ -37,8 +48,8 @@ def bottom_loops(solid: StandingSolid) -> list[Array]:
     return joined([loops_of(face) for face in lying])
 
 
-def top_loops(solid: StandingSolid) -> list[Array]:
-    """Loops (N, 3) of level faces with nothing of the solid above them, at whatever height.
+def top_loops(solid: StandingSolid) -> list[tuple[Array, float]]:
+    """Loops (N, 3) of level faces with nothing of the solid above them, each with its height in mm.
 
     Faces of one height that lie side by side are one face; those of other heights stay faces of their own.
     """
@@ -52,7 +63,7 @@ def top_loops(solid: StandingSolid) -> list[Array]:
                     found.append((face.low, [loops]))
                 else:
                     level.append(loops)
-    return [loop for _, faces in found for loop in joined(faces)]
+    return [(loop, height) for height, faces in found for loop in joined(faces)]
 
 
 def joined(faces: Sequence[Sequence[Array]]) -> list[Array]:

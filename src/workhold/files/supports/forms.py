@@ -63,11 +63,12 @@ class PadsPart(FormPart):
 
 
 class TipPart(FormPart):
-    """The clamp from above."""
+    """The clamp on top."""
 
     tip_radius: float
     inside: float | None = None
     top: list[Loop] | None = None
+    top_heights: list[float] | None = None
     zones: list[ZonePart] = Field(default_factory=list)
     reach: list[Ring] | None = None
     point: Two | None = None
@@ -175,6 +176,7 @@ class SupportsPart(FormPart):
             pad_margin=pads.pad_margin,
             bottom=pads.bottom,
             top=tip.top,
+            top_heights=tip.top_heights,
             bottom_zones=tuple(one.zone() for one in pads.zones),
             top_zones=tuple(one.zone() for one in tip.zones),
             inside=tip.tip_radius if tip.inside is None else tip.inside,

@@ -63,6 +63,7 @@ def supports_entry(supports: Supports) -> dict[str, Any]:
             "tip_radius": request.tip_radius,
             "inside": request.inside,
             "top": loops_entry(request.top),
+            **({} if request.top_heights is None else {"top_heights": list(request.top_heights)}),
             "zones": [zone_entry(zone) for zone in request.top_zones],
             "reach": None if request.reach is None else [list(ring) for ring in request.reach],
             "point": None if request.point is None else list(request.point),

@@ -90,7 +90,7 @@ export class FixtureDrawing {
     if (this.row) this.build();
   }
 
-  /** Show supports and the clamp from above, or none. @param {any} supports a set of the server, with the radii */
+  /** Show supports and the clamp on top, or none. @param {any} supports a set of the server, with the radii */
   showSupports(supports) {
     if (supports === this.supports) return;
     this.supports = supports;

@@ -159,7 +159,7 @@ function holeLabels(drawing) {
   });
 }
 
-/** Labels of the supports' holes, on the side away from the clamp, and of the clamp from above. */
+/** Labels of the supports' holes, on the side away from the clamp, and of the clamp on top. */
 function padLabels(drawing) {
   const { supports, view, row } = drawing;
   if (!supports) return [];
@@ -179,7 +179,7 @@ function padLabels(drawing) {
   return [...pads, label(clamp, [0.6, -0.8], words, supports.tip_radius * view.k, ".from-above")];
 }
 
-/** What supports and the clamp from above take of the drawing, in pixels. */
+/** What supports and the clamp on top take of the drawing, in pixels. */
 function supportRooms({ supports, view, lying, open }) {
   if (!supports || lying) return [];
   const room = ([x, y], radius) => ({ x, y, w: 2 * radius * view.k, h: 2 * radius * view.k });

@@ -216,12 +216,23 @@ function say(words, remarks = []) {
   byId("part-words").replaceChildren(words, ...(more ? [notes] : []));
 }
 
+/** Whether a loop runs clockwise, as the borders of holes do. @param {number[][]} loop of x, y in mm and bulge */
+function isHole(loop) {
+  const area = loop.reduce((sum, [x, y, bulge], k) => {
+    const [u, v] = loop[(k + 1) % loop.length];
+    const turn = 4 * Math.atan(bulge);
+    const sagged = bulge ? ((u - x) ** 2 + (v - y) ** 2) * ((1 + bulge ** 2) / (4 * bulge)) ** 2 * (turn - Math.sin(turn)) : 0;
+    return sum + x * v - u * y + sagged;
+  }, 0);
+  return area < 0;
+}
+
 /** Name, size and remarks of the part. */
 function tell() {
   const { part } = state;
   if (!part) return;
   const [x0, y0, x1, y1] = part.bounds;
-  const holes = part.loops.length - 1;
+  const holes = part.loops.filter(isHole).length;
   const size = `${length(x1 - x0, 2)} × ${length(y1 - y0, 2)}`;
   const words = `${part.name}: ${size}, ${part.faces.length} face${part.faces.length === 1 ? "" : "s"}${holes ? `, ${holes} hole${holes > 1 ? "s" : ""}` : ""}.`;
   say(words, part.remarks ?? []);

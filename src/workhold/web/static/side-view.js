@@ -1,5 +1,5 @@
 /**
- * A set-up from the side, to scale: part, pegs with the heights at which they press, supports, and the clamp from above.
+ * A set-up from the side, to scale: part, pegs with the heights at which they press, supports, and the clamp on top.
  */
 import { draw } from "./dom.js";
 import { bareLength, number } from "./units.js";
@@ -19,7 +19,7 @@ const LEAST_APART = 13;
  * @param {SVGSVGElement} svg as wide as there is room
  * @param {{boxes: BodyBox[], thickness: number, peg_height: number, bands: number[][]}} seen
  * @param {string[]} holes of the pegs, in the order of the bands
- * @param {{at: number[], force: number|null}} clamp where it presses and with what force in N
+ * @param {{at: number[], force: number|null, height?: number}} clamp where it presses, with what force in N, and at which height
  * @param {"x"|"y"} across the axis that runs to the right
  */
 export function drawSide(svg, seen, holes, clamp, across) {
@@ -51,7 +51,7 @@ export function drawSide(svg, seen, holes, clamp, across) {
     const middle = (run(box)[0] + run(box)[1]) / 2;
     return [draw("line.side-band", { x1: x(middle), x2: x(middle), y1: z(band[0]), y2: z(band[1]) })];
   });
-  const tip = z(thickness);
+  const tip = z(clamp.height ?? thickness);
   const press = clamp.force === null ? "clamp" : `${number(Math.ceil(clamp.force), 0)} N`;
   const arrow = [
     draw("path.side-push", { d: `M${x(clampAt)} ${tip}l-5 -11h3.4v-10h3.2v10h3.4Z` }),

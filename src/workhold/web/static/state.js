@@ -36,7 +36,7 @@ export const SETTINGS = [
  * @property {import("./trial.js").Trial|null} trial the part in the hand
  * @property {number[]|null} cut faces that this set-up cuts, so that the second side is not held by them; null is those not to touch
  * @property {import("./set-ups.js").Sides|null} sides both sides of a part that is turned over, or null
- * @property {import("./supports.js").Wish} supports what supports under the part and the clamp from above are
+ * @property {import("./supports.js").Wish} supports what supports under the part and the clamp on top are
  * @property {import("./program-panel.js").Wish|null} program that the machine runs while the part is held
  * @property {any} programRead what the server understood of it, or null
  * @property {string|null} programName which a link speaks of

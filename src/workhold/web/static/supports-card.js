@@ -1,5 +1,5 @@
 /**
- * The card of supports and the clamp from above, as elements.
+ * The card of supports and the clamp on top, as elements.
  */
 import { draw, make } from "./dom.js";
 import { unitWord } from "./units.js";
@@ -30,7 +30,7 @@ function view(id, words, label) {
 /** The whole card. */
 export function supportsCard() {
   return make("details.card.supports.wide", { id: "supports" },
-    make("summary", {}, make("h2", {}, "Supports and clamp from above"), " ", make("span.faint", {}, HINT)),
+    make("summary", {}, make("h2", {}, "Supports and clamp on top"), " ", make("span.faint", {}, HINT)),
     make("div.supports-body", {},
       make("div.grid-fields.narrow", {},
         field("support-thickness", "Part thickness", { labelId: "support-thickness-label" }),
@@ -48,6 +48,6 @@ export function supportsCard() {
           view("side-front", "From the front, to scale", "The set-up from the front, to scale"),
           view("side-right", "From the right", "The set-up from the right, to scale")),
         make("ul.legend.small.faint", {},
-          make("li.of-band", {}, "heights at which a peg may press"), make("li.of-support", {}, "supports"), make("li.of-clamp", {}, "clamp from above"))),
+          make("li.of-band", {}, "heights at which a peg may press"), make("li.of-support", {}, "supports"), make("li.of-clamp", {}, "clamp on top"))),
       make("ul.small.faint", { id: "supports-notes" })));
 }

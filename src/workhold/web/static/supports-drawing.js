@@ -1,5 +1,5 @@
 /**
- * Supports under the part and the clamp from above over the plan of a fixture, in mm in the toolkit's frame.
+ * Supports under the part and the clamp on top over the plan of a fixture, in mm in the toolkit's frame.
  */
 import { draw } from "./dom.js";
 

@@ -1,5 +1,5 @@
 /**
- * Supports under the part and a clamp from above: the best sets of the fixture shown, over the plan, from the side, in figures.
+ * Supports under the part and a clamp on top: the best sets of the fixture shown, over the plan, from the side, in figures.
  */
 import { ApiError, send } from "./api.js";
 import { byId, make, quiet, show } from "./dom.js";
@@ -153,7 +153,7 @@ function drawSides(answer) {
   const one = answer.sets[chosen];
   for (const [id, across] of VIEWS) {
     const svg = /** @type {SVGSVGElement} */ (/** @type {any} */ (byId(id)));
-    drawSide(svg, { ...answer, boxes: answer.boxes[chosen] }, state.selected.holes, { at: one.at, force: one.clamp_force }, /** @type {"x"|"y"} */ (across));
+    drawSide(svg, { ...answer, boxes: answer.boxes[chosen] }, state.selected.holes, { at: one.at, force: one.clamp_force, height: one.clamped_height }, /** @type {"x"|"y"} */ (across));
   }
 }
 

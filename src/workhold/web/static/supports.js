@@ -1,5 +1,5 @@
 /**
- * What is asked of supports under the part and a clamp from above, as the server takes it; lengths in mm.
+ * What is asked of supports under the part and a clamp on top, as the server takes it; lengths in mm.
  */
 import { centerOf } from "./forces.js";
 import { loadOf } from "./forces-panel.js";
