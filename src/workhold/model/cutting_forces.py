@@ -106,7 +106,7 @@ class CuttingForces:
         InputError, LookupError, TypeError, ValueError
             For entries that lack something, or hold what cannot be.
         """
-        none = {"force": 0.0, "torque": 0.0, "axial": [0.0, 0.0], "height": 0.0}
+        none: dict[str, Any] = {"force": 0.0, "torque": 0.0, "axial": [0.0, 0.0], "height": 0.0}
         taken = [none if isinstance(row, bytes) else row.get("cutting", none) for row in rows]
         force, torque, height = ([real(one[name]) for one in taken] for name in ("force", "torque", "height"))
         axial = np.array([[real(value) for value in one["axial"]] for one in taken]).reshape(-1, 2)
