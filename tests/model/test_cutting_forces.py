@@ -150,3 +150,12 @@ def test_a_table_in_inches_and_a_program_come_back_from_their_entries(tmp_path: 
         Program.read(tmp_path / "p.nc", {1: {"diameter": 9, "teeth": 2}}, z_zero=1, cutting=asked)
     with pytest.raises(InputError, match="cutting has no 'powr'"):
         Program.read(tmp_path / "p.nc", {1: 9}, z_zero=1, cutting={"powr": 2})
+
+
+def test_the_manual_has_the_numbers_of_the_table() -> None:
+    text = (Path(__file__).parents[2] / "docs" / "program.md").read_text()
+    cells = [cell.strip() for line in text.splitlines() for cell in line.split("|")]
+    for one in MATERIALS:
+        place = cells.index(one.name, cells.index("material"))
+        group, kc, mc = cells[place + 1 : place + 4]
+        assert f"(group {group})" in one.words and (float(kc), float(mc)) == (one.kc, one.mc)

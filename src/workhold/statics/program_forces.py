@@ -73,7 +73,7 @@ class CuttingNeed:
         return asdict(self)
 
     def in_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
-        """The same with holes under other names, contact by contact."""
+        """Renames the holes, contact by contact."""
         names = dict(zip(before, after, strict=True))
 
         def renamed(asked: AskedForce) -> AskedForce:
