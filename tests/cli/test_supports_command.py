@@ -87,12 +87,13 @@ def test_words_of_a_load() -> None:
 
 
 def test_part_that_no_three_supports_hold_up(tmp_path: Path, run: Run) -> None:
-    """Where no set fits, the command says how many holes could hold a support, and what to try."""
+    """Where no set fits, the command says why, and what would help."""
     kite = Workpiece.from_loops("kite", [[[0, 0, 0], [34, -4, 0.1], [44, 20, 0], [11, 33, 0]]])
     path = tmp_path / "kite.json"
     workhold.save(workhold.design(kite, Plate(pitch=20, peg_radius=3), best=1), path)
     shown = run("supports", path, "1", "--thickness", "10")
-    assert shown.exit_code == 0 and "no three supports hold the part" in shown.stdout
+    assert shown.exit_code == 0 and "No three supports hold the part" in shown.stdout
+    assert "room for a pad of radius 4.000 mm" in " ".join(shown.stdout.split())
 
 
 def test_search_with_supports(run: Run, tmp_path: Path) -> None:

@@ -39,6 +39,7 @@ from workhold.errors import InputError
 if TYPE_CHECKING:
     from workhold.model.query import Query
     from workhold.model.result import Result
+    from workhold.model.support_triples import Supports
     from workhold.units import Unit
 
 __all__ = ["design"]
@@ -188,8 +189,11 @@ def design(
         ", compiling on this first run included" if first_run else ""
     )
     report(result, spent, out, form, listed, shown, unfit)
+    supported: tuple[Supports, ...] = ()
     if high is not None:
-        report_supported(result, high, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
+        supported = report_supported(
+            result, high, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout
+        )
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":
@@ -197,7 +201,7 @@ def design(
     elif folder is not None:
         draw_pictures(result, folder, out, shown)
     if sheet is not None:
-        report_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in)
+        report_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in, supported)
 
 
 def with_size_remark(

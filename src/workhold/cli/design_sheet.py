@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +17,7 @@ from workhold.units import Unit
 if TYPE_CHECKING:
     from workhold.model.recounted import ChosenSupports
     from workhold.model.result import Result
+    from workhold.model.support_triples import Supports
 
 __all__ = ["first_sheet", "refuse_sheet", "report_sheet"]
 
@@ -44,13 +45,19 @@ def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | Non
 
 
 def report_sheet(
-    result: Result, sheet: str, out: str | None, thickness: float | None, unit: Unit, before: str | None
+    result: Result,
+    sheet: str,
+    out: str | None,
+    thickness: float | None,
+    unit: Unit,
+    before: str | None,
+    supported: Sequence[Supports] = (),
 ) -> None:
     """Writes the sheet of the first choice and says so, or says why there is none."""
     from workhold.cli.table import print_tables
 
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
-    rank = first_sheet(result, sheet, out, thickness, unit, before)
+    rank = first_sheet(result, sheet, out, thickness, unit, before, supported)
     if rank is None:
         print_tables(f"As there is no fixture, {sheet} was not written.", stream=stream)
     else:
@@ -58,7 +65,13 @@ def report_sheet(
 
 
 def first_sheet(
-    result: Result, sheet: str, out: str | None, thickness: float | None, unit: Unit, before: str | None
+    result: Result,
+    sheet: str,
+    out: str | None,
+    thickness: float | None,
+    unit: Unit,
+    before: str | None,
+    supported: Sequence[Supports] = (),
 ) -> int | None:
     """Writes the sheet of the first choice and returns its rank; None where there is no fixture.
 
@@ -67,6 +80,7 @@ def first_sheet(
     out : the file that the result was written to, whose hash stands on the sheet.
     thickness : of the part in mm, where supports are wanted: the first choice is the first that has some.
     before : the result of the set-up of the part's other side before this one; None for none.
+    supported : the supports of the best fixtures where they are known already, in order.
 
     Raises
     ------
@@ -81,7 +95,7 @@ def first_sheet(
         return None
     rank, supports = ranks[0], None
     if thickness is not None:
-        rank, supports = first_supported(result, ranks, thickness)
+        rank, supports = first_supported(result, ranks, thickness, supported)
     settings = {
         "day": date.today(),
         "unit": unit,
@@ -94,11 +108,20 @@ def first_sheet(
     return rank
 
 
-def first_supported(result: Result, ranks: list[int], thickness: float) -> tuple[int, ChosenSupports | None]:
+def first_supported(
+    result: Result, ranks: list[int], thickness: float, supported: Sequence[Supports]
+) -> tuple[int, ChosenSupports | None]:
     """The first of some fixtures that three supports hold up, and these; the first one where none has any."""
+    from workhold.model.recounted import ChosenSupports
+
     query = result.query
     for rank in ranks:
-        supports = supports_under(result, rank, thickness, None, query.jaw_force)
+        # The table is for the jaw force that the loads ask for.
+        known = supported[rank - 1] if query.jaw_force is None and rank <= len(supported) else None
+        if known is None:
+            supports = supports_under(result, rank, thickness, None, query.jaw_force)
+        else:
+            supports = ChosenSupports.of(known) if known.triples else None
         if supports is not None:
             if rank != ranks[0]:
                 print_remark(

@@ -58,10 +58,11 @@ def supports_under(
     Raises
     ------
     InputError
-        Where nobody knows how thick the part is.
+        Where nobody knows how thick the part is, and for more holes than can be looked at.
     """
     from workhold.model.recounted import ChosenSupports
     from workhold.model.support_request import SupportRequest
+    from workhold.supports.acting import WeakJawError
     from workhold.supports.listing import supports_of
 
     if thickness is None and result.workpiece.solid is None:
@@ -69,7 +70,7 @@ def supports_under(
     request = SupportRequest.of(result.workpiece, thickness, toolkit=result.toolkit)
     try:
         found = supports_of(result[rank - 1], result.query, request, loads, jaw_force, best=1)
-    except InputError:
+    except WeakJawError:
         found = supports_of(result[rank - 1], result.query, request, loads, best=1)
     return ChosenSupports.of(found) if found.triples else None
 

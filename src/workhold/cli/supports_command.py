@@ -199,14 +199,15 @@ def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: 
     return high
 
 
-def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> None:
-    """Prints for the best fixtures of a result which three supports hold the part up best, if any do."""
+def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> tuple[Supports, ...]:
+    """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them."""
     from workhold.model.support_request import SupportRequest
     from workhold.supports.listing import supports_of_best
+    from workhold.supports.why_none import why_none
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
-        return
+        return ()
     request = SupportRequest.of(result.workpiece, thickness, toolkit=result.toolkit)
     found = supports_of_best(fixtures, result.query, request, each=1)
     with_loads = result.query.is_loaded
@@ -220,6 +221,8 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
     )
     none = [f"Under {', '.join(bare)} no three hold the part."] if bare else []
+    if bare:
+        none.append(f"Under {bare[0]}: {why_none(found[int(bare[0]) - 1], unit)}")
     best = [triple for one in found for triple in one.triples]
     print_tables(
         "",
@@ -230,6 +233,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         *flat_faces(result.workpiece),
         stream=stream,
     )
+    return found
 
 
 def flat_faces(workpiece: Workpiece) -> list[str]:
@@ -292,10 +296,9 @@ def report(
         print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written)
         return
     if not found.triples:
-        print_tables(
-            f"Under fixture {rank} no three supports hold the part with the clamp between them: "
-            f"{found.positions} holes could hold a support. Try smaller pads, or a smaller tip."
-        )
+        from workhold.supports.why_none import why_none
+
+        print_tables(f"Fixture {rank}: {why_none(found, unit)}")
     else:
         print_sets(found, listed, result, rank, unit)
     if found.count is not None and found.count > len(listed) and not written:

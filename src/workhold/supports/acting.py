@@ -14,7 +14,11 @@ from workhold.model.requirements import Load
 from workhold.model.support_request import SpatialLoad
 from workhold.supports.forces import PegForces, largest_over
 
-__all__ = ["checked_force", "needed_jaw_force", "spatial"]
+__all__ = ["WeakJawError", "checked_force", "needed_jaw_force", "spatial"]
+
+
+class WeakJawError(InputError):
+    """A jaw force that is too small for a load."""
 
 
 def spatial(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[SpatialLoad, ...]:
@@ -28,7 +32,7 @@ def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: f
 
     Raises
     ------
-    InputError
+    WeakJawError
         When the one asked for is too small, naming the load.
     """
     needs = [needed_for(pegs, load) for load in loads]
@@ -37,7 +41,7 @@ def needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: f
     for load, need in zip(loads, needs, strict=True):
         if need > jaw_force * (1 + AGREEMENT):
             name = f"the load '{load.name}'" if load.name else "a load"
-            raise InputError(
+            raise WeakJawError(
                 f"a jaw force of {jaw_force:g} N lets a peg lose contact under {name}, which takes "
                 f"{need:.6g} N: give more, or leave it out."
             )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import atan2, ceil, hypot, inf, pi, sqrt
 
@@ -11,13 +11,18 @@ from numpy.typing import NDArray
 
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Arc, Segment, distance_to_segment
+from workhold.model.fixture import Fixture
+from workhold.model.query import Query
+from workhold.model.support_request import SupportRequest
 
-__all__ = ["area_center", "room_on"]
+__all__ = ["area_center", "band_faults", "room_on"]
 
 Array = NDArray[np.float64]
 Loop = tuple[Segment, ...]
 # How far beside a segment a point is looked at, in mm.
 PROBE = 1e-4
+# Written heights agree with those of the solid to this, in mm.
+SAME_HEIGHT = 1e-6
 
 
 def turns_about(segments: Loop, point: tuple[float, float]) -> int:
@@ -89,3 +94,21 @@ def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
         first += float(weights @ (x * x * dy)) / 2
         second -= float(weights @ (y * y * dx)) / 2
     return first / area, second / area
+
+
+def band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iterator[str]:
+    """A fault for each peg whose band is not that of the faces of the solid that it touches."""
+    solid, bands = query.workpiece.solid, request.bands
+    if solid is None or bands is None:
+        return
+    for peg, written in zip(fixture.pegs, bands, strict=True):
+        faces = [solid.bands[number] for number in (peg.face, peg.beside) if number is not None]
+        known = [band for band in faces if band is not None]
+        own = [min(low for low, _ in known), max(high for _, high in known)] if known else []
+        own = [min(height, request.thickness) for height in own]
+        if len(own) != len(written or ()) or any(
+            abs(a - b) > SAME_HEIGHT for a, b in zip(written or (), own, strict=True)
+        ):
+            has = "no band" if written is None else f"the band {written[0]:g} to {written[1]:g}"
+            solids = f"{own[0]:g} to {own[1]:g}" if own else "none"
+            yield f"a peg on face {peg.face} has {has}, and that of the solid is {solids}"

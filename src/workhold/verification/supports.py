@@ -5,6 +5,7 @@ are solved from the balance in space together with the push on what moves. That 
 band and at the stationary directions of every load. No barycentric coordinate, no worst height and no place
 of a clamp is taken from what is judged. That there is no better place of the clamp is
 tried at points of a grid. Numbers are doubles, and have to agree to 1e-6 of themselves.
+Of a complete list all other triples are tried too (``verification.support_listing``).
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.verification.reading import fixtures_of
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.support_faces import area_center, room_on
+from workhold.verification.support_faces import area_center, band_faults, room_on
+from workhold.verification.support_listing import Hole, missing_triples, opened_clear_of_blocked
 from workhold.verification.verify import Judge, Unproven, Verification
 
 __all__ = ["SupportsJudge", "is_supports_file", "verify_supports_file"]
@@ -166,7 +168,11 @@ class SupportsJudge:
         most = moving.travel.most
         back = 0 if most is None else max(ceil((opened - most - 1e-9) / step), 0)
         opened -= back * step
-        return fits and back <= room and opened >= moving.travel.least - AGREEMENT, opened
+        fits = fits and back <= room and opened >= moving.travel.least - AGREEMENT
+        if fits and len(plates) > 1 and any(plate.blocked for plate in plates):
+            clear = opened_clear_of_blocked(toolkit, self.fixture, [*holes])
+            return clear is not None, clear
+        return fits, opened
 
     def balances(self, supports: Array) -> Array:
         """Support forces (K, 3, 7) per unit of each right side of the balance, at the corners of the bands.
@@ -253,9 +259,8 @@ class SupportsJudge:
         fits, opened = self.travel(holes)
         if not fits:
             yield "pegs and supports do not fit the columns, the rows or the gap"
-        blocked = any(plate.blocked for plate in self.toolkit.plates)
-        if (opened is None) != (part.jaw_separation is None) or (
-            opened is not None and not blocked and abs(opened - (part.jaw_separation or 0.0)) > AGREEMENT
+        elif (opened is None) != (part.jaw_separation is None) or (
+            opened is not None and abs(opened - (part.jaw_separation or 0.0)) > AGREEMENT
         ):
             yield f"the jaw separation is {opened}, and is written as {part.jaw_separation}"
         supports = np.array([self.point_of(hole) for hole in holes])
@@ -360,17 +365,24 @@ def verify_supports_file(path: str | Path) -> Verification:
     fixture = ToolkitRules.of(query).taken(fixtures_of([part.fixture], path)[0])
     planar = Judge(query).rule_on(evolve(fixture, quality={}))
     judge = SupportsJudge(query, fixture, request, loads, part.jaw_force)
-    unproven, faults, seen = list[Unproven](), list[str](), set[tuple[object, ...]]()
+    unproven, faults, seen = list[Unproven](), list[str](), set[frozenset[Hole]]()
     if planar.verdict != "proven":
         faults.append(f"its planar fixture is {planar.verdict}: {planar.reason}")
     for place, triple in enumerate(part.triples):
         reasons = [*judge.faults(triple)]
-        key = tuple(sorted(triple.holes))
+        key = frozenset((str(a), b, c) for a, b, c in triple.holes)
         reasons += ["it is listed twice"] if key in seen else []
         seen.add(key)
         if reasons:
             unproven.append(Unproven(place, "refuted", reasons[0]))
-    if part.complete and part.counts.triples != len(part.triples):
-        faults.append(f"counts say {part.counts.triples} triples, but {len(part.triples)} are listed")
+    faults += band_faults(query, fixture, request)
+    counted, undecided = part.counts.triples, 0
+    if counted != len(part.triples) if part.complete else (counted or inf) < len(part.triples):
+        faults.append(f"counts say {counted} triples, but {len(part.triples)} are listed")
+    if part.complete and planar.verdict == "proven":
+        missing, undecided = missing_triples(judge, seen, part.counts.positions)
+        faults += missing
     refuted = len(unproven)
-    return Verification(len(part.triples) - refuted, refuted, 0, tuple(unproven), tuple(faults), planar.bits)
+    return Verification(
+        len(part.triples) - refuted, refuted, undecided, tuple(unproven), tuple(faults), planar.bits
+    )

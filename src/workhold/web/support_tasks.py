@@ -197,11 +197,9 @@ def notes_of(found: Supports, unit: str) -> list[str]:
     given, listed = unit_named(unit), found.triples
     notes = []
     if not listed:
-        few = "no hole" if not found.positions else f"{found.positions} holes"
-        notes.append(
-            f"No three supports hold the part up with the clamp between them; {few} could hold a support. "
-            "Smaller pads or a smaller tip may help, or another fixture."
-        )
+        from workhold.supports.why_none import why_none
+
+        notes.append(why_none(found, given))
     if found.loads and listed and found.jaw_force > 0:
         notes.append(f"All for a closing force of {found.jaw_force:.0f} N, without friction.")
     moved = {one.travel for one in listed if one.travel is not None}

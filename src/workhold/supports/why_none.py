@@ -1,0 +1,83 @@
+"""Why no three supports hold a part up with a clamp between them, and what would help, in one sentence.
+
+It is asked in turn whether three holes have room for a pad, and whether three of them fit the plates. Then
+it is asked whether their triangle is large enough for the clamp, and whether the tip may stand in it.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations, islice
+from math import floor
+
+import numpy as np
+from attrs import evolve
+
+from workhold.model.support_triples import Supports
+from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
+from workhold.supports.listing import SupportSearch
+from workhold.units import Unit
+
+__all__ = ["why_none"]
+
+# Triples that are looked at; where there are more, one of these fits.
+MOST_LOOKED_AT = 200_000
+
+
+def why_none(found: Supports, unit: Unit) -> str:
+    """The sentence for supports of which there is no set; lengths in a unit."""
+    return f"No three supports hold the part with the clamp between them: {reason(found, unit)}"
+
+
+def reason(found: Supports, unit: Unit) -> str:
+    """What is in the way, and what would help."""
+    request, toolkit = found.request, found.query.toolkit
+    bottom = SupportSearch(found.query, request, ()).bottom
+    holes = holes_under(found.fixture, toolkit, bottom, request)
+    if found.positions < 3:
+        bare = evolve(request, pad_radius=0.0, pad_margin=0.0)
+        return few_holes(found, holes_under(found.fixture, toolkit, bottom, bare), unit)
+    sets = np.array(list(islice(combinations(range(len(holes.row)), 3), MOST_LOOKED_AT)), np.int64)
+    sets = sets[CarrierRoom.of(found.fixture, toolkit, holes).standing(sets).fits]
+    if not len(sets):
+        return (
+            f"{found.positions} holes could hold a support, but no three of them fit the columns, the rows "
+            "and the gap together with the pegs; more columns or a smaller gap would help, or "
+            "another fixture."
+        )
+    widest = max(largest_circle(holes.points[one]) for one in sets)
+    if widest < request.inside:
+        return (
+            f"in the largest triangle of them a clamp is {unit.text(widest)} from every side, "
+            f"and {unit.text(request.inside)} is asked for; a smaller tip would help, or less distance "
+            "inside the triangle."
+        )
+    beside = ", keep-outs on top or the clamp's reach" if request.top_zones or request.reach else ""
+    return (
+        f"inside every triangle of the {found.positions} holes that could hold a support, the tip of radius "
+        f"{unit.text(request.tip_radius)} finds no place on the upper face; a smaller tip would help, "
+        f"or less distance inside the triangle{', or other' + beside.removeprefix(',') if beside else ''}."
+    )
+
+
+def few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
+    """What is in the way where fewer than three holes have room for a pad."""
+    request, few = found.request, ("no hole has", "only one hole has", "only two holes have")[found.positions]
+    spare = np.sort(bare.spare)[::-1] - request.pad_margin
+    pad = f"{few} room for a pad of radius {unit.text(request.pad_radius)}"
+    if len(spare) < 3 or spare[2] <= 0.0:
+        return (
+            f"{pad}, and fewer than three lie under the lower face clear of the pegs at all; a finer pitch "
+            "would help, or another fixture."
+        )
+    # Rounded down, so that a pad of the radius that is said fits.
+    enough = floor(spare[2] * 100) / 100
+    if enough <= 0.0:
+        return f"{pad}; smaller pads would help, or another fixture."
+    return f"{pad}; three have it for pads of radius {unit.text(enough)}."
+
+
+def largest_circle(corners: np.ndarray) -> float:
+    """The radius of the largest circle in a triangle (3, 2)."""
+    a, b, c = corners
+    twice = abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
+    return float(twice / sum(np.hypot(*(q - p)) for p, q in ((a, b), (b, c), (c, a))))

@@ -1,0 +1,239 @@
+"""Whether a list of supports is complete: every three holes tried again, every place of the clamp bounded.
+
+How far a point is inside a triangle changes by at most 1 mm for each mm that the point moves, and so does
+the room that the tip has. So the lesser of both, at the middle of a square cell, bounds it over the cell.
+Cells are divided until one has a place for the clamp, or none can have one.
+
+Glossary
+--------
+sure, possible : of a hole or a triple, that it keeps its rules by more than rounding, or breaks none by more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from heapq import heappop, heappush
+from itertools import combinations, count, product
+from math import ceil, floor, hypot, inf, sqrt
+from typing import Protocol
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.loop import loop_segments
+from workhold.geometry.segment import bounding_box
+from workhold.model.fixture import Fixture
+from workhold.model.query import Query
+from workhold.model.support_request import SupportRequest
+
+__all__ = ["ClampCells", "Hole", "holes_near", "missing_triples", "opened_clear_of_blocked"]
+
+Array = NDArray[np.float64]
+Hole = tuple[str, int, int]
+# In mm: what is kept or broken by more is not rounding.
+AGREEMENT = 1e-6
+# Cells looked at for a triple before nobody can say.
+MOST_CELLS = 20_000
+# Missing triples that are named; one is enough to refute a list.
+MOST_NAMED = 3
+
+
+class Rules(Protocol):
+    """What decides over holes and places, as ``verification.supports`` derives it."""
+
+    @property
+    def query(self) -> Query:
+        """Part and toolkit."""
+        ...
+
+    @property
+    def fixture(self) -> Fixture:
+        """The planar fixture."""
+        ...
+
+    @property
+    def request(self) -> SupportRequest:
+        """What was asked of supports and clamp."""
+        ...
+
+    def point_of(self, hole: Hole) -> tuple[float, float]:
+        """The place of a hole in the part's coordinates."""
+        ...
+
+    def pad_room(self, hole: Hole) -> float:
+        """The slack in mm by which a pad keeps its rules."""
+        ...
+
+    def tip_room(self, point: tuple[float, float]) -> float:
+        """The slack in mm by which the tip keeps the rules of the top."""
+        ...
+
+    def travel(self, holes: list[Hole]) -> tuple[bool, float | None]:
+        """Whether pegs and supports fit their plates, and the opening of what moves."""
+        ...
+
+
+def holes_near(rules: Rules) -> Iterator[Hole]:
+    """All holes of the plates under the box of the face that supports may touch."""
+    loops = rules.query.workpiece.loops if rules.request.bottom is None else rules.request.bottom
+    boxes = np.array([bounding_box(one) for loop in loops for one in loop_segments(np.asarray(loop))])
+    (x0, y0), (x1, y1) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+    corners = np.array([rules.fixture.pose.apply(x, y) for x, y in product((x0, x1), (y0, y1))])
+    for plate in rules.query.toolkit.plates:
+        first = np.array(plate.place(0, 0, rules.fixture.jaw_separation))
+        low, high = (corners.min(axis=0) - first) / plate.pitch, (corners.max(axis=0) - first) / plate.pitch
+        columns, rows = (range(floor(a) - 1, ceil(b) + 2) for a, b in zip(low, high, strict=True))
+        yield from ((plate.name, column, row) for column, row in product(columns, rows))
+
+
+@define(eq=False)
+class ClampCells:
+    """Square cells over a box, with the slack of the tip at their middles, looked up once for all triples.
+
+    Parameters
+    ----------
+    rules : of the tip.
+    low : (2,) the box's corner, in mm.
+    size : of the first cell, in mm.
+    """
+
+    rules: Rules
+    low: Array
+    size: float
+    slack: dict[tuple[int, int, int], float] = field(factory=dict, init=False)
+
+    def has_place(self, triangle: Array) -> bool | None:
+        """Whether the clamp may stand inside a triangle (3, 2) by more than rounding; None: undecided."""
+        number = count()
+        queue = [(-inf, next(number), (0, 0, 0))]
+        while queue:
+            bound, order, (level, i, j) = heappop(queue)
+            if -bound <= AGREEMENT:
+                return False
+            if order > MOST_CELLS:
+                return None
+            width = self.size / 2 ** (level + 1)
+            for cell in product((level + 1,), (2 * i, 2 * i + 1), (2 * j, 2 * j + 1)):
+                x, y = (float(self.low[k]) + (cell[1 + k] + 0.5) * width for k in (0, 1))
+                kept = inside_of(triangle, x, y) - self.rules.request.inside
+                if kept + width / sqrt(2) > AGREEMENT:
+                    kept = min(kept, self.tip_slack(cell, x, y))
+                if kept > AGREEMENT:
+                    return True
+                heappush(queue, (-kept - width / sqrt(2), next(number), cell))
+        return False
+
+    def tip_slack(self, cell: tuple[int, int, int], x: float, y: float) -> float:
+        """The slack of the tip at the middle of a cell."""
+        if cell not in self.slack:
+            self.slack[cell] = self.rules.tip_room((x, y))
+        return self.slack[cell]
+
+
+def inside_of(triangle: Array, x: float, y: float) -> float:
+    """How far a point is inside a triangle, in mm."""
+    (ax, ay), (bx, by), (cx, cy) = triangle.tolist()
+    turn = 1.0 if (bx - ax) * (cy - ay) > (by - ay) * (cx - ax) else -1.0
+    sides = (ax, ay, bx, by), (bx, by, cx, cy), (cx, cy, ax, ay)
+    far = [((u - s) * (y - t) - (v - t) * (x - s)) / hypot(u - s, v - t) for s, t, u, v in sides]
+    return float(min(turn * one for one in far))
+
+
+def large_enough(points: Array, inside: float) -> NDArray[np.bool_]:
+    """Which triangles (N, 3, 2) have a circle of a radius within them by more than rounding."""
+    a, b, c = np.moveaxis(points, 1, 0)
+    twice = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    around = sum(np.hypot(*(q - p).T) for p, q in ((a, b), (b, c), (c, a)))
+    return np.asarray(twice > (inside + AGREEMENT) * around)
+
+
+def missing_triples(rules: Rules, listed: Iterable[Iterable[Hole]], positions: int) -> tuple[list[str], int]:
+    """What speaks against a list that says it is complete, and for how many triples nobody can say.
+
+    Parameters
+    ----------
+    listed : the triples of the list, their holes in any order.
+    positions : how many holes could hold a support, as the list says.
+    """
+    rooms = {hole: rules.pad_room(hole) for hole in holes_near(rules)}
+    sure = sorted(hole for hole, room in rooms.items() if room > AGREEMENT)
+    possible = sum(room > -AGREEMENT for room in rooms.values())
+    faults = []
+    if not len(sure) <= positions <= possible:
+        faults.append(f"counts say that {positions} holes could hold a support, but {len(sure)} could")
+    known = {frozenset(triple) for triple in listed}
+    undecided = 0
+    for triple, triangle, cells in possible_triples(rules, sure):
+        if frozenset(triple) in known or not rules.travel(triple)[0]:
+            continue
+        has_place = cells.has_place(triangle)
+        undecided += has_place is None
+        if has_place:
+            faults.append(f"the triple of supports in {', '.join(map(words_of, triple))} is missing")
+            if len(faults) >= MOST_NAMED:
+                break
+    return faults, undecided
+
+
+def possible_triples(rules: Rules, holes: list[Hole]) -> Iterator[tuple[list[Hole], Array, ClampCells]]:
+    """Triples of holes, with corners, of which each two fit the plates and the triangle is large enough."""
+    if len(holes) < 3:
+        return
+    points = np.array([rules.point_of(hole) for hole in holes])
+    low = points.min(axis=0)
+    cells = ClampCells(rules, low, float(np.ptp(points, axis=0).max()))
+    fits = np.zeros((len(holes), len(holes)), bool)
+    for i, j in combinations(range(len(holes)), 2):
+        fits[i, j] = rules.travel([holes[i], holes[j]])[0]
+    for i in range(len(holes) - 2):
+        others = np.flatnonzero(fits[i])
+        first, second = np.triu_indices(len(others), 1)
+        j, k = others[first], others[second]
+        both = fits[j, k]
+        j, k = j[both], k[both]
+        triangles = np.stack([np.broadcast_to(points[i], (len(j), 2)), points[j], points[k]], axis=1)
+        for one in np.flatnonzero(large_enough(triangles, rules.request.inside)).tolist():
+            yield [holes[i], holes[j[one]], holes[k[one]]], triangles[one], cells
+
+
+def words_of(hole: Hole) -> str:
+    """A hole by its carrier, column and row as the file counts them."""
+    name, column, row = hole
+    return f"{name} ({column}, {row})"
+
+
+def opened_clear_of_blocked(toolkit: Toolkit, fixture: Fixture, holes: list[Hole]) -> float | None:
+    """The widest opening in mm at which no peg and no support stands in a blocked hole, if there is one.
+
+    All ways to count the columns of both jaws and their rows otherwise are tried.
+    """
+    plates = {plate.name: plate for plate in toolkit.plates}
+    moving = next(plate for plate in plates.values() if plate.travel is not None)
+    travel = moving.travel
+    assert travel is not None
+    places = [(peg.carrier, peg.column, peg.row) for peg in fixture.pegs if peg.carrier in plates] + holes
+    rows = [row for _, _, row in places]
+    blocked = [hole.row for plate in plates.values() for hole in plate.blocked if hole.row is not None]
+    highest = moving.rows or max(rows) - min(rows) + max(blocked, default=-1) + 2
+    widest = None
+    shifts = []
+    for name, plate in plates.items():
+        columns = [column for own, column, _ in places if own == name]
+        shifts.append([(name, k) for k in range(-min(columns), plate.column_count - max(columns))])
+    for moved in product(*shifts):
+        by = dict(moved)
+        steps = sum(-k if name == moving.name else k for name, k in moved)
+        opening = fixture.jaw_separation + steps * moving.pitch[0]
+        if opening < travel.least - AGREEMENT or opening > (travel.most or inf) + AGREEMENT:
+            continue
+        if widest is not None and opening <= widest:
+            continue
+        lifts = range(-min(rows), highest - max(rows))
+        if any(
+            not any(plates[name].is_blocked(column + by[name], row + lift) for name, column, row in places)
+            for lift in lifts
+        ):
+            widest = opening
+    return widest
