@@ -154,8 +154,7 @@ def statistics_faults(listing: Listing) -> Iterator[str]:
         return
     # Of a wall with an outline of its own the search has no features.
     own = bool(listing.query.workpiece.outlines)
-    pegs = (peg for fixture in listing.fixtures for peg in fixture.pegs)
-    touched = len({peg.face for peg in pegs if not (own and peg.is_on_wall)})
+    touched = len({p.face for one in listing.fixtures for p in (one.placed if own else one.pegs)})
     if numbers["features"] < touched:
         yield f"the statistics say {numbers['features']} features, but the fixtures touch {touched} faces"
     if is_flush:

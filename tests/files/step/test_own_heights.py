@@ -96,9 +96,8 @@ def test_the_picture_in_space_shows_pegs_from_their_lower_to_their_upper_end() -
     result = design(load(SOLID, peg_height=7, heights=toolkit.heights), toolkit)
     _, bodies = read_glb(fixture_glb(result[0], result.workpiece, toolkit))
     clamp = next(body for body in bodies if body.kind == "clamp")
-    low, high = (float(clamp.points[:, 2].min()), float(clamp.points[:, 2].max()))
-    assert (low, high) == pytest.approx(TIP)
-    assert min(float(body.points[:, 2].min()) for body in bodies if body.kind == "peg") < 0
+    assert clamp.heights == pytest.approx(TIP)
+    assert all(body.heights == pytest.approx((-10, 7)) for body in bodies if body.kind == "peg")
 
 
 def test_what_cannot_be_met_is_refused_with_the_carrier(tmp_path: Path) -> None:

@@ -203,8 +203,8 @@ def solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
 def outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
     """What carriers with heights of their own meet, as it is written; nothing where there are none.
 
-    Their segments are numbered on after those of the workpiece, in the order in which they stand; those of an
-    outline that is equal to one before it have the same numbers.
+    Their segments are numbered on after those of the workpiece, in the order in which they stand. An outline
+    that is equal to one before it has the numbers of that.
     """
     own = {
         role: {"loops": [(loop + 0.0).tolist() for loop in one.loops], **bands_entry(one.solid)}
