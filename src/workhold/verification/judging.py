@@ -246,7 +246,8 @@ def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
 
     Without a wall and with one thing that moves a fixture is turned so that it clamps along -x. Then columns
     count from the first peg of each carrier, rows from the lowest of all. With as many pegs on both jaws that
-    are alike it counts as it is at an orientation below half a turn. All others count in the holes in which they stand.
+    are alike it counts as it is at an orientation below half a turn. All others count in the holes in which
+    they stand.
     """
     ways = [list(WAYS).index(name) for name in directions_of(fixture)]
     numbers = [hardware.toolkit.types.index(fixture.type), *ways]
