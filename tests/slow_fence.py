@@ -135,33 +135,49 @@ def lines_of(
             yield k, ((across, 0.0), (0.0, 1.0)), (-20.0, top + 20.0)
 
 
-def slow_fence(part: Workpiece, fence: Fence) -> set[tuple[Any, ...]]:
+def slow_fence(
+    part: Workpiece,
+    fence: Fence,
+    met_by_clamp: Workpiece | None = None,
+    met_by_wall: Workpiece | None = None,
+) -> set[tuple[Any, ...]]:
     """All fixtures of a clamp without a body: direction, faces of locator and clamp, row of the locator, line of the clamp,
-    and from the left end of the contact with the wall, to a thousandth of a mm, x of the locator, x and y of the tip."""
+    and from the left end of the contact with the wall, to a thousandth of a mm, x of the locator, x and y of the tip.
+
+    Parameters
+    ----------
+    met_by_clamp, met_by_wall : the outlines that these meet; that of the locator if None.
+    """
     out = set()
-    for angle, left, right in orientations(part):
+    for angle, left, right in orientations(met_by_wall or part):
         (x0, y0), (x1, _) = turned(left, angle), turned(right, angle)
-        loops = [[(*turned((x, y), angle), b) for x, y, b in loop] for loop in part.loops]
-        laid = Workpiece.from_loops(
-            "laid", [[(x - x0, y - y0, b) for x, y, b in loop] for loop in loops], solid=part.solid
-        )
+
+        def put(one: Workpiece, angle: float = angle, x0: float = x0, y0: float = y0) -> Workpiece:
+            loops = [[(*turned((x, y), angle), b) for x, y, b in loop] for loop in one.loops]
+            return Workpiece.from_loops(
+                "laid", [[(x - x0, y - y0, b) for x, y, b in loop] for loop in loops], solid=one.solid
+            )
+
+        laid, met = put(part), put(met_by_clamp or part)
         low, _, high, top = laid.bounds
+        low, high, top = min(low, met.bounds[0]), max(high, met.bounds[2]), max(top, met.bounds[3])
         rows = [fence.wall_offset + k * fence.pitch[1] for k in range(int(top / fence.pitch[1]) + 2)][
             : fence.rows
         ]
         known: dict[Any, list[Touch]] = {}
 
-        def on(*asked: Any, laid: Workpiece = laid, known: dict[Any, list[Touch]] = known) -> list[Touch]:
-            if asked not in known:
-                known[asked] = touches(laid, *asked)
-            return known[asked]
+        def on(part: Workpiece, *asked: Any, known: dict[Any, list[Touch]] = known) -> list[Touch]:
+            key = id(part), *asked
+            if key not in known:
+                known[key] = touches(part, *asked)
+            return known[key]
 
         ends = [(0.0, -1.0, 0.0), (0.0, -1.0, -(x1 - x0))]
         for (row, y), way in product(enumerate(rows), fence.directions):
-            for one in on(((0.0, y), (1.0, 0.0)), fence.peg_radius, low - 20.0, high + 20.0):
+            for one in on(laid, ((0.0, y), (1.0, 0.0)), fence.peg_radius, low - 20.0, high + 20.0):
                 u = one.center[0]
-                for line, at, reach in lines_of(fence, way, u, laid, rows):
-                    for two in on(at, fence.clamp_radius, *reach):
+                for line, at, reach in lines_of(fence, way, u, met, rows):
+                    for two in on(met, at, fence.clamp_radius, *reach):
                         (x, v), push = two.center, -float(np.dot(two.normal, WAYS[way]))
                         apart = hypot(x - u, v - y) >= fence.peg_radius + fence.clamp_radius
                         if push <= 1e-6 or v < fence.clamp_radius or not apart:

@@ -152,22 +152,25 @@ class Seat:
 
 
 class Searched:
-    """A part on a plate, searched slowly."""
+    """A part on a plate, searched slowly; clamps may meet another outline than locators."""
 
-    def __init__(self, part: Workpiece, plate: Plate) -> None:
+    def __init__(self, part: Workpiece, plate: Plate, met_by_clamps: Workpiece | None = None) -> None:
         assert plate.columns is not None and plate.rows is not None and plate.travel is None
         self.part, self.plate = part, plate
         self.pitch = np.array(plate.pitch)
         self.center = np.array(part.center)
         low_x, low_y, high_x, high_y = part.bounds
+        self.met = part if met_by_clamps is None else met_by_clamps
         self.length = np.hypot(high_x - low_x, high_y - low_y) / 2 + plate.peg_radius
-        self.carriers = [Carrier.of(face, plate.peg_radius) for face in part.faces]
+        self.carriers = [Carrier.of(face, plate.peg_radius) for face in part.faces if has_band(part, face)]
         self.grid = 0.2345 + np.arange(STEPS) * (tau / STEPS)
         self.turns = turns(self.grid)
         self.chords: dict[Any, tuple[Array, NDArray[np.bool_]]] = {}
-        self.tips = [Carrier.of(face, plate.clamp_radius) for face in part.faces]
+        self.tips = [
+            Carrier.of(face, plate.clamp_radius) for face in self.met.faces if has_band(self.met, face)
+        ]
 
-    def touches(self, carrier: Carrier, point: Array, radius: float) -> bool:
+    def touches(self, carrier: Carrier, point: Array, radius: float, part: Workpiece | None = None) -> bool:
         """Whether a peg at a point touches inside its face and enters no other.
 
         What touches another face too is at an end, and marginal, unless the faces are tangent there.
@@ -179,7 +182,7 @@ class Searched:
         )
         if abs(segment.parameter(place)) > segment.half_extent + 1e-9:
             return False
-        for face in self.part.faces:
+        for face in (part or self.part).faces:
             apart = distances(point[None], face.segment)[0]
             if apart < radius - SLACK:
                 return False
@@ -300,7 +303,9 @@ class Searched:
                             or apart < self.plate.peg_radius + self.plate.clamp_radius - 1e-9
                         ):
                             continue
-                        if round(s, 5) not in seen and self.touches(carrier, tip, self.plate.clamp_radius):
+                        if round(s, 5) not in seen and self.touches(
+                            carrier, tip, self.plate.clamp_radius, self.met
+                        ):
                             seen.add(round(s, 5))
                             force = -np.linalg.solve(seat.wrenches, self.wrench(carrier, tip))
                             yield name, line, s, np.where(np.abs(force / push) < NO_REACTION, 0.0, force)
@@ -396,6 +401,16 @@ def seen(result: Result) -> set[tuple[Any, ...]]:
     return found
 
 
-def slow_plate(part: Workpiece, plate: Plate) -> set[tuple[Any, ...]]:
-    """Every fixture of a part on a plate with limits and without strokes, one clamp or two."""
-    return Searched(part, plate).fixtures()
+def has_band(part: Workpiece, face: Face) -> bool:
+    """Whether something may touch a face."""
+    return part.solid is None or part.solid.bands[face.number] is not None
+
+
+def slow_plate(part: Workpiece, plate: Plate, met_by_clamps: Workpiece | None = None) -> set[tuple[Any, ...]]:
+    """Every fixture of a part on a plate with limits and without strokes, one clamp or two.
+
+    Parameters
+    ----------
+    met_by_clamps : the outline that clamps meet; that of the locators if None.
+    """
+    return Searched(part, plate, met_by_clamps).fixtures()

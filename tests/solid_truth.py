@@ -31,7 +31,7 @@ from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["NEAR", "border_faults", "fixture_faults", "section_faults"]
+__all__ = ["NEAR", "border_faults", "fixture_faults", "off_region", "section_faults", "section_points"]
 
 Array = NDArray[np.float64]
 # mm. What agrees to this is the same.
@@ -124,13 +124,15 @@ def border_faults(shape: Any, loops: Sequence[Array], top: float, prismatic: boo
 def fixture_faults(shape: Any, part: Workpiece, fixture: Fixture, toolkit: Any) -> Iterator[str]:
     """What is wrong with the pegs of a fixture, as bodies against the solid.
 
-    Each touches over the ends of its band and nowhere enters, up to the head room above it.
+    Each touches over the ends of its band and nowhere enters, up to the head room above it. It begins at the
+    lower of the heights of its carrier, if that has its own.
     """
     assert part.solid is not None
-    top, room = part.solid.peg_height, part.solid.head_room
+    room = part.solid.head_room
     for peg in fixture.pegs:
-        face = next(one for one in part.faces if peg.face in one.segments)
-        band = part.solid.bands[face.number]
+        low, top = toolkit.carrier(peg.carrier).heights or (0.0, part.solid.peg_height)
+        face = next(one for one in part.numbered.faces if peg.face in one.segments)
+        band = part.numbered.bands[face.number]
         if band is None:
             yield f"{peg.hole} touches face {peg.face}, which has no band"
             continue
@@ -140,18 +142,20 @@ def fixture_faults(shape: Any, part: Workpiece, fixture: Fixture, toolkit: Any) 
         if peg.is_on_wall:
             nx, ny = wall_normal(fixture, (nx, ny))
             body, smaller = wall(px, py, nx, ny, 0.0, top), wall(px, py, nx, ny, SHRUNK, top + room)
+            assert low == 0.0
         else:
             radius = hypot(x - px, y - py)
             own = toolkit.carrier(peg.carrier).peg_radius
             if abs(radius - own) > NEAR:
                 yield f"{peg.hole} stands {radius - own:.3g} mm off its face"
-            body = cylinder(own, top, (x, y, 0.0))
-            smaller = cylinder(own - SHRUNK, top + room - SHRUNK, (x, y, 0.0))
+            body = cylinder(own, top - low, (x, y, low))
+            above = low + SHRUNK if low else 0.0
+            smaller = cylinder(own - SHRUNK, top + room - SHRUNK - above, (x, y, above))
         if (away := distance(body, shape)) > NEAR:
             yield f"{peg.hole} is {away:.3g} mm off the solid"
         if (away := distance(smaller, shape)) < LEFT:
             yield f"{peg.hole} enters the solid below {top + room:g} ({away:.3g})"
-        for z, end in zip(band, (0.0, min(top, part.solid.height)), strict=True):
+        for z, end in zip(band, (low, min(top, part.solid.height)), strict=True):
             # A wall with an opening in it is touched below and above that: its band holds the opening too.
             if (away := distance(upright_line(px, py, z, end), shape)) > NEAR:
                 yield f"{peg.hole} is {away:.3g} mm off from {z:g} on, an end of its band"

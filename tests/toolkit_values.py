@@ -23,6 +23,12 @@ VALUES: dict[str, tuple[Any, Any]] = {
     "travel": ((11.0, 41.0), "11,41"),
     "directions": ([("-x", "-y")], "-x:-y"),
     "wall_offset": (9.5, "9.5"),
+    "left_heights": ((0.0, 7.5), "0,7.5"),
+    "right_heights": ((2.5, 8.0), "2.5,8"),
+    "locator_heights": ((0.0, 6.0), "0,6"),
+    "clamp_heights": ((6.0, 14.0), "6,14"),
+    "wall_heights": ((0.0, 4.5), "0,4.5"),
+    "jaw_heights": ((1.0, 9.0), "1,9"),
 }
 
 

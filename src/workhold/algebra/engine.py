@@ -221,7 +221,7 @@ def refuse_unlike(frame: Frame) -> None:
     InputError
         When its carriers are not alike, or two pegs move and no half turn exchanges them.
     """
-    one, other = ((c.columns, c.rows, c.peg_radius, c.body_radius, c.flat) for c in frame.carriers)
+    one, other = ((c.columns, c.rows, c.peg_radius, c.body_radius, c.flat, c.heights) for c in frame.carriers)
     if one != other or not (frame.swapped or all(each.pegs == (3, 1) for each in frame.toolkit.arrangements)):
         raise InputError(
             f"the paper's polynomials do not serve a {frame.toolkit.kind}: its carriers are not alike; "

@@ -151,7 +151,7 @@ def design(
         from workhold.cli.warming import begin_compiling, compile_kernels
 
         second = begin_compiling()
-    workpiece = machined.reading(part, reading).load(part).workpiece
+    workpiece = machined.reading(part, reading).load(part, toolkit.heights).workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
     asked["restrictions"] = without_faces_cut(asked["restrictions"], workpiece, words.not_on_faces_cut_in)
     thickness = machined.thickness if supports or machined.program is None else None

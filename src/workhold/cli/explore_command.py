@@ -16,7 +16,7 @@ from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_out
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
-from workhold.cli.toolkit_lists import SWEEP, ListWords, query_of, toolkits_to_try
+from workhold.cli.toolkit_lists import SWEEP, ListWords, heights_of_all, query_of, toolkits_to_try
 from workhold.cli.toolkit_options import TOOLKIT
 from workhold.cli.values import length_unit
 from workhold.errors import InputError
@@ -74,7 +74,7 @@ def explore(
         )
     from workhold.kernels.base.compiling import is_first_run
 
-    workpiece = machined.reading(part, reading).load(part).workpiece
+    workpiece = machined.reading(part, reading).load(part, heights_of_all(toolkits)).workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
     refuse_unknown_faces(workpiece, asked["restrictions"])
     queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]

@@ -286,7 +286,8 @@ def asked_of(
     usual = RANKINGS[toolkit.travels]
     members, left_out = [], []
     for job in jobs:
-        read, path = read_listed(job.listed, **job.reading.options()), job.listed.path
+        options = {**job.reading.options(), "heights": toolkit.heights}
+        read, path = read_listed(job.listed, **options), job.listed.path
         if read.loaded is None:
             left_out.append(LeftOut(job.name, str(path), read.refusal.rstrip(".")))
             continue

@@ -7,6 +7,7 @@ Words that describe a toolkit stand in :mod:`workhold.cli.toolkit_options`, word
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -93,6 +94,7 @@ CALLED = {
     "peg_height": "--peg-height",
     "head_room": "--head-room",
     "least_band": "--least-band",
+    "heights": "the toolkit's own heights",
 }
 
 PartArgument = Annotated[
@@ -188,12 +190,13 @@ class PartWords:
             "called": CALLED,
         }
 
-    def load(self, part: str) -> Loaded:
+    def load(self, part: str, heights: Mapping[str, Sequence[float]] | None = None) -> Loaded:
         """Reads a part and prints remarks about the drawing on stderr.
 
         Parameters
         ----------
         part : a file or a built-in name.
+        heights : as of :func:`workhold.load`.
 
         Raises
         ------
@@ -204,7 +207,7 @@ class PartWords:
         from workhold.files.part.load import read_workpiece
         from workhold.files.questions import UnitAskedError
 
-        read = partial(read_workpiece, part, **options)
+        read = partial(read_workpiece, part, **options, heights=heights)
         try:
             loaded = read()
         except UnitAskedError as question:

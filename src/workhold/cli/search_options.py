@@ -221,7 +221,8 @@ def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: 
             f"--not-on-faces-cut-in needs the faces of one solid in both, and {lacking} has none: read both "
             "from the STEP file, with --peg-height."
         )
-    avoid = own.segments_under(other.faces_over(query.restrictions.avoid))
+    cut = query.workpiece.numbered.faces_over(query.restrictions.avoid)
+    avoid = workpiece.numbered.segments_under(cut)
     return evolve(restrictions, avoid=(*restrictions.avoid, *avoid))
 
 

@@ -5,7 +5,7 @@ Which figures there are, and how the words of each are read, the field table say
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from workhold.model.requirements import Tolerance
     from workhold.model.workpiece import Workpiece
 
-__all__ = ["ListWords", "Named", "query_of", "toolkits_to_try", "words_of"]
+__all__ = ["ListWords", "Named", "heights_of_all", "query_of", "toolkits_to_try", "words_of"]
 
 # How the entries of a list look, by the form of a field. What is no number is not varied.
 ENTRIES: dict[Form, str] = {
@@ -107,6 +107,32 @@ def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query
         )
     except InputError as error:
         return error
+
+
+def heights_of_all(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
+    """Finds the heights of carriers, by role, with which one reading of a part serves all toolkits.
+
+    Raises
+    ------
+    InputError
+        For toolkits that differ in the heights of a role.
+    """
+    from workhold.fixels.kinds import toolkit_of
+
+    found: dict[str, tuple[float, ...]] = {}
+    for one in toolkits:
+        try:
+            heights = toolkit_of(one.kind, one.fields).heights
+        except InputError:
+            # Why there is no such toolkit stands in its row.
+            continue
+        for role, ends in heights.items():
+            if found.setdefault(role, ends) != ends:
+                raise InputError(
+                    f"the toolkits have two heights of the {role}, and a part is read once for all of them: "
+                    "try those of one height at a time."
+                )
+    return found
 
 
 def toolkits_to_try(

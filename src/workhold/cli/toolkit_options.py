@@ -199,6 +199,7 @@ READERS: Mapping[str, Callable[[str, Any, Unit], Any]] = {
     "pitch": lambda name, text, unit: pitches(text, unit),
     "span": span,
     "flat": lengths,
+    "heights": span,
     "holes": lambda name, texts, unit: [hole for text in texts for hole in text.split(",")],
     "directions": lambda name, text, unit: directions(name, text),
 }

@@ -11,28 +11,32 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.swept import Swept
 from workhold.contact.trimming import most_in_the_way, parts_clear_of
 from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
+from workhold.fixels.carrier import Carrier
 from workhold.fixels.pegs import Flat
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.model.own_outlines import outline_met
 from workhold.model.requirements import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "ContactFeature",
     "allowed_features",
+    "avoided_faces",
     "contact_features",
     "end_distances",
     "end_slacks",
     "face_of_segment",
     "feature_rows",
+    "features_met",
 ]
 
 # Pairs of ends looked at together.
@@ -70,6 +74,33 @@ def contact_features(
     return [ContactFeature(faces[index].number, piece) for index, piece in pieces]
 
 
+def features_met(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
+    """Contact features of a workpiece for the pegs of a carrier, by face, on the outline that it meets."""
+    own, first = outline_met(workpiece, carrier)
+    features = contact_features(own, carrier.peg_radius, carrier.flat)
+    return [evolve(one, face=first + one.face) for one in features] if first else features
+
+
+def avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[int]:
+    """The numbers of faces that nothing may touch: those to be avoided, and those without a band.
+
+    Where there are outlines of carriers, faces with a face of the solid over them that an avoided one has are
+    avoided with it.
+
+    Raises
+    ------
+    InputError
+        For a face that does not exist.
+    """
+    avoided = {face_of_segment(workpiece, number) for number in restrictions.avoid} | workpiece.untouchable
+    if not workpiece.outlines:
+        return avoided
+    every = workpiece.numbered
+    ruled_out = {k for k, band in enumerate(every.bands) if band is None}
+    ruled_out.update(every.segments_under(every.faces_over(restrictions.avoid)))
+    return avoided | {face.number for face in every.faces if not ruled_out.isdisjoint(face.segments)}
+
+
 def allowed_features(
     features: list[ContactFeature],
     workpiece: Workpiece,
@@ -92,7 +123,7 @@ def allowed_features(
     InputError
         For a face that does not exist, and when nothing is left.
     """
-    avoided = {face_of_segment(workpiece, number) for number in restrictions.avoid} | workpiece.untouchable
+    avoided = avoided_faces(workpiece, restrictions)
     touched = [feature for feature in features if feature.face not in avoided]
     if not touched:
         raise InputError(
@@ -127,10 +158,11 @@ def face_of_segment(workpiece: Workpiece, number: int) -> int:
     InputError
         When there is no such segment.
     """
-    for face in workpiece.faces:
+    faces = workpiece.numbered.faces
+    for face in faces:
         if number in face.segments:
             return face.number
-    last = workpiece.faces[-1].number
+    last = faces[-1].number
     raise InputError(
         f"{workpiece.name} has no face {number}: the last one is {last}; look at the picture of its faces."
     )

@@ -16,14 +16,15 @@ import numpy as np
 from attrs import define, evolve, frozen
 from numpy.typing import NDArray
 
+from workhold.contact.beside import keeps_of, swept_of
 from workhold.contact.features import (
     ContactFeature,
     allowed_features,
-    contact_features,
     end_slacks,
     feature_rows,
+    features_met,
 )
-from workhold.contact.swept import Swept, swept_below
+from workhold.contact.swept import Swept
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Toolkit, Travel
@@ -32,11 +33,12 @@ from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.given import Lattice, Limits, Setting
 from workhold.limits import refuse_many_steps
 from workhold.model.diameter import outline_diameter
+from workhold.model.own_outlines import outline_met
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Frame", "Problem", "Progress", "keeps_of", "swept_of"]
+__all__ = ["Frame", "Problem", "Progress"]
 
 IntArray = NDArray[np.int64]
 
@@ -220,7 +222,8 @@ class Problem:
     faces : (F,) number of each feature's face.
     standing, moving : first and past-the-last number of the features that pegs of each carrier touch. Both
         are equal where their pegs are alike; else features of the standing carrier come first.
-    outline : (S, 10) the part's faces.
+    outlines : (S, 10) the faces that pegs of the standing carrier keep from, and those of the moving one; one
+        array where both meet one outline.
     diameter : largest distance between two peg centres that touch the part.
     pairing : whether the clamp is one of two, so that it need not hold the part with the locators alone.
     """
@@ -231,7 +234,7 @@ class Problem:
     faces: NDArray[np.int64]
     standing: tuple[int, int]
     moving: tuple[int, int]
-    outline: NDArray[np.float64]
+    outlines: tuple[NDArray[np.float64], NDArray[np.float64]]
     diameter: float
     pairing: bool = False
 
@@ -253,10 +256,14 @@ class Problem:
         radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
         diameter = outline_diameter(workpiece) + 2 * radius
         carriers = Frame.of(query.toolkit, diameter).carriers
-        one, other = ((each.peg_radius, each.body_radius, each.flat) for each in carriers)
+        met = [outline_met(workpiece, each) for each in carriers]
+        one, other = (
+            (each.peg_radius, each.body_radius, each.flat, each.heights, first)
+            for each, (_, first) in zip(carriers, met, strict=True)
+        )
         loci = [locus_of(workpiece, carrier) for carrier in carriers[: 1 if one == other else 2]]
         allowed = loci
-        if restrictions or workpiece.untouchable or query.program is not None:
+        if restrictions or workpiece.untouchable or workpiece.outlines or query.program is not None:
             allowed = [
                 allowed_features(
                     locus, workpiece, restrictions, carrier.body_radius, keeps_of(query, carrier)
@@ -268,6 +275,8 @@ class Problem:
             [end_slacks(part, query.contact_margin, locus) for part, locus in zip(allowed, loci, strict=True)]
         )
         center = workpiece.center
+        rows = {first: segment_rows([face.segment for face in own.faces]) for own, first in met}
+        rows = {first: centered(values, center) for first, values in rows.items()}
         return cls(
             query,
             (tuple(loci[0]), tuple(loci[-1])),
@@ -275,7 +284,7 @@ class Problem:
             faces=np.array([feature.face for feature in features], dtype=np.int64),
             standing=(0, len(allowed[0])),
             moving=(len(features) - len(allowed[-1]), len(features)),
-            outline=centered(segment_rows([face.segment for face in workpiece.faces]), center),
+            outlines=(rows[met[0][1]], rows[met[1][1]]),
             diameter=diameter,
             pairing=pairing,
         )
@@ -300,10 +309,9 @@ class Problem:
         """What is ruled out."""
         return self.query.restrictions
 
-    @property
-    def swept(self) -> tuple[Swept, float] | None:
-        """What the program sweeps, in the part's coordinates, and the clearance from it in mm."""
-        return swept_of(self.query)
+    def swept(self, carrier: Carrier) -> tuple[Swept, float] | None:
+        """What the program sweeps beside a carrier, in the part's coordinates, and the clearance in mm."""
+        return swept_of(self.query, carrier)
 
     @property
     def wrench_length(self) -> float:
@@ -346,29 +354,6 @@ class Problem:
         return Setting(frame.lattice, self.limits, standing, moving, self.backward_error)
 
 
-def keeps_of(query: Query, carrier: Carrier) -> list[tuple[Swept, float]]:
-    """What a query's program sweeps at the heights of a carrier's pegs, and what their centres keep besides.
-
-    Where pegs have a shoulder below the part, what is swept there follows, with what that keeps.
-    """
-    swept = swept_of(query)
-    if swept is None or query.program is None:
-        return []
-    pieces, clearance = swept
-    keeps = [(pieces, clearance + carrier.peg_radius)]
-    if carrier.body_radius > carrier.peg_radius:
-        keeps.append((swept_below(query.program, 0.0), clearance + carrier.body_radius))
-    return keeps
-
-
-def swept_of(query: Query) -> tuple[Swept, float] | None:
-    """What a query's program sweeps at the heights of pegs, and the clearance in mm; None without one."""
-    if query.passed is None:
-        return None
-    program, height = query.passed
-    return swept_below(program, height), program.clearance
-
-
 def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     """All contact features of a workpiece for the pegs of a carrier.
 
@@ -377,7 +362,7 @@ def locus_of(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     InputError
         When such a peg fits nowhere along the part.
     """
-    features = contact_features(workpiece, carrier.peg_radius, carrier.flat)
+    features = features_met(workpiece, carrier)
     if not features:
         raise InputError(
             f"a peg of radius {carrier.peg_radius:g} mm fits nowhere along {workpiece.name}: every face is "

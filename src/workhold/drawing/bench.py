@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import ceil, hypot, pi
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import AGREEMENT
@@ -96,7 +96,7 @@ def sampled_loop(loop: Sequence[Segment], view: View, step: float) -> NDArray[np
 
 def face_of(workpiece: Workpiece, number: int) -> Segment:
     """The whole face that a segment number belongs to."""
-    return next(face.segment for face in workpiece.faces if number in face.segments)
+    return next(face.segment for face in workpiece.numbered.faces if number in face.segments)
 
 
 def contact_of(kind: ContactKind, center: Point, face: Segment) -> tuple[Point, Point]:
@@ -146,6 +146,7 @@ class Bench:
     faces : the placed faces the pegs touch.
     contacts : contact point and outward normal of each peg.
     shown : the carriers as far as they show.
+    own : the placed outlines that carriers with heights of their own meet.
     """
 
     fixture: Fixture
@@ -154,6 +155,7 @@ class Bench:
     faces: list[Segment]
     contacts: list[tuple[Point, Point]]
     shown: Shown
+    own: list[list[Segment]] = field(factory=list)
 
     @property
     def extent(self) -> Box:
@@ -189,7 +191,12 @@ def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
         contact_of(toolkit.carrier(peg.carrier).contact, (peg.x, peg.y), face)
         for peg, face in zip(fixture.pegs, faces, strict=True)
     ]
-    return Bench(fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece))
+    own = [
+        [pose.carry(segment) for segment in loop]
+        for one in workpiece.every_outline[1:]
+        for loop in one.loop_segments
+    ]
+    return Bench(fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece), own)
 
 
 def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
@@ -256,6 +263,9 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
         part.path(
             segment_path(face, view), TOUCHED, 8.0 * weight, stroke_linecap="butt", **{"class": "touched"}
         )
+    if bench.own:
+        # What clamps and other carriers of their own heights meet, as a thin line beside what pegs meet.
+        part.path(outline_path(bench.own, view), BLACK, 0.8 * weight, **{"class": "own outline"})
     part.path(d, BLACK, 2.2 * weight, **{"class": "outline"})
 
 

@@ -14,6 +14,7 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import SUPPORT_HEIGHT, THICKNESS
 from workhold.model.fixture import Fixture
+from workhold.model.own_outlines import numbered_solid
 from workhold.model.recounted import ChosenSupports
 from workhold.model.solid import Band
 from workhold.model.workpiece import Workpiece
@@ -136,7 +137,7 @@ def bands_of_pegs(
     fixture: Fixture, workpiece: Workpiece, details: SheetDetails, thickness: float, top: float
 ) -> tuple[Band | None, ...]:
     """The heights at which each peg presses: as supports were asked for, of the solid, or of a prism."""
-    supports, solid = details.supports, workpiece.solid
+    supports, solid = details.supports, numbered_solid(workpiece)
     if supports is not None:
         reach = supports.supports.query.peg_height
         given = supports.supports.request.for_fixture(fixture, solid, reach).peg_bands(len(fixture.pegs))

@@ -200,8 +200,8 @@ def lies_words(sheet: Sheet) -> str:
 
 def inside_words(sheet: Sheet) -> str:
     """Which pegs stand in holes of the part, a sentence behind another one; nothing where none does."""
-    outer = sheet.workpiece.outer_count
-    inside = [peg.hole for peg in sheet.fixture.pegs if peg.face >= outer]
+    faces = sheet.workpiece.numbered.inside
+    inside = [peg.hole for peg in sheet.fixture.pegs if peg.face in faces]
     return (
         f" {listed(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part."
         if inside

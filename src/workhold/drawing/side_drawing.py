@@ -219,7 +219,8 @@ class SideFigure:
         for one in before:
             self.draw_contact(scene, page, one)
         for span in view.walls:
-            box = page.box(Box(span[0], low, span[1], heights.peg_top))
+            begin, top = view.wall_heights or (0.0, heights.peg_top)
+            box = page.box(Box(span[0], begin or low, span[1], top))
             scene.path(outline(box), FENCE[1], 1.2, FENCE[0], fill_opacity="0.5", **{"class": "fence"})
         for one in view.contacts:
             self.draw_band(scene, page, one)
@@ -249,6 +250,8 @@ class SideFigure:
         """Draws a peg through its plate, or a clamp on it."""
         heights = self.view.heights
         low, top = -heights.supported_by, heights.peg_top
+        begin, top = one.heights or (0.0, top)
+        low = begin or low
         radius = max(one.radius, THINNEST / page.scale / 2)
         if one.is_clamp:
             ends = [one.at] if one.hole is None else [one.at, one.hole]
@@ -264,8 +267,8 @@ class SideFigure:
             return
         box = page.box(Box(one.at - radius, low, one.at + radius, top))
         scene.rectangle(box, PEG_FILL, BLACK, 1.0)
-        foot = page.box(Box(one.at - radius, top - heights.peg_length, one.at + radius, low))
-        if foot.y1 > foot.y0:
+        foot = page.box(Box(one.at - radius, heights.peg_top - heights.peg_length, one.at + radius, low))
+        if not begin and foot.y1 > foot.y0:
             scene.path(outline(foot), PEG_FILL, 0.9, stroke_dasharray="4 2.5", **{"class": "peg-foot"})
 
     def draw_band(self, scene: Scene, page: View, one: SideContact) -> None:

@@ -82,6 +82,7 @@ class SideContact:
     is_hidden : whether the part stands before it.
     hole : of a clamp with a known hole, where that is across the view; None of pegs.
     is_clamp : whether it is the tip of a clamp.
+    heights : from which to which height it reaches, where these are its own; None as the pegs do.
     """
 
     name: str
@@ -92,6 +93,7 @@ class SideContact:
     is_hidden: bool
     hole: float | None
     is_clamp: bool
+    heights: Band | None = None
 
 
 @frozen
@@ -118,6 +120,7 @@ class SideView:
     pads, pad_radius : the supports.
     clamp, tip_radius : the clamp on top; None without one.
     clamped_height : at which it presses.
+    wall_heights : from which to which height walls reach, where these are their own.
     """
 
     way: ViewWay
@@ -133,6 +136,7 @@ class SideView:
     clamp: float | None = None
     tip_radius: float = 0.0
     clamped_height: float = 0.0
+    wall_heights: Band | None = None
 
     @property
     def extent(self) -> Box:
@@ -143,7 +147,8 @@ class SideView:
             (one.hole - one.radius, one.hole + one.radius) for one in self.contacts if one.hole is not None
         ]
         low = -self.heights.supported_by - self.heights.plate_thickness
-        high = max(self.heights.thickness, self.heights.peg_top)
+        own = [one.heights for one in self.contacts if one.heights is not None]
+        high = max(self.heights.thickness, self.heights.peg_top, *(top for _, top in own))
         return Box(min(a for a, _ in spans), low, max(b for _, b in spans), high)
 
 
@@ -174,6 +179,7 @@ def side_view(
         clamp=None if supports is None else way.across(point_of(pose.apply(*supports.clamp.at))),
         tip_radius=0.0 if request is None else request.tip_radius,
         clamped_height=heights.thickness if heights.clamped_height is None else heights.clamped_height,
+        wall_heights=next((wall.carrier.heights for wall in bench.shown.walls), None),
     )
 
 
@@ -253,6 +259,7 @@ def contacts(bench: Bench, way: ViewWay, heights: SheetHeights) -> Iterable[Side
             is_hidden=any(stands_before(outline, (peg.x, peg.y), way) for outline in outlines),
             hole=None if hole is None else way.across(hole),
             is_clamp=carrier.contact is CLAMP_TIP,
+            heights=carrier.heights,
         )
 
 

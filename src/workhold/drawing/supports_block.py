@@ -12,6 +12,10 @@ __all__ = ["holding_up_words", "support_steps", "tipping_words", "write_heights"
 
 # Where no load says how much clamp force is wanted, the margin is stated for so many units of force.
 ROUND_FORCE = 100.0
+FROM_THE_SIDE = (
+    "What begins above the plane on which the part lies comes in from the side once the part is down: "
+    "nothing promises that the part passes it on its way."
+)
 
 
 def write_supports(column: TextColumn, sheet: Sheet) -> None:
@@ -149,6 +153,11 @@ def write_heights(column: TextColumn, sheet: Sheet) -> None:
     heading(column, "Heights")
     column.fact("height of the part", lengths.words(heights.thickness), bold=True)
     column.fact(f"top of the pegs{heights.sure('peg_top')}", lengths.words(heights.peg_top), bold=True)
+    own = {one.elements: one.heights for one in sheet.toolkit.carriers if one.heights is not None}
+    for elements, (low, high) in own.items():
+        column.fact(f"{elements}, from and to", f"{lengths.number(low)}, {lengths.words(high)}", bold=True)
+    if any(low > 0 for low, _ in own.values()):
+        column.paragraph(FROM_THE_SIDE, NOTE)
     if heights.head_room is not None:
         column.fact("head room above the pegs", lengths.words(heights.head_room))
     if heights.supported_by:

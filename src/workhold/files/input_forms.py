@@ -103,6 +103,7 @@ TYPES: Mapping[Form, Any] = {
     "pitch": FiniteFloat | TwoNumbers,
     "span": TwoNumbers,
     "flat": FiniteFloat | TwoNumbers,
+    "heights": TwoNumbers,
     "holes": list[str],
     "directions": list[str] | list[Ways],
 }

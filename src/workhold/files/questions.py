@@ -37,15 +37,17 @@ __all__ = [
 UNIT, DRAWING_UNIT = "<unit>", "<drawing_unit>"
 PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT = "<part_number>", "<layers>", "<join_tolerance>", "<fit>"
 # How a solid is looked at.
-AXIS, SECTION, PEG_HEIGHT, HEAD_ROOM, LEAST_BAND = (
+AXIS, SECTION, PEG_HEIGHT, HEAD_ROOM, LEAST_BAND, HEIGHTS = (
     "<axis>",
     "<section>",
     "<peg_height>",
     "<head_room>",
     "<least_band>",
+    "<heights>",
 )
 OF_SOLIDS = (AXIS, SECTION, PEG_HEIGHT, HEAD_ROOM, LEAST_BAND)
-MARK = re.compile("|".join((UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT, *OF_SOLIDS)))
+OTHERS = (UNIT, DRAWING_UNIT, PART_NUMBER, LAYERS, JOIN_TOLERANCE, FIT)
+MARK = re.compile("|".join((*OTHERS, *OF_SOLIDS, HEIGHTS)))
 # The arguments of ``workhold.load``; it knows one unit.
 IN_PYTHON = {"drawing_unit": "unit"}
 
@@ -121,7 +123,10 @@ def by_height(options: Mapping[str, object], fit: float | None) -> bool:
     InputError
         When a section or a fit is wanted besides.
     """
-    asked = [mark for mark in (PEG_HEIGHT, HEAD_ROOM, LEAST_BAND) if options.get(mark[1:-1]) is not None]
+    usual: tuple[object, ...] = (None, {})
+    asked = [
+        mark for mark in (PEG_HEIGHT, HEAD_ROOM, LEAST_BAND, HEIGHTS) if options.get(mark[1:-1]) not in usual
+    ]
     for mark, value in ((SECTION, options.get("section")), (FIT, fit)):
         if asked and value is not None:
             raise InputError(f"an outline by height takes no {mark}: leave {mark} or {asked[0]} out.")

@@ -19,7 +19,17 @@ from workhold.errors import InputError
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, TOWARDS, WALL_END, ContactKind
 from workhold.fixels.pegs import Flat
 
-__all__ = ["WALL", "Carrier", "Holes", "Measure", "Travel", "column_letters", "hole_name", "holes_named"]
+__all__ = [
+    "WALL",
+    "Carrier",
+    "Heights",
+    "Holes",
+    "Measure",
+    "Travel",
+    "column_letters",
+    "hole_name",
+    "holes_named",
+]
 
 # The carrier that is the only one with holes.
 ALONE = "plate"
@@ -108,6 +118,8 @@ def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
     return Holes(carrier, column - 1, None if match[3] is None else int(match[3]) - 1)
 
 
+# From which height in mm up to which.
+Heights = tuple[float, float]
 # The name of the carrier that is a wall.
 WALL = "wall"
 
@@ -156,6 +168,8 @@ class Carrier:
         its own holes.
     is_wall : whether it is a straight wall along x that the part lies flush against, which has no holes.
     flat : of its pegs, which lies on straight faces; None where they are round.
+    heights : between which what stands on it reaches, in mm above the plane on which the part lies. None
+        where it reaches from below up to the peg height, as all pegs do.
     """
 
     name: str
@@ -172,6 +186,12 @@ class Carrier:
     on: str | None = None
     is_wall: bool = False
     flat: Flat | None = None
+    heights: Heights | None = None
+
+    @property
+    def role(self) -> str:
+        """The name that carriers of the same heights share: that of a clamp without its direction."""
+        return self.name.partition(" ")[0]
 
     @property
     def least_standoff(self) -> float:
@@ -184,6 +204,13 @@ class Carrier:
         if not self.letter:
             return self.noun
         return self.name if self.noun in self.name else f"{self.name} {self.noun}"
+
+    @property
+    def elements(self) -> str:
+        """What of it touches the part, such as "locators", "left jaw pegs", "clamp" or "fence"."""
+        if not self.has_lattice:
+            return self.noun
+        return f"{self.title} {self.peg}s" if self.letter and self.name != self.noun else f"{self.peg}s"
 
     @property
     def column_count(self) -> int:

@@ -11,19 +11,23 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import ClassVar
 
+from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import (
     ALL_PAIRS,
+    CLAMP_HEIGHTS,
     CLAMP_RADIUS,
     CLAMPS,
     DIRECTION,
     FLAT,
+    LOCATOR_HEIGHTS,
     ON_A_PLATE,
     ONE_CLAMP,
     PEG_RADIUS,
     PITCH,
     TRAVEL,
     TWO_CLAMPS,
+    WALL_HEIGHTS,
     WALL_OFFSET,
     WAYS,
 )
@@ -51,6 +55,9 @@ FIELDS = FieldTable(
             PageLabel("The clamps push", "down and aside", several=True, choices=ALL_PAIRS, when=TWO_CLAMPS),
         ),
         FLAT,
+        LOCATOR_HEIGHTS,
+        CLAMP_HEIGHTS,
+        WALL_HEIGHTS.shown(PageLabel("Heights of the fence", "as all pegs"), figure="heights of the fence"),
     ),
 )
 
@@ -70,6 +77,7 @@ class Fence(Plate):
     directions : in which the clamp may move when it clamps; None means all four, which are all different
         here.
     wall_offset : distance in mm from the fence to the first row of holes, the peg radius or more.
+    locator_heights, clamp_heights, wall_heights : as of a :class:`workhold.Plate`, and the same of the fence.
 
     Raises
     ------
@@ -130,6 +138,7 @@ class Fence(Plate):
     )
 
     wall_offset: float
+    wall_heights: Heights | None
 
     @property
     def usual_directions(self) -> tuple[str, ...]:

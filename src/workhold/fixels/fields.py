@@ -11,7 +11,15 @@ from collections.abc import Mapping
 from itertools import combinations_with_replacement
 
 from workhold.fixels.contacts import DIRECTIONS, TOWARDS
-from workhold.fixels.table import CLAMPS_SECTION, REQUIRED, Choice, Lifted, PageLabel, ToolkitField
+from workhold.fixels.table import (
+    CLAMPS_SECTION,
+    HEIGHTS_SECTION,
+    REQUIRED,
+    Choice,
+    Lifted,
+    PageLabel,
+    ToolkitField,
+)
 
 # The names of kinds that people give, and what they are.
 NAMES: Mapping[str, str] = {
@@ -239,6 +247,38 @@ WALL_OFFSET = ToolkitField(
     section=CLAMPS_SECTION,
 )
 
+
+def heights_of(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
+    """Returns the field of the heights between which what stands on a carrier touches.
+
+    Parameters
+    ----------
+    carrier : its name, of which the field's name is made.
+    whose : what it is the height of, such as "the clamp's tip".
+    belongs_to : as of any field.
+    """
+    return ToolkitField(
+        f"{carrier}_heights",
+        "heights",
+        "LOW,HIGH",
+        f"Between which {whose} can touch, above the plane on which the part lies; as all pegs do, up to the "
+        "peg height, if not given.",
+        (PageLabel(f"Heights of {whose}", "as all pegs"),),
+        figure=f"heights of {whose}",
+        entry="write the lower and the upper end above the plane on which the part lies, such as [6, 14]",
+        least="0",
+        belongs_to=belongs_to,
+        section=HEIGHTS_SECTION,
+    )
+
+
+LEFT_HEIGHTS = heights_of("left", "the left jaw's pegs", "jaws with pegs")
+RIGHT_HEIGHTS = heights_of("right", "the right jaw's pegs", "jaws with pegs")
+LOCATOR_HEIGHTS = heights_of("locator", "the locators", "locators")
+CLAMP_HEIGHTS = heights_of("clamp", "the clamp's tip", "clamp beside its jaws")
+WALL_HEIGHTS = heights_of("wall", "the straight wall", "wall")
+JAW_HEIGHTS = heights_of("jaw", "the jaw's pegs", "single jaw with pegs")
+
 # All fields, in the order of the command's help; a kind may show some of them in another way.
 OPTIONS = (
     PITCH,
@@ -256,6 +296,12 @@ OPTIONS = (
     TRAVEL,
     DIRECTION,
     WALL_OFFSET,
+    LEFT_HEIGHTS,
+    RIGHT_HEIGHTS,
+    LOCATOR_HEIGHTS,
+    CLAMP_HEIGHTS,
+    WALL_HEIGHTS,
+    JAW_HEIGHTS,
 )
 ON_A_PLATE = (
     PITCH,

@@ -9,7 +9,17 @@ from functools import cached_property
 from math import pi
 from typing import ClassVar
 
-from workhold.fixels.fields import FLAT, MAX_OPENING, MIN_GAP, ON_A_PLATE, PEG_RADIUS, PITCH
+from workhold.fixels.carrier import Heights
+from workhold.fixels.fields import (
+    FLAT,
+    JAW_HEIGHTS,
+    MAX_OPENING,
+    MIN_GAP,
+    ON_A_PLATE,
+    PEG_RADIUS,
+    PITCH,
+    WALL_HEIGHTS,
+)
 from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle, wall_carrier
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
@@ -36,6 +46,10 @@ FIELDS = FieldTable(
         ),
         MAX_OPENING,
         FLAT,
+        JAW_HEIGHTS,
+        WALL_HEIGHTS.shown(
+            PageLabel("Heights of the flat jaw", "as all pegs"), figure="heights of the flat jaw"
+        ),
     ),
 )
 
@@ -56,6 +70,8 @@ class FlatJaw(Toolkit):
         the peg radius.
     max_opening : largest such distance in mm, or None for no limit.
     flat : of the pegs, see :class:`workhold.Vise`.
+    jaw_heights, wall_heights : lower and upper end in mm, above the plane on which the part lies, of the pegs
+        and of the flat jaw. None where they reach up to the peg height.
 
     Raises
     ------
@@ -120,6 +136,8 @@ class FlatJaw(Toolkit):
     min_gap: float
     max_opening: float | None
     flat: Flat | None
+    jaw_heights: Heights | None
+    wall_heights: Heights | None
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun="jaw", peg="peg")
@@ -128,7 +146,8 @@ class FlatJaw(Toolkit):
     def carriers(self) -> tuple[Carrier, ...]:
         """The flat jaw, and the jaw that moves, whose travel is the jaw separation."""
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
-        return wall_carrier(self, "flat jaw"), lattice_carrier(self, "jaw", travel=travel, noun="jaw")
+        jaw = lattice_carrier(self, "jaw", travel=travel, noun="jaw", heights=self.jaw_heights)
+        return wall_carrier(self, "flat jaw"), jaw
 
     @property
     def law(self) -> str:

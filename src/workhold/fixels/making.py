@@ -21,7 +21,7 @@ from workhold.fixels.carrier import WALL, Carrier, Holes, holes_named
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import PITCH
 from workhold.fixels.pegs import flat_of, resolved_flat
-from workhold.fixels.table import ToolkitField
+from workhold.fixels.table import SILENT, ToolkitField
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.limits import MOST_BLOCKED, MOST_HOLES, real, refuse_long
 
@@ -129,7 +129,7 @@ def made_from_table(kind: Kind) -> Kind:
 
 def attribute_of(row: ToolkitField, *, inherits: bool) -> Any:
     """Returns the attribute of a field; what is needed beside inherited fields is given by name alone."""
-    by_name = row.form == "flat" or inherits
+    by_name = row.form in SILENT or inherits
     default = NOTHING if row.is_required else row.default
     return field(default=default, converter=converter_of(row), kw_only=by_name)
 
@@ -166,6 +166,24 @@ def least_and_most(value: Iterable[float] | None) -> tuple[float, float] | None:
     if len(numbers) != 2:
         raise InputError(
             f"travel {value} is not two lengths: give the least and the most that the clamp stretches, in mm."
+        )
+    return real(numbers[0]), real(numbers[1])
+
+
+def low_and_high(value: Iterable[float] | None) -> tuple[float, float] | None:
+    """Returns the lower and the upper of two heights, or None.
+
+    Raises
+    ------
+    InputError
+        For anything but two heights.
+    """
+    if value is None:
+        return None
+    numbers = tuple(value) if isinstance(value, Iterable) else (value,)
+    if len(numbers) != 2:
+        raise InputError(
+            f"heights {value} are not two: give the lower and the upper end of what touches the part, in mm."
         )
     return real(numbers[0]), real(numbers[1])
 
@@ -220,6 +238,7 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
     "pitch": pair,
     "span": least_and_most,
     "flat": flat_of,
+    "heights": low_and_high,
     "directions": direction_names,
 }
 
@@ -279,6 +298,13 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
                     "the most from its hole to its tip, in mm."
                 )
             refuse_long(row.words, value[1])
+        case "heights" if value is not None:
+            if not 0 <= value[0] < value[1] < inf:
+                raise InputError(
+                    f"{row.words} {value[0]:g} to {value[1]:g} are none: give the lower end, 0 or more, and "
+                    "then the upper one, in mm above the plane on which the part lies."
+                )
+            refuse_long(row.words, value[1])
         case "pitch":
             refuse_long(row.words, max(value))
         case "flat":
@@ -328,7 +354,7 @@ def lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
 def wall_carrier(toolkit: Any, noun: str) -> Carrier:
     """The straight wall of a toolkit, along x at y = 0."""
     size = toolkit.pitch, toolkit.columns, toolkit.rows
-    return Carrier(WALL, *size, 0.0, 0.0, noun=noun, peg="end", is_wall=True)
+    return Carrier(WALL, *size, 0.0, 0.0, noun=noun, peg="end", is_wall=True, heights=toolkit.wall_heights)
 
 
 def finer(toolkit: Any) -> Iterator[Change]:

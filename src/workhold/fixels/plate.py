@@ -15,12 +15,15 @@ from typing import Any, ClassVar
 from attrs import evolve
 
 from workhold.errors import InputError
+from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import (
+    CLAMP_HEIGHTS,
     CLAMP_RADIUS,
     CLAMPS,
     DIRECTION,
     FLAT,
+    LOCATOR_HEIGHTS,
     ON_A_PLATE,
     PEG_RADIUS,
     PITCH,
@@ -44,7 +47,7 @@ def turned_half(name: str) -> str:
 FIELDS = FieldTable(
     "plate",
     "A plate with locators and a clamp",
-    (*ON_A_PLATE, CLAMP_RADIUS, TRAVEL, CLAMPS, DIRECTION, FLAT),
+    (*ON_A_PLATE, CLAMP_RADIUS, TRAVEL, CLAMPS, DIRECTION, FLAT, LOCATOR_HEIGHTS, CLAMP_HEIGHTS),
 )
 
 
@@ -66,6 +69,8 @@ class Plate(Toolkit):
     clamps : 1, or 2 that are needed together.
     flat : of the locators, which lies on straight faces: its distance from a locator's centre, and half its
         width, in mm; None for round ones. A clamp's tip is round.
+    locator_heights, clamp_heights : lower and upper end in mm, above the plane on which the part lies, of the
+        locators, and of the clamps with their tips. None where they reach up to the peg height.
 
     Raises
     ------
@@ -122,6 +127,8 @@ class Plate(Toolkit):
     directions: tuple[Any, ...]
     clamps: int
     flat: Flat | None
+    locator_heights: Heights | None
+    clamp_heights: Heights | None
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun=self.noun, peg="locator")
@@ -207,7 +214,9 @@ class Plate(Toolkit):
 
     def plate_and_clamps(self, offset: tuple[float, float]) -> tuple[Carrier, ...]:
         """The plate with its first hole at a place in mm, and the clamp of each direction."""
-        plate = lattice_carrier(self, "plate", offset=offset, noun="plate", peg="locator")
+        plate = lattice_carrier(
+            self, "plate", offset=offset, noun="plate", peg="locator", heights=self.locator_heights
+        )
         least, most = (-inf, None) if self.travel is None else (-self.travel[1], -self.travel[0])
         clamp = lattice_carrier(
             self,
@@ -219,6 +228,7 @@ class Plate(Toolkit):
             peg="clamp",
             on="plate",
             flat=None,
+            heights=self.clamp_heights,
         )
         return (
             plate,

@@ -15,7 +15,9 @@ from attrs import evolve, field, frozen
 
 __all__ = [
     "CLAMPS_SECTION",
+    "HEIGHTS_SECTION",
     "REQUIRED",
+    "SILENT",
     "TOOLKIT_SECTION",
     "Choice",
     "FieldTable",
@@ -26,10 +28,14 @@ __all__ = [
 ]
 
 # What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a
-# flat's distance with or without half its width; names of holes; directions or pairs of them.
-Form = Literal["count", "length", "pitch", "span", "flat", "holes", "directions"]
+# flat's distance with or without half its width; the heights between which something touches; names of holes;
+# directions or pairs of them.
+Form = Literal["count", "length", "pitch", "span", "flat", "heights", "holes", "directions"]
+# Forms of which files say nothing where there is none.
+SILENT: frozenset[Form] = frozenset({"flat", "heights"})
 # Sections of the command's help.
 TOOLKIT_SECTION, CLAMPS_SECTION = "The toolkit", "The clamps of a plate or fence"
+HEIGHTS_SECTION = "Heights other than those of all pegs"
 # The default of a field that must be given.
 REQUIRED = object()
 

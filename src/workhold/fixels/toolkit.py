@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from workhold.delegates import delegate
 from workhold.errors import InputError
-from workhold.fixels.carrier import Carrier, Travel
+from workhold.fixels.carrier import Carrier, Heights, Travel
 from workhold.fixels.contacts import CLAMP_TIP, Arrangement, ContactKind, Symmetry
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, ToolkitField
@@ -165,6 +165,16 @@ class Toolkit:
         """How many clamps hold the part, whose contacts are the last of a fixture."""
         carriers = self.carriers
         return sum(carriers[number].contact is CLAMP_TIP for number in self.arrangements[0].carriers)
+
+    @property
+    def heights(self) -> dict[str, Heights]:
+        """The heights of what has its own, by the role of its carriers.
+
+        >>> from workhold import Plate
+        >>> Plate(pitch=20, peg_radius=3, clamp_heights=(6, 14)).heights
+        {'clamp': (6.0, 14.0)}
+        """
+        return {one.role: one.heights for one in self.carriers if one.heights is not None}
 
     @property
     def travels(self) -> int:

@@ -8,16 +8,18 @@ from typing import ClassVar
 
 from attrs import evolve
 
-from workhold.fixels.carrier import Holes
+from workhold.fixels.carrier import Heights, Holes
 from workhold.fixels.fields import (
     BLOCKED,
     BODY_RADIUS,
     COLUMNS,
     FLAT,
+    LEFT_HEIGHTS,
     MAX_OPENING,
     MIN_GAP,
     PEG_RADIUS,
     PITCH,
+    RIGHT_HEIGHTS,
     ROW_OFFSET,
     ROWS,
 )
@@ -52,7 +54,20 @@ SETUP = SetupWords(
 FIELDS = FieldTable(
     "vise",
     "A vise",
-    (PITCH, COLUMNS, PEG_RADIUS, ROWS, ROW_OFFSET, MIN_GAP, MAX_OPENING, BODY_RADIUS, BLOCKED, FLAT),
+    (
+        PITCH,
+        COLUMNS,
+        PEG_RADIUS,
+        ROWS,
+        ROW_OFFSET,
+        MIN_GAP,
+        MAX_OPENING,
+        BODY_RADIUS,
+        BLOCKED,
+        FLAT,
+        LEFT_HEIGHTS,
+        RIGHT_HEIGHTS,
+    ),
 )
 
 
@@ -75,6 +90,8 @@ class Vise(Toolkit):
     blocked : holes and columns that no peg can stand in, or their names, such as "L-B3" and "R-A".
     flat : of the pegs, which lies on straight faces: its distance from a peg's centre, and half its width, in
         mm; None for round ones.
+    left_heights, right_heights : lower and upper end in mm, above the plane on which the part lies, of the
+        pegs of each jaw. None where they reach up to the peg height.
 
     Raises
     ------
@@ -94,7 +111,6 @@ class Vise(Toolkit):
     locked: ClassVar[str] = "a screw vise, its jaw"
     arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
     clamping: ClassVar[int] = 1
-    symmetries: ClassVar[tuple[Symmetry, ...]] = (Symmetry(1, (1, 0)),)
     wording: ClassVar[Wording] = WORDING
     setup_words: ClassVar[SetupWords] = SETUP
 
@@ -114,9 +130,16 @@ class Vise(Toolkit):
     body_radius: float
     blocked: tuple[Holes, ...]
     flat: Flat | None
+    left_heights: Heights | None
+    right_heights: Heights | None
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun=NOUN, peg="peg")
+
+    @property
+    def symmetries(self) -> tuple[Symmetry, ...]:  # type: ignore[override]
+        """Half a turn, which swaps the jaws; none where their pegs have different heights."""
+        return (Symmetry(1, (1, 0)),) if self.left_heights == self.right_heights else ()
 
     @property
     def carriers(self) -> tuple[Carrier, Carrier]:
@@ -132,6 +155,7 @@ class Vise(Toolkit):
             body_radius=self.body_radius,
             blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[0]),
             noun=NOUN,
+            heights=self.left_heights,
         )
         right = evolve(
             left,
@@ -139,6 +163,7 @@ class Vise(Toolkit):
             offset=((self.columns - 1) * left.pitch[0], self.row_offset),
             blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[1]),
             travel=Travel(0.0, self.min_gap, self.max_opening),
+            heights=self.right_heights,
         )
         return left, right
 

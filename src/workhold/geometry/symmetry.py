@@ -82,23 +82,23 @@ class CenteredOutline:
     ----------
     points : (N, 4, 2) anchor, start, end and centre. The anchor is the middle, or the centre of a whole
         circle, of which all four are the centre. The centre of a line is its middle.
-    kinds : (N, 2) signed radius (0 for a line), and 1 for a whole circle.
+    kinds : (N, 3) signed radius (0 for a line), 1 for a whole circle, and the mark.
     """
 
     points: Array
     kinds: Array
 
     @classmethod
-    def of(cls, segments: Sequence[Segment]) -> CenteredOutline:
-        """The outline of some segments."""
+    def of(cls, segments: Sequence[Segment], marks: Sequence[int] = ()) -> CenteredOutline:
+        """The outline of some segments; those of different marks are never images of each other."""
         points, kinds = [], []
-        for s in segments:
+        for s, mark in zip(segments, marks or [0] * len(segments), strict=True):
             if isinstance(s, Arc):
                 points.append((s.center,) * 4 if s.is_full else (s.at(0.0), s.start, s.end, s.center))
-                kinds.append((s.sign * s.radius, float(s.is_full)))
+                kinds.append((s.sign * s.radius, float(s.is_full), mark))
             else:
                 points.append((s.at(0.0), s.start, s.end, s.at(0.0)))
-                kinds.append((0.0, 0.0))
+                kinds.append((0.0, 0.0, mark))
         return cls(np.array(points) - centroid_of_joints(segments), np.array(kinds))
 
     @cached_property
@@ -150,13 +150,13 @@ class CenteredOutline:
         return found
 
 
-def rotations_onto_itself(segments: Sequence[Segment]) -> list[Rotation]:
+def rotations_onto_itself(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[Rotation]:
     """All rotations that carry an outline, given by its faces, onto itself; the identity comes first.
 
     An outline of concentric circles alone turns onto itself at every angle; only the identity is returned for
-    it.
+    it. Of several outlines marks say of which each face is, and every one is carried onto itself.
     """
-    outline = CenteredOutline.of(segments)
+    outline = CenteredOutline.of(segments, marks)
     rotations = [Rotation(0.0, np.arange(len(segments), dtype=np.int64))]
     if outline.first is None:
         return rotations
@@ -171,15 +171,15 @@ def rotations_onto_itself(segments: Sequence[Segment]) -> list[Rotation]:
     return rotations
 
 
-def symmetries(segments: Sequence[Segment]) -> list[NDArray[np.int64]]:
+def symmetries(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[NDArray[np.int64]]:
     """Indices (N,) of segments' images under every rotation and mirror image of an outline onto itself.
 
     The identity comes first. Of concentric circles alone, which every motion about their centre carries, it
-    is the only one.
+    is the only one. Marks are those of :func:`rotations_onto_itself`.
     """
-    images = [rotation.image for rotation in rotations_onto_itself(segments)]
-    outline = CenteredOutline.of(segments)
-    mirror = None if outline.first is None else mirrored_onto(outline, segments)
+    images = [rotation.image for rotation in rotations_onto_itself(segments, marks)]
+    outline = CenteredOutline.of(segments, marks)
+    mirror = None if outline.first is None else mirrored_onto(outline, segments, marks)
     return images if mirror is None else [*images, *(image[mirror] for image in images)]
 
 
@@ -189,9 +189,11 @@ def is_own_mirror_image(segments: Sequence[Segment]) -> bool:
     return outline.first is None or mirrored_onto(outline, segments) is not None
 
 
-def mirrored_onto(outline: CenteredOutline, segments: Sequence[Segment]) -> NDArray[np.int64] | None:
+def mirrored_onto(
+    outline: CenteredOutline, segments: Sequence[Segment], marks: Sequence[int] = ()
+) -> NDArray[np.int64] | None:
     """Indices of segments' mirror images in an outline; None where no mirror image maps it onto itself."""
-    mirrored = CenteredOutline.of([mirror_image(segment) for segment in segments])
+    mirrored = CenteredOutline.of([mirror_image(segment) for segment in segments], marks)
     found = (mirrored.image(outline, angle) for angle in mirrored.angles(outline).tolist())
     return next((image for image in found if image is not None), None)
 

@@ -152,10 +152,11 @@ class ClampPlacement:
             x, y = behind[chosen].T
             ends = starts + np.stack(rotated(x, y, -self.theta[index[chosen]]), axis=1)
             distances = np.empty(len(chosen))
-            piece_distances(starts, ends, problem.outline, distances)
+            piece_distances(starts, ends, problem.outlines[1], distances)
             clear[chosen] = distances >= radius - BODY_SLACK
-            if problem.swept is not None:
-                swept, clearance = problem.swept
+            passing = problem.swept(self.clamp)
+            if passing is not None:
+                swept, clearance = passing
                 reach, _ = swept.nearest(starts + problem.workpiece.center, ends + problem.workpiece.center)
                 clear[chosen] &= reach >= clearance + radius - GAP_SLACK
         return clear

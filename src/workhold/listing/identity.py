@@ -79,7 +79,8 @@ class Identity:
     @rotations.default
     def onto_itself(self) -> tuple[Rotation, ...]:
         """The rotations of the part onto itself."""
-        return tuple(rotations_onto_itself([face.segment for face in self.part.faces]))
+        every = self.part.numbered
+        return tuple(rotations_onto_itself([face.segment for face in every.faces], every.marks))
 
     @property
     def is_symmetric(self) -> bool:
@@ -95,7 +96,7 @@ class Identity:
             table.arrangement
         ]
         period = np.where(halves, np.pi, 2.0 * np.pi)
-        kept = np.array(centroid_of_joints([face.segment for face in self.part.faces]))
+        kept = np.array(centroid_of_joints([face.segment for face in self.part.numbered.faces]))
         after = [table.theta - rotation.angle + SAME_POSE for rotation in self.rotations]
         least = np.min([theta % period for theta in after], axis=0)
         words, pose = list[IntArray](), np.zeros((0, 0))
@@ -319,11 +320,14 @@ def distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
 
 def smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
     """The first image of each row (K, 6) of arrangement, tilt and faces under the symmetries of the part."""
-    numbers = np.array([face.number for face in workpiece.faces])
+    every = workpiece.numbered
+    numbers = np.array([face.number for face in every.faces])
     carriers = toolkit.peg_carriers(keys[:, 0].astype(np.int8))
     # Type I of a vise: as many pegs on either carrier, which a half turn swaps.
     swaps = ((carriers.max(axis=1) == 1) & ((carriers == 1).sum(axis=1) * 2 == carriers.shape[1]))[:, None]
-    images = np.array(symmetries([face.segment for face in workpiece.faces]))
+    # Jaws whose pegs have different heights are no images of each other.
+    swaps &= len({carrier.heights for carrier in toolkit.carriers}) == 1
+    images = np.array(symmetries([face.segment for face in every.faces], every.marks))
     to = np.zeros((len(images), int(numbers.max()) + 1), np.int64)
     to[:, numbers] = numbers[images]
     # The first image begins with the lowest number that one of the faces can have, so of many symmetries only

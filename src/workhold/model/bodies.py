@@ -18,7 +18,7 @@ from math import asin, atan2, isfinite, pi
 from attrs import frozen
 
 from workhold.errors import InputError, plain, shortened
-from workhold.fixels.carrier import hole_name
+from workhold.fixels.carrier import Carrier, hole_name
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import LoopShape, encloses, signed_area
@@ -171,6 +171,11 @@ class BodySizes:
         """The height of the plates' upper sides, 0 or below."""
         return 0.0 - self.support_height
 
+    def between(self, carrier: Carrier) -> tuple[float, float]:
+        """The heights between which a clamp or a wall stands: its own, or from the plate up."""
+        low, high = carrier.heights or (0.0, self.others)
+        return (low if low > 0.0 else self.floor), high
+
 
 def fixture_bodies(
     fixture: Fixture,
@@ -206,7 +211,9 @@ def fixture_bodies(
         *clamps(seen, sizes),
         *(
             FixtureBody(
-                wall.carrier.noun, BodyKind.WALL, (Slab(rectangle(wall.bar), (), sizes.floor, sizes.others),)
+                wall.carrier.noun,
+                BodyKind.WALL,
+                (Slab(rectangle(wall.bar), (), *sizes.between(wall.carrier)),),
             )
             for wall in seen.walls
         ),
@@ -253,18 +260,20 @@ def pegs(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
         for peg in each.pegs:
             center = (peg.x, peg.y)
             outline = tuple(peg_outline(center, carrier.peg_radius, carrier.flat, peg.flat_deg))
-            low = sizes.top - sizes.peg_length
-            slabs = [Slab(outline, (), low, sizes.top)]
+            begin, top = carrier.heights or (0.0, sizes.top)
+            # A peg that begins higher is shown from there: what carries it is its owner's to say.
+            low = begin if begin > 0.0 else sizes.top - sizes.peg_length
+            slabs = [Slab(outline, (), low, top)]
             if len(outline) > 1 and low < sizes.floor:
                 foot = tuple(peg_outline(center, carrier.peg_radius))
-                slabs = [Slab(foot, (), low, sizes.floor), Slab(outline, (), sizes.floor, sizes.top)]
+                slabs = [Slab(foot, (), low, sizes.floor), Slab(outline, (), sizes.floor, top)]
             yield FixtureBody(f"{carrier.peg} {peg.hole}", BodyKind.PEG, tuple(slabs), way_open(each))
 
 
 def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
     """The clamps that are bolted to a plate, each before its bolt."""
     for clamp in seen.clamps:
-        body = Slab(clamp.outline(), (), sizes.floor, sizes.others)
+        body = Slab(clamp.outline(), (), *sizes.between(clamp.carrier))
         yield FixtureBody(clamp.tip.hole, BodyKind.CLAMP, (body,), reverse(clamp.clamping))
         if clamp.hole is not None:
             round_part = tuple(peg_outline(clamp.hole, seen.carriers[0].carrier.peg_radius))

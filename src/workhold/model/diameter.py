@@ -16,12 +16,12 @@ ROUNDED = 1e-9
 
 
 def outline_diameter(workpiece: Workpiece) -> float:
-    """Largest distance in mm between two points of the silhouette.
+    """Largest distance in mm between two points of the silhouette, and of the outlines of carriers.
 
     Its ends are two joints, a joint and the far side of an arc, or the far sides of two arcs. Far sides lie
     on the line through the arcs' centres.
     """
-    outer = [face.segment for face in workpiece.outer_faces]
+    outer = [face.segment for one in workpiece.every_outline for face in one.outer_faces]
     middle = np.array([segment.at(0.0) for segment in outer])
     reach = np.array([farthest_from_middle(segment) for segment in outer])
     apart = [np.hypot(*(middle[index:] - middle[index]).T) for index in range(len(outer))]

@@ -58,15 +58,15 @@ def first_side(fixture: Fixture, query: Query, before: Query, located: Fixture |
         For parts whose faces have no numbers of a solid.
     """
     own, other = solid_of(query.workpiece), solid_of(before.workpiece)
-    cut = other.faces_over(before.restrictions.avoid)
+    cut = before.workpiece.numbered.faces_over(before.restrictions.avoid)
     under = own.segments_under(cut)
     avoided = [
         face.number
         for face in query.workpiece.faces
         if own.bands[face.number] is not None and face.number in under
     ]
-    here = touched(fixture, query.workpiece, own)
-    there = set[int]() if located is None else touched(located, before.workpiece, other)
+    here = touched(fixture, query.workpiece)
+    there = set[int]() if located is None else touched(located, before.workpiece)
     return FirstSide(
         up=own.axis,
         up_before=other.axis,
@@ -90,13 +90,14 @@ def solid_of(workpiece: Workpiece) -> SolidOutline:
     return workpiece.solid
 
 
-def touched(fixture: Fixture, workpiece: Workpiece, solid: SolidOutline) -> set[int]:
+def touched(fixture: Fixture, workpiece: Workpiece) -> set[int]:
     """Numbers of the solid's faces that pegs and clamps touch."""
     numbers = {peg.face for peg in fixture.pegs} | {
         peg.beside for peg in fixture.pegs if peg.beside is not None
     }
-    return solid.faces_over(
-        k for face in workpiece.faces if numbers.intersection(face.segments) for k in face.segments
+    every = workpiece.numbered
+    return every.faces_over(
+        k for face in every.faces if numbers.intersection(face.segments) for k in face.segments
     )
 
 

@@ -189,7 +189,7 @@ def flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> 
         return [[None] * table.face.shape[1] for _ in range(len(table))]
     straight = {
         face.number: np.degrees(np.arctan2(*face.segment.normal()[::-1])) + 180.0
-        for face in workpiece.faces
+        for face in workpiece.numbered.faces
         if isinstance(face.segment, Line)
     }
     flatted = [[toolkit.carriers[k].flat is not None for k in one.carriers] for one in toolkit.arrangements]

@@ -13,6 +13,7 @@ from attrs import evolve, field, frozen
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import counting_number, real, refuse_long, refuse_strong
+from workhold.model.own_outlines import met_by
 from workhold.model.program import Program
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -177,6 +178,7 @@ class Query:
 
     def __attrs_post_init__(self) -> None:
         refuse_other_kinds(self)
+        object.__setattr__(self, "workpiece", met_by(self.workpiece, self.toolkit))
         object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))
         known = self.toolkit.types
         object.__setattr__(self, "arrangements", chosen_arrangements(self.arrangements, known))

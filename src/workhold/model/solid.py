@@ -76,6 +76,7 @@ class SolidOutline:
     bottom, top : loops of the level faces on which the part lies, and of those with nothing above them. Outer
         ones run counter-clockwise, openings clockwise; none stand where a file does not say.
     top_heights : for every loop of ``top`` the height of its face in mm; none where a file does not say.
+    low : from which pegs reach, in mm; 0 is from below.
 
     Raises
     ------
@@ -93,13 +94,14 @@ class SolidOutline:
     bottom: Loops = field(default=(), converter=loops_of)
     top: Loops = field(default=(), converter=loops_of)
     top_heights: tuple[float, ...] = field(default=(), converter=reals_of)
+    low: float = field(default=0.0, converter=real)
 
     def __attrs_post_init__(self) -> None:
         if self.axis not in AXES:
             raise InputError(f"the axis '{self.axis[:40]}' is not known: give one of {', '.join(AXES)}.")
         for name, value, least in (
             ("height of the part", self.height, 0.0),
-            ("peg height", self.peg_height, 0.0),
+            ("peg height", self.peg_height, max(self.low, 0.0)),
             ("head room", self.head_room, -1.0),
             ("least band", self.least_band, -1.0),
         ):

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.conventions import READING, SHORTEST
 from workhold.delegates import delegate
 from workhold.errors import InputError
+from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
 from workhold.geometry.loop import (
     Face,
@@ -35,6 +36,7 @@ from workhold.geometry.segment import Point, Segment, bounding_box
 from workhold.limits import real
 from workhold.model.fixture import Pose
 from workhold.model.nested_loops import outer_count, refuse_misplaced_holes
+from workhold.model.numbered_outlines import NumberedOutlines, unlike
 from workhold.model.solid import SolidOutline
 from workhold.model.wall import Flush
 
@@ -62,6 +64,7 @@ class Workpiece:
     departure : how far the outline may be from the one that was drawn, in mm, where curves were read as lines
         and arcs.
     solid : how the solid stands and the bands of the segments, for an outline by height; None for a prism.
+    outlines : what carriers with heights of their own meet, by their role, see ``model.own_outlines``.
 
     Examples
     --------
@@ -76,6 +79,7 @@ class Workpiece:
     remarks: tuple[str, ...] = field(default=(), eq=False)
     departure: float = 0.0
     solid: SolidOutline | None = None
+    outlines: tuple[tuple[str, Workpiece], ...] = ()
 
     def __attrs_post_init__(self) -> None:
         if self.solid is not None:
@@ -85,7 +89,7 @@ class Workpiece:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # What was worked out stays behind, and the arrays are read-only again on the other side.
-        return Workpiece, (self.name, self.loops, (), self.departure, self.solid)
+        return Workpiece, (self.name, self.loops, (), self.departure, self.solid, self.outlines)
 
     @classmethod
     def from_loops(
@@ -255,6 +259,21 @@ class Workpiece:
         return tuple(faces)
 
     @cached_property
+    def every_outline(self) -> tuple[Workpiece, ...]:
+        """Itself, and the outlines of carriers with heights of their own, each once."""
+        return tuple(unlike([self, *(own for _, own in self.outlines)]))
+
+    @cached_property
+    def numbered(self) -> NumberedOutlines:
+        """The segments and faces of every outline, numbered on."""
+        return NumberedOutlines.of(self.every_outline)
+
+    def outline_of(self, role: str) -> tuple[Workpiece, int]:
+        """The outline that carriers of a role meet, this one where they have none, and its first number."""
+        every, own = self.every_outline, dict(self.outlines).get(role, self)
+        return own, sum(len(one.segments) for one in every[: every.index(own)])
+
+    @cached_property
     def untouchable(self) -> frozenset[int]:
         """Numbers of the faces that no peg, clamp or wall may touch, whatever is asked."""
         segments = frozenset() if self.solid is None else self.solid.untouchable
@@ -280,8 +299,7 @@ class Workpiece:
     def outer_face_counts(self) -> list[int]:
         """How many faces each outer loop has."""
         ends = [0, *accumulate(len(loop) for loop in self.loops[: self.pieces])]
-        found = np.searchsorted([face.number for face in self.outer_faces], ends)
-        return [int(count) for count in np.diff(found)]
+        return list(np.diff(np.searchsorted([face.number for face in self.outer_faces], ends)).tolist())
 
     @property
     def hole_segments(self) -> tuple[tuple[Segment, ...], ...]:
@@ -290,15 +308,15 @@ class Workpiece:
 
     @cached_property
     def hull_edges(self) -> tuple[HullEdge, ...]:
-        """The straight pieces of the convex hull's boundary, on which the part can lie flush, by index of
-        face.
-        """
-        return hull_edges([face.segment for face in self.outer_faces], self.outer_face_counts)
+        """The straight pieces of the hull's boundary of the outline that walls meet, by index of face."""
+        own, _ = self.outline_of(WALL)
+        return hull_edges([face.segment for face in own.outer_faces], own.outer_face_counts)
 
     @cached_property
     def flush(self) -> Flush:
         """How it lies on a wall, hull edge by hull edge."""
-        return Flush.of(self.hull_edges, [face.number for face in self.faces])
+        own, first = self.outline_of(WALL)
+        return Flush.of(self.hull_edges, [first + face.number for face in own.faces])
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -317,7 +335,8 @@ class Workpiece:
     def placed(self, pose: Pose) -> Workpiece:
         """The workpiece as it lies in a pose; turning and moving it keep its bulges."""
         loops = (np.column_stack([*pose.apply(loop[:, 0], loop[:, 1]), loop[:, 2]]) for loop in self.loops)
-        return Workpiece(self.name, tuple(loops), departure=self.departure, solid=self.solid)
+        own = tuple((role, one.placed(pose)) for role, one in self.outlines)
+        return Workpiece(self.name, tuple(loops), (), self.departure, self.solid, own)
 
     @property
     def center(self) -> Point:

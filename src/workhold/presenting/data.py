@@ -14,7 +14,8 @@ from math import degrees, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from attrs import asdict
+from attrs import asdict, fields
+from attrs.filters import exclude
 
 from workhold.errors import InputError
 from workhold.files.result.fixture_text import column_names, fixture_rows, seating_values
@@ -50,6 +51,7 @@ __all__ = [
     "load_case_data",
     "part_data",
     "result_data",
+    "solid_data",
     "to_arrow",
     "to_pandas",
     "toolkit_data",
@@ -84,7 +86,7 @@ def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, An
 
 def solid_data(solid: SolidOutline | None) -> dict[str, Any]:
     """Describes how the solid of an outline stands, and the heights at which each segment is touched."""
-    return {} if solid is None else {"solid": asdict(solid)}
+    return {} if solid is None else {"solid": asdict(solid, filter=exclude(fields(SolidOutline).low))}
 
 
 def face_data(face: Face) -> dict[str, Any]:

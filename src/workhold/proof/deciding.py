@@ -184,13 +184,26 @@ def decided(records: Array, problem: Problem, course: Course | None = None) -> t
 def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
     """Records that a certificate proves, with their solutions, and those it leaves open, as they are."""
     solutions = np.empty((len(records), 4))
-    discs = discs_around(problem.outline, max(setting.standing_radius, setting.moving_radius))
-    verdicts, work = np.empty(len(records), np.int8), (np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)))
-    certified(records, problem.rows, problem.outline, discs, setting, solutions, verdicts, *work)
+    verdicts, work = np.full(len(records), PROVEN, np.int8), (np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)))
+    for outline, kept in clearances(problem, setting):
+        discs, judged = (
+            discs_around(outline, max(kept.standing_radius, kept.moving_radius)),
+            np.empty(len(records), np.int8),
+        )
+        certified(records, problem.rows, outline, discs, kept, solutions, judged, *work)
+        verdicts = np.minimum(verdicts, judged)
     is_proven = np.flatnonzero(verdicts == PROVEN)
     proven = records.take(is_proven, axis=0)
     proven[:, record.PSI : record.REACH] = solutions.take(is_proven, axis=0)
     return proven, records[verdicts == OPEN]
+
+
+def clearances(problem: Problem, setting: Setting) -> list[tuple[Array, Setting]]:
+    """Outlines (S, 10), and what pegs keep from each: those that do not meet it, nothing."""
+    one, other = problem.outlines
+    if one is other:
+        return [(one, setting)]
+    return [(one, setting._replace(moving_radius=-inf)), (other, setting._replace(standing_radius=-inf))]
 
 
 def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:

@@ -43,10 +43,10 @@ SAME_ROW = 1e-9
 def exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
     """Rows (P, 12) of features for pegs of some radii in mm, as balls at the precision in force."""
     sides: list[tuple[Vertex, Vertex]] = []
-    for loop in problem.workpiece.loops:
+    for loop in (loop for one in problem.workpiece.every_outline for loop in one.loops):
         vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
         sides += zip(vertices, vertices[1:] + vertices[:1], strict=True)
-    runs = {face.number: face.segments for face in problem.workpiece.faces}
+    runs = {face.number: face.segments for face in problem.workpiece.numbered.faces}
     out = []
     for feature, radius in zip(features, radii, strict=True):
         row, run = problem.rows[feature].tolist(), runs[int(problem.faces[feature])]

@@ -28,6 +28,7 @@ from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import Result
 from workhold.model.search_report import best_note, by_hand_note, cut_note, seated_note
 from workhold.model.seating import Seating
+from workhold.seating.part_features import refuse_own_outlines
 from workhold.seating.pattern import refuse_unseated
 
 __all__ = ["Sink", "deliver_seated", "refuse_unasked", "seated_answer"]
@@ -154,6 +155,7 @@ def refuse_unasked(query: Query) -> None:
         As ``refuse_unseated``, but that with two clamps only figures of seating cannot be asked for.
     """
     if not is_put_in_by_hand(query):
+        refuse_own_outlines(query.workpiece)
         refuse_unseated(query.toolkit)
     elif query.has_seating_rules or not SEATING_KEYS.isdisjoint(query.ranking):
         raise InputError(

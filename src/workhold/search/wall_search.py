@@ -16,6 +16,7 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import NDArray
 
+from workhold.contact.features import avoided_faces
 from workhold.contact.problem import Problem
 from workhold.conventions import (
     ANGLE_SLACK,
@@ -27,6 +28,7 @@ from workhold.conventions import (
     PARALLEL,
     SAME_PLACE,
 )
+from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.geometry.segment import bounding_box
 from workhold.geometry.symmetry import rotated
@@ -311,9 +313,8 @@ def allowed_edges(problem: Problem) -> list[int]:
     wall, and the program's tools pass clear of it.
     """
     part, asked = problem.workpiece, problem.restrictions
-    avoided = {face.number for face in part.faces if not set(face.segments).isdisjoint(asked.avoid)}
-    avoided |= part.untouchable
-    swept, out = problem.swept, []
+    avoided, carriers = avoided_faces(part, asked), problem.toolkit.carriers
+    swept, out = problem.swept(next(one for one in carriers if one.contact is WALL_END)), []
     for number, (theta, touching) in enumerate(
         zip(part.flush.theta.tolist(), part.flush.touching, strict=True)
     ):

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import centered
 from workhold.conventions import CLEARANCE, JOINT, LEAST_HULL_EDGE, SAME_POSE, TANGENT, TOUCHING
+from workhold.errors import InputError
 from workhold.geometry.hull import HullPieces
 from workhold.geometry.offset import cut_points, kept_parts, raw_offset, trimmed_offsets
 from workhold.geometry.segment import Arc, Point, Segment, segment_rows
@@ -27,7 +28,7 @@ from workhold.kernels.base.feature import X, Y
 from workhold.kernels.seating.obstacles import SUPPORTS, cover_same
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Hull", "HullSide", "Silhouette", "Touch", "pockets_of", "touched_pieces"]
+__all__ = ["Hull", "HullSide", "Silhouette", "Touch", "pockets_of", "refuse_own_outlines", "touched_pieces"]
 
 Array = NDArray[np.float64]
 # Corners that turn by less, in radians, are rounding.
@@ -238,7 +239,14 @@ class Silhouette:
 
     @classmethod
     def of(cls, workpiece: Workpiece) -> Silhouette:
-        """The outline of a part."""
+        """The outline of a part.
+
+        Raises
+        ------
+        InputError
+            As :func:`refuse_own_outlines`.
+        """
+        refuse_own_outlines(workpiece)
         segments = [face.segment for face in workpiece.faces]
         rows = centered(segment_rows(segments), workpiece.center)
         points = [s.at(t) for s in segments for t in np.linspace(-s.half_extent, s.half_extent, POINTS)]
@@ -254,3 +262,19 @@ class Silhouette:
         out = np.empty(len(others), np.int8)
         cover_same(one, others, turned_over.astype(np.int8), self.rows, self.points, SAME_PLACE, out)
         return out.astype(np.bool_)
+
+
+def refuse_own_outlines(workpiece: Workpiece) -> None:
+    """Refuses a part of which some carriers meet another outline than others.
+
+    Raises
+    ------
+    InputError
+        Naming such a carrier.
+    """
+    if workpiece.outlines:
+        role, _ = workpiece.outlines[0]
+        raise InputError(
+            "what a part does while it is clamped is stated where everything meets one outline of it, and "
+            f"the {role} has heights of its own: leave the seating out, or these heights."
+        )

@@ -16,7 +16,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.contact.features import ContactFeature, contact_features, end_slacks, feature_rows
+from workhold.contact.features import ContactFeature, end_slacks, feature_rows, features_met
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line, segment_rows
 from workhold.geometry.symmetry import rotated
@@ -149,10 +149,10 @@ class Touched:
         loci : for each carrier with holes those of its pegs, where they are known already.
         length : L in mm, where it is known already.
         """
-        carriers, segments = toolkit.carriers, len(workpiece.segments)
+        carriers, segments = toolkit.carriers, len(workpiece.numbered.segments)
         if loci is None:
             placed = [one for one in carriers if one.contact.is_placed]
-            loci = [contact_features(workpiece, one.peg_radius, one.flat) for one in placed]
+            loci = [features_met(workpiece, one) for one in placed]
         lies_flush = np.array([not one.contact.is_placed for one in carriers])
         flush = workpiece.flush if lies_flush.any() else Flush.of((), ())
         before = iter(loci)

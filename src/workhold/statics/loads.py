@@ -172,7 +172,7 @@ def contacts_on_part(
     touched, matrices : what the toolkit's pegs touch of the part, and the contact matrix of the fixture.
     """
     carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
-    faces = {face.number: face.segment for face in workpiece.faces}
+    faces = {face.number: face.segment for face in workpiece.numbered.faces}
     pegs = zip(fixture.pegs, (toolkit.carriers[number] for number in carriers), strict=True)
     radii = np.array([standoff(one.peg_radius, one.flat, faces[peg.face]) for peg, one in pegs])
     normals = matrices.normals[0]

@@ -1,8 +1,8 @@
 """How near the tools of a program come to what holds the part: to pegs, clamps with their bodies, and walls.
 
-An element of a fixture is a disc, a capsule or a half plane up to the height of the pegs. Its clearance is
-the least distance of the axis of a tool's cylinder to it, less the cylinder's radius, over all that the
-program sweeps at heights up to that.
+An element of a fixture is a disc, a capsule or a half plane up to the height of the pegs, or between heights
+of its own. Its clearance is the least distance of the axis of a tool's cylinder to it, less the cylinder's
+radius, over all that the program sweeps at these heights.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.contact.beside import swept_beside
 from workhold.contact.swept import Swept, path_of, swept_below
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated
@@ -51,7 +52,7 @@ def nearest_moves(
     table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, program: Program, peg_height: float
 ) -> NearestMove:
     """Where the tools of a program come nearest to each fixture of a table; ``peg_height`` in mm."""
-    count, swept = len(table), swept_below(program, peg_height)
+    count = len(table)
     line, tool, contact, span = (np.full(count, -1) for _ in range(4))
     found = NearestMove(np.full(count, inf), line, tool, contact, span, np.zeros(count, np.bool_))
     x, y = peg_places(table, toolkit, workpiece)
@@ -65,7 +66,7 @@ def nearest_moves(
 
     for k in range(toolkit.peg_count):
         for number, carrier in enumerate(toolkit.carriers):
-            rows = np.flatnonzero(carriers[:, k] == number)
+            rows, swept = np.flatnonzero(carriers[:, k] == number), swept_beside(program, peg_height, carrier)
             if not carrier.contact.is_placed:
                 take(found, rows, k, swept, *beside_wall(table, rows, swept))
                 continue
@@ -116,7 +117,8 @@ def passing_of(result: Result, index: int) -> Passing | None:
         return None
     contact, span = int(near.contact[0]), int(near.span[0])
     program, height = result.query.passed
-    swept = swept_below(program, 0.0 if near.low[0] else height)
+    standing = toolkit.carriers[toolkit.arrangements[int(table.arrangement[0])].carriers[contact]]
+    swept = swept_below(program, 0.0) if near.low[0] else swept_beside(program, height, standing)
     return Passing(
         float(near.clearance[0]),
         int(near.line[0]),

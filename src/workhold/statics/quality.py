@@ -82,8 +82,9 @@ def tilts(theta: Array, direction: float) -> Array:
 
 def face_sizes(workpiece: Workpiece) -> Array:
     """Sizes (S,) in mm of faces by number: a straight one's length, an arc's radius, NaN without a face."""
-    sizes = np.full(len(workpiece.segments), np.nan)
-    for face in workpiece.faces:
+    every = workpiece.numbered
+    sizes = np.full(len(every.segments), np.nan)
+    for face in every.faces:
         sizes[face.number] = face.segment.radius if isinstance(face.segment, Arc) else face.segment.length
     return sizes
 

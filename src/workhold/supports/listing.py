@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
+from workhold.model.own_outlines import numbered_solid
 from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
@@ -101,7 +102,8 @@ class SupportSearch:
         toolkit, workpiece = self.query.toolkit, self.query.workpiece
         pegs = PegForces.within(fixture, toolkit, self.touched)
         force = needed_jaw_force(pegs, self.loads, jaw_force)
-        request = self.request.for_fixture(fixture, workpiece.solid, self.query.peg_height)
+        solid = numbered_solid(workpiece)
+        request = self.request.for_fixture(fixture, solid, self.query.peg_height)
         holes = holes_under(fixture, toolkit, self.bottom, self.request)
         if len(holes.row) > MOST_POSITIONS:
             raise InputError(

@@ -52,8 +52,9 @@ from workhold.model.search_report import (
     stopped_note,
     undecided_note,
 )
-from workhold.verification.ball_geometry import PRECISIONS, BallOutline
+from workhold.verification.ball_geometry import PRECISIONS
 from workhold.verification.listing import Listing
+from workhold.verification.own_outlines import every_outline
 from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat_clamps import pairs_at
@@ -151,7 +152,9 @@ def statistics_faults(listing: Listing) -> Iterator[str]:
     if set(numbers) not in map(set, known) or min(numbers.values()) < 0:
         yield f"the statistics are not {', '.join(known[0])}, each a number from 0"
         return
-    touched = len({peg.face for fixture in listing.fixtures for peg in fixture.pegs})
+    # Of a wall with an outline of its own the search has no features.
+    own = bool(listing.query.workpiece.outlines)
+    touched = len({p.face for one in listing.fixtures for p in (one.placed if own else one.pegs)})
     if numbers["features"] < touched:
         yield f"the statistics say {numbers['features']} features, but the fixtures touch {touched} faces"
     if is_flush:
@@ -306,7 +309,7 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
     if not listing.complete or refuted:
         return
     with ctx.workprec(PRECISIONS[0]):
-        outline = BallOutline.of(query.workpiece)
+        outline = every_outline(query.workpiece)
         for index, count in sorted(at_seat.items()):
             limits = pairs_at(listing.fixtures[index], query, hardware, outline)
             if limits is not None and not limits[0] <= count <= limits[1]:

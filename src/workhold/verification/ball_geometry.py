@@ -309,6 +309,7 @@ class BallOutline:
     smooth : whether each face, by its number, meets its neighbours tangentially at its start and at its end.
     turns : by how much the normals differ at these two joints, the larger component.
     neighbours : those of each face, by its number, segments at its start and at its end.
+    own : outlines of carriers with heights of their own, by role (``verification.own_outlines``).
     """
 
     segments: tuple[Side, ...]
@@ -317,10 +318,11 @@ class BallOutline:
     smooth: Mapping[int, tuple[bool, bool]]
     turns: Mapping[int, tuple[arb, arb]]
     neighbours: Mapping[int, tuple[Side, Side]]
+    own: Mapping[str, BallOutline] = {}
 
     @classmethod
-    def of(cls, workpiece: Workpiece) -> BallOutline:
-        """The outline at the precision in force."""
+    def of(cls, workpiece: Workpiece, number: int = 0) -> BallOutline:
+        """The outline at the precision in force, its segments numbered from ``number``."""
         segments: list[Side] = []
         before: list[int] = []
         for loop in workpiece.loops:
@@ -331,14 +333,15 @@ class BallOutline:
             ]
             before += [first + (k - 1) % count for k in range(count)]
         after = {neighbour: k for k, neighbour in enumerate(before)}
-        faces = {f.number: whole_face([segments[k] for k in f.segments]) for f in workpiece.faces}
+        numbered = {number + f.number: f for f in workpiece.faces}
+        faces = {key: whole_face([segments[k] for k in f.segments]) for key, f in numbered.items()}
         others = {
-            f.number: tuple((k, side) for k, side in enumerate(segments) if k not in f.segments)
-            for f in workpiece.faces
+            key: tuple((number + k, side) for k, side in enumerate(segments) if k not in f.segments)
+            for key, f in numbered.items()
         }
         neighbours = {
-            f.number: (segments[before[f.segments[0]]], segments[after[f.segments[-1]]])
-            for f in workpiece.faces
+            key: (segments[before[f.segments[0]]], segments[after[f.segments[-1]]])
+            for key, f in numbered.items()
         }
         turns = {
             number: (

@@ -42,6 +42,7 @@ from workhold.verification.ball_geometry import (
 from workhold.verification.contacts import Balance, BallContact, BallPose, wrench_radius
 from workhold.verification.force_walk import ForceWalk, force_walk_of
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
+from workhold.verification.own_outlines import every_outline
 from workhold.verification.seat import SeatBalance
 from workhold.verification.tolerances import (
     FIGURE_AGREEMENT,
@@ -141,7 +142,7 @@ class Measure:
     @classmethod
     def of(cls, wrench_length: float, diameter: float, query: Query) -> Measure:
         """The measure at the precision in force."""
-        outline, outer = BallOutline.of(query.workpiece), query.workpiece.outer_count
+        outline, outer = every_outline(query.workpiece), query.workpiece.outer_count
         silhouette = [side for face, side in outline.faces.items() if face < outer]
         arcs = tuple(side for side in silhouette if isinstance(side, ArcSide) and side.sign > 0)
         joints = [side.start for side in outline.segments[:outer]]
@@ -157,7 +158,7 @@ class Measure:
             arb(query.tolerance.face),
             tuple(DirectedLoad.of(load) for load in query.loads),
             None if query.program is None else force_walk_of(query.program),
-            main_direction(list(outline.faces.values())),
+            main_direction([side for face, side in outline.faces.items() if face < len(outline.segments)]),
             query.jaw_force,
         )
 

@@ -245,13 +245,14 @@ def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
     """The numbers that order fixtures that are equally good.
 
     Without a wall and with one thing that moves a fixture is turned so that it clamps along -x. Then columns
-    count from the first peg of each carrier, rows from the lowest of all. With as many pegs on both jaws it
-    counts as it is at an orientation below half a turn. All others count in the holes in which they stand.
+    count from the first peg of each carrier, rows from the lowest of all. With as many pegs on both jaws that
+    are alike it counts as it is at an orientation below half a turn. All others count in the holes in which
+    they stand.
     """
     ways = [list(WAYS).index(name) for name in directions_of(fixture)]
     numbers = [hardware.toolkit.types.index(fixture.type), *ways]
     theta = radians(fixture.pose.theta_deg)
-    if len(ways) > 1 or not hardware.half_turns:
+    if len(ways) > 1 or hardware.walls:
         pegs = list[Peg]()
         for carrier in hardware.carriers.values():
             there = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
@@ -262,7 +263,8 @@ def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]
     clamps = [peg for peg in fixture.pegs if direction_of(peg)]
     turns = quarter_turns(fixture.direction) if fixture.direction else 0
-    if len(groups) > 1 and len(groups[0]) == len(groups[1]) and (theta + SAME) % tau >= pi:
+    alike = len(groups) > 1 and len(groups[0]) == len(groups[1]) and hardware.half_turns
+    if alike and (theta + SAME) % tau >= pi:
         turns, groups = 2, groups[::-1]
     seen = [
         [(*seen_along_x(turns, peg.column, peg.row), peg.face) for peg in group]

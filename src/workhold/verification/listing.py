@@ -19,10 +19,13 @@ from numpy.typing import NDArray
 
 from workhold.archive import is_archive, mapped_archive
 from workhold.errors import InputError
+from workhold.files.result.column_types import HEAD, columns_said
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
-from workhold.files.result.forms import HEAD, Head, columns_said
+from workhold.files.result.forms import Head
 from workhold.files.result.parts import checked_head, read_parts
 from workhold.files.result.program_entries import head_value
+from workhold.fixels.fields import OPTIONS
+from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
 from workhold.model.fixture import Fixture, Pair, Peg, Pose
@@ -333,8 +336,13 @@ def keys_missing(head: Head) -> list[str]:
     # nothing. A departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
     # Where nobody counted pairs and seats a note says so, for which the account looks.
-    spared |= {"workpiece.departure", "tolerance.departure", "vise.flat", "toolkit.flat", "pairs", "seats"}
+    spared |= {"workpiece.departure", "tolerance.departure", "pairs", "seats"}
+    # A toolkit without flats, or heights of its own, says nothing of them.
+    silent = [row.name for row in OPTIONS if row.form in SILENT]
+    spared |= {f"{key}.{name}" for key in ("vise", "toolkit") for name in silent}
     # A prism has no solid, and where the bands are there, nothing rests on the numbers of the solid's faces.
+    roles = () if head.outlines is None else tuple(head.outlines)
+    spared |= {f"outlines.{role}.solid_faces" for role in roles} | (set() if roles else {"outlines"})
     spared |= {"workpiece.solid_faces", "workpiece.bottom", "workpiece.top", "workpiece.top_heights"} | (
         {"solid", "workpiece.bands"} if head.solid is None else set()
     )

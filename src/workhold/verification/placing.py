@@ -33,7 +33,6 @@ from workhold.model.requirements import Zone
 from workhold.model.workpiece import Workpiece
 from workhold.verification.ball_geometry import (
     ArcSide,
-    BallOutline,
     Point,
     Side,
     cross,
@@ -44,12 +43,14 @@ from workhold.verification.ball_geometry import (
     vertex_side,
 )
 from workhold.verification.contacts import BallContact, BallPose, contact_system
+from workhold.verification.own_outlines import every_outline
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.wall import WallContact
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 
 __all__ = [
     "broken_restriction",
+    "faces_avoided",
     "certified_zero",
     "gap_findings",
     "proven_pose",
@@ -140,7 +141,7 @@ def proven_pose(
 def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
     """The restriction that a fixture breaks, in one sentence without a full stop; empty when it keeps all."""
     restrictions = query.restrictions
-    avoided = {face.number for face in query.workpiece.faces if set(face.segments) & set(restrictions.avoid)}
+    avoided = faces_avoided(query)
     bare = faces_without_band(query.workpiece)
     for name, peg in hardware.placed(fixture):
         if peg.face in bare:
@@ -164,8 +165,21 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
 
 def faces_without_band(workpiece: Workpiece) -> set[int]:
     """Numbers of the faces with a segment that no upright face of the solid stands over."""
-    bands = () if workpiece.solid is None else workpiece.solid.bands
-    return {face.number for face in workpiece.faces if any(bands[k] is None for k in face.segments if bands)}
+    bands = workpiece.numbered.bands
+    return {
+        face.number
+        for face in workpiece.numbered.faces
+        if any(bands[k] is None for k in face.segments if bands)
+    }
+
+
+def faces_avoided(query: Query) -> set[int]:
+    """Numbers of the faces that are to be avoided, with those of other outlines of the solid's same faces."""
+    avoid, every = set(query.restrictions.avoid), query.workpiece.numbered
+    if query.workpiece.outlines and every.over:
+        cut = {face for segment in avoid for face in every.over[segment]}
+        avoid |= {segment for segment, over in enumerate(every.over) if cut.intersection(over)}
+    return {face.number for face in every.faces if avoid.intersection(face.segments)}
 
 
 def broken_at_wall(fixture: Fixture, query: Query, hardware: ToolkitRules, avoided: set[int]) -> str:
@@ -173,7 +187,7 @@ def broken_at_wall(fixture: Fixture, query: Query, hardware: ToolkitRules, avoid
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     for wall in hardware.walls:
         # Of a corner on a wall both faces are to be avoided.
-        for contact in hardware.contacts(fixture, BallOutline.of(query.workpiece)):
+        for contact in hardware.contacts(fixture, every_outline(query.workpiece)):
             if isinstance(contact, WallContact) and avoided.issuperset(contact.faces):
                 return (
                     f"the part lies on the {wall.noun} with face {contact.faces[0]}, which is to be avoided"

@@ -74,7 +74,8 @@ class PartRotations:
     @classmethod
     def of(cls, workpiece: Workpiece) -> PartRotations:
         """The rotations of a workpiece."""
-        marks = np.array([marks_of(face.segment) for face in workpiece.faces])
+        every = enumerate(workpiece.every_outline)
+        marks = np.array([[*marks_of(face.segment), number] for number, one in every for face in one.faces])
         center = marks[:, 0].mean()
         marks[:, :3] -= center
         most = order_of(marks, PERHAPS * SAME)
@@ -97,15 +98,18 @@ def marks_of(face: Segment) -> list[complex]:
 
 
 def order_of(marks: NDArray[np.complex128], off: float) -> int:
-    """The most rotations that carry each of the marks (N, 4) about 0 to within so many mm of others."""
+    """The most rotations that carry each of the marks (N, 5) about 0 to within so many mm of others.
+
+    The last of a face's marks is the number of its outline, which stays.
+    """
     outer = marks[np.abs(marks[:, 0]) > off]
     orders = (n for n in range(len(outer), 1, -1) if len(outer) % n == 0)
     return next((n for n in orders if all(has_image(one, n, outer, off) for one in outer)), 1)
 
 
 def has_image(one: NDArray[np.complex128], order: int, marks: NDArray[np.complex128], off: float) -> bool:
-    """Whether one of the marks (N, 4) is where a part of a turn carries some (4,)."""
-    turned = one * np.array([*[np.exp(2j * pi / order)] * 3, 1.0])
+    """Whether one of the marks (N, 5) is where a part of a turn carries some (5,)."""
+    turned = one * np.array([*[np.exp(2j * pi / order)] * 3, 1.0, 1.0])
     return bool((np.abs(marks - turned).max(axis=1) <= off).any())
 
 

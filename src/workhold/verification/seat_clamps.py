@@ -29,7 +29,8 @@ from workhold.verification.ball_geometry import (
     turned,
 )
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.placing import faces_without_band, proven_pose, zone_distance
+from workhold.verification.own_outlines import met_by
+from workhold.verification.placing import faces_avoided, faces_without_band, proven_pose, zone_distance
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import WAYS, direction_of, directions_of, line_of, pieces_apart
 from workhold.verification.seat import LOCATORS, LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
@@ -111,7 +112,7 @@ class SeatOnPlate:
 
     Parameters
     ----------
-    query, hardware, outline : what is asked, of what toolkit, and the workpiece.
+    query, hardware, outline : what is asked, of what toolkit, and what clamps meet of the workpiece.
     pegs : those in holes that stand still: three, or one beside a wall.
     locators : their contacts by name.
     pose : the solution, in which the first travel is 0.
@@ -142,7 +143,8 @@ class SeatOnPlate:
         locators = [(name, contact) for name, _, contact in held]
         still = BallPose.of(pose.theta, pose.x, pose.y, arb(0))
         seat = LocatorWrenches.of(contacts[:LOCATORS], still)
-        return cls(query, hardware, outline, [peg for _, peg, _ in held], locators, still, seat)
+        met = met_by(outline, fixture.pegs[-1].carrier)
+        return cls(query, hardware, met, [peg for _, peg, _ in held], locators, still, seat)
 
     @property
     def lattice(self) -> Carrier:
@@ -174,11 +176,7 @@ class SeatOnPlate:
     def clamps(self, direction: str) -> Iterator[SeatClamp]:
         """All clamps that may push in a direction and do not hold the part alone."""
         found: list[SeatClamp] = []
-        avoided = {
-            f.number
-            for f in self.query.workpiece.faces
-            if set(f.segments) & set(self.query.restrictions.avoid)
-        } | faces_without_band(self.query.workpiece)
+        avoided = faces_avoided(self.query) | faces_without_band(self.query.workpiece)
         for face, side in sorted(self.outline.faces.items()):
             if face in avoided:
                 continue
@@ -264,11 +262,13 @@ class SeatOnPlate:
         if self.query.passed is None:
             return True
         program, height = self.query.passed
+        low, height = next(iter(self.hardware.tips.values())).heights or (0.0, height)
         (x, y), (from_x, from_y) = (
             (float(u.mid()), float(v.mid())) for u, v in (one.in_part(self.pose) for one in (tip, hole))
         )
         radius = float(tip.clear_radius.mid())
-        near = walk_of(program).nearest(Element("a clamp", "", (x, y), (from_x, from_y), radius, height))
+        element = Element("a clamp", "", (x, y), (from_x, from_y), radius, height, low=low)
+        near = walk_of(program).nearest(element)
         if near.high < program.clearance - IN_DOUBT:
             return False
         return True if near.low > program.clearance + IN_DOUBT else None

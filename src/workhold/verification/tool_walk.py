@@ -53,6 +53,7 @@ class Element:
     radius : around the middle line; 0 for a half plane.
     height : up to which it reaches.
     is_half_plane : whether it is one.
+    low : from which height it reaches; 0 is from below.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Element:
     radius: float
     height: float
     is_half_plane: bool = False
+    low: float = 0.0
 
 
 @frozen
@@ -81,26 +83,27 @@ class Stretches:
     ----------
     move : (N,) numbers of moves.
     first, last : (N,) shares of the move.
-    under, radius : (N,) height of the cylinder's lower end above the tip, and its radius.
+    under, over, radius : (N,) heights of the cylinder's ends above the tip, and its radius.
     """
 
     move: IntArray
     first: Array
     last: Array
     under: Array
+    over: Array
     radius: Array
 
     def take(self, chosen: NDArray[np.bool_] | IntArray) -> Stretches:
         """The stretches of a mask or of numbers."""
-        rest = (self.first, self.last, self.under, self.radius)
+        rest = (self.first, self.last, self.under, self.over, self.radius)
         return Stretches(self.move[chosen], *(values[chosen] for values in rest))
 
     def halves(self) -> Stretches:
         """Both halves of each."""
         middle = (self.first + self.last) / 2
-        both = [np.concatenate([v, v]) for v in (self.move, self.under, self.radius)]
+        both = [np.concatenate([v, v]) for v in (self.move, self.under, self.over, self.radius)]
         first, last = np.concatenate([self.first, middle]), np.concatenate([middle, self.last])
-        return Stretches(both[0], first, last, both[1], both[2])
+        return Stretches(both[0], first, last, *both[1:])
 
 
 @frozen(eq=False)
@@ -154,8 +157,9 @@ class ToolWalk:
             moved = np.flatnonzero(self.program.moves.tool == number)
             for cylinder in tool.cylinders:
                 ones = np.ones(len(moved))
-                parts.append(Stretches(moved, 0.0 * ones, ones, cylinder.low * ones, cylinder.radius * ones))
-        columns = ("move", "first", "last", "under", "radius")
+                sizes = (size * ones for size in (cylinder.low, cylinder.high, cylinder.radius))
+                parts.append(Stretches(moved, 0.0 * ones, ones, *sizes))
+        columns = ("move", "first", "last", "under", "over", "radius")
         joined = [np.concatenate([getattr(part, name) for part in parts] or [[]]) for name in columns]
         return Stretches(joined[0].astype(np.int64), *joined[1:])
 
@@ -189,20 +193,27 @@ class ToolWalk:
             boxed = self.is_box[move]
             # In a box everything counts as long as its lower height does.
             least, most = np.minimum(one, other), np.where(boxed, -inf, np.maximum(one, other))
+            long = waiting.over - waiting.under
+            # Where an element begins higher, the cylinder's upper end must come up to that.
+            from_below = element.low <= 0.0
+            top = np.where(from_below | boxed, inf, least + long)
             there = least <= element.height + HAIR
-            waiting, move, boxed = waiting.take(there), move[there], boxed[there]
-            least, most = least[there], most[there]
+            there &= from_below | (np.maximum(one, other) + long >= element.low - HAIR)
+            waiting = waiting.take(there)
+            move, boxed, one, other = move[there], boxed[there], one[there], other[there]
+            least, most, top, long = least[there], most[there], top[there], long[there]
             if not len(move):
                 break
             off, sagitta = self.distances(waiting, element, boxed)
             off -= waiting.radius + element.radius
-            whole = most <= element.height
-            # Of a stretch that is not low all along, its lower end is.
+            whole = (most <= element.height) & (top >= element.low)
+            # Of a stretch that does not count all along, an end may.
             sure = np.where(whole, off + sagitta, inf)
-            ends = np.where(one[there] <= other[there], waiting.first, waiting.last)
-            points = self.at(move, ends)
-            at_end = self.chord_distances(points, points, element) - waiting.radius - element.radius
-            sure = np.where(~whole & (least <= element.height), at_end, sure)
+            for z, share in ((one, waiting.first), (other, waiting.last)):
+                counts = (z <= element.height) & (from_below | (z + long >= element.low))
+                points = self.at(move, share)
+                at_end = self.chord_distances(points, points, element) - waiting.radius - element.radius
+                sure = np.where(~whole & counts, np.minimum(sure, at_end), sure)
             best = int(sure.argmin())
             if sure[best] < found:
                 found, at = float(sure[best]), int(moves.line[move[best]])
@@ -346,18 +357,18 @@ def elements_of(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iter
 
     for wall in hardware.walls:
         # Up in the toolkit is this way in the part.
-        yield Element(
-            f"the {wall.noun}", wall.noun, seen(0.0, 0.0), (float(sine), float(cosine)), 0.0, height, True
-        )
+        low, top = wall.heights or (0.0, height)
+        up = float(sine), float(cosine)
+        yield Element(f"the {wall.noun}", wall.noun, seen(0.0, 0.0), up, 0.0, top, True, low)
     for name, peg in hardware.placed(fixture):
         carrier = hardware.carriers[peg.carrier]
         place = f"{carrier.peg} {peg.hole}" if carrier.has_lattice else peg.hole
-        whole = Element(
-            name, place, seen(peg.x, peg.y), seen(*behind(peg, carrier)), carrier.peg_radius, height
-        )
+        low, top = carrier.heights or (0.0, height)
+        ends = seen(peg.x, peg.y), seen(*behind(peg, carrier))
+        whole = Element(name, place, *ends, carrier.peg_radius, top, low=low)
         yield whole
         if carrier.body_radius > carrier.peg_radius:
-            yield evolve(whole, radius=carrier.body_radius, height=0.0)
+            yield evolve(whole, radius=carrier.body_radius, height=0.0, low=0.0)
 
 
 def behind(peg: Peg, carrier: Carrier) -> tuple[float, float]:

@@ -36,6 +36,7 @@ from workhold.verification.ball_geometry import (
     turned,
 )
 from workhold.verification.contacts import standoff
+from workhold.verification.own_outlines import every_outline
 from workhold.verification.rules.travel import quarter_turns, seen_along_x
 from workhold.verification.seat import LOCATORS
 from workhold.verification.tolerances import AGREEMENT
@@ -78,7 +79,7 @@ def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str
     if not entries:
         return
     with ctx.workprec(PRECISIONS[0]):
-        outline = BallOutline.of(query.workpiece)
+        outline = every_outline(query.workpiece)
         for number, entry in enumerate(entries, 1):
             parts = single_entries(entry, query) if query.toolkit.travels > 1 else ((entry, query),)
             fault = next(filter(None, (entry_fault(*part, outline) for part in parts)), "")

@@ -22,6 +22,7 @@ from workhold.verification.contacts import Balance, BallContact, BallPose, closu
 from workhold.verification.figures import Measure, figure_missing
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
+from workhold.verification.own_outlines import met_by
 from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
 from workhold.verification.program_forces import program_force_findings
 from workhold.verification.repeats import KnownFixtures, PartRotations, pattern_faults
@@ -129,28 +130,28 @@ class Judge:
         outline, hardware = measure.outline, self.hardware
         yield from hardware.hole_findings(fixture)
         for name, peg in zip(hardware.names, fixture.pegs, strict=True):
-            if peg.face not in outline.faces:
+            if peg.face not in met_by(outline, peg.carrier).faces:
                 yield Finding(True, f"{name} is on segment {peg.face}, which does not name a face")
         contacts = hardware.contacts(fixture, outline)
         touching = [
-            (name, contact, peg.face)
+            (name, contact, peg.face, met_by(outline, peg.carrier))
             for name, contact, peg in zip(hardware.names, contacts, fixture.pegs, strict=True)
             if not contact.is_flush
         ]
-        for name, contact, face in touching:
+        for name, contact, face, _ in touching:
             if isinstance(contact.side, ArcSide) and not contact.side.reach(contact.radius) > 0:
                 yield Finding(True, f"{name} does not fit into the concave face {face}")
         yield from flat_findings(fixture, hardware.names, contacts)
         travels = hardware.travels(fixture)
         pose = written_pose(fixture.pose, list(travels.values()))
-        yield from gap_findings(touching, pose)
+        yield from gap_findings([one[:3] for one in touching], pose)
         proven, doubts = proven_pose(contacts, fixture.pose, travels)
         yield from doubts
         # Without a proof, what holds at no pose that agrees with the file's still refutes.
         pose = proven or pose
         yield from hardware.standing_findings(fixture, contacts, pose, outline)
-        for name, contact, face in touching:
-            yield from touching_findings(name, contact, face, pose, outline, self.query.contact_margin)
+        for name, contact, face, met in touching:
+            yield from touching_findings(name, contact, face, pose, met, self.query.contact_margin)
         yield from self.force_findings(fixture, contacts, pose, measure, proven is not None)
 
     def force_findings(

@@ -8,8 +8,6 @@ from itertools import count
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
-from attrs import asdict
-
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields
 from workhold.fixels.carrier import Carrier
@@ -25,7 +23,7 @@ from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import settings_of
 from workhold.model.shown import Shown, shown
 from workhold.model.workpiece import Workpiece
-from workhold.presenting.data import finite, helps_data
+from workhold.presenting.data import finite, helps_data, solid_data
 
 if TYPE_CHECKING:
     from workhold.files.toolkit_file import LoadedToolkit
@@ -79,7 +77,8 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
         "bounds": list(workpiece.bounds),
         "departure": workpiece.departure,
         "remarks": list(remarks),
-        "solid": None if workpiece.solid is None else asdict(workpiece.solid),
+        "solid": None,
+        **solid_data(workpiece.solid),
     }
 
 
@@ -298,7 +297,7 @@ def fixture_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
 
 def contact_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
     """Lists outward normals and contacts of a fixture's pegs in the toolkit's frame."""
-    segments = {face.number: face.segment for face in workpiece.faces}
+    segments = {face.number: face.segment for face in workpiece.numbered.faces}
     normals, contacts = [], []
     for peg in fixture.pegs:
         carrier = toolkit.carrier(peg.carrier)

@@ -141,6 +141,7 @@ TYPES: Mapping[str, Any] = {
     "pitch": Point,
     "span": Point,
     "flat": Number | Point,
+    "heights": Point,
     "holes": Annotated[list[Name], Field(max_length=MOST_NAMES)],
     "directions": Annotated[list[Name] | list[DirectionPair], Field(max_length=len(DIRECTIONS) ** 2)],
 }

@@ -164,7 +164,7 @@ def drawing_of_object(
     name = str(getattr(part, "label", "") or "shape")
     from workhold.files.step.by_height import HeightView, shapes_by_height, shapes_usual
 
-    heights = {key: view[key] for key in ("axis", "peg_height", "head_room", "least_band")}
+    heights = {key: view[key] for key in ("axis", "peg_height", "head_room", "least_band", "heights")}
     height_view = HeightView(**heights, part_number=part_number)
     if by_height(view, fit):
         return ObjectPart(shapes_by_height(shapes, height_view), name, None)

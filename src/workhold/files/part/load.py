@@ -53,6 +53,7 @@ def load(
     peg_height: float | None = None,
     head_room: float | None = None,
     least_band: float | None = None,
+    heights: Mapping[str, Sequence[float]] | None = None,
 ) -> Workpiece:
     """Loads a part from a file, by the name of a built-in model, or from an object of another library.
 
@@ -79,6 +80,8 @@ def load(
     head_room : with a height of the pegs, what is kept free above them, in mm; 0.5 when None.
     least_band : with a height of the pegs, how high an upright face must be there to be touched, in mm; 1
         when None.
+    heights : of a STEP file's solid, from which to which height carriers with heights of their own reach, as
+        ``toolkit.heights`` says.
 
     Raises
     ------
@@ -104,6 +107,7 @@ def load(
         peg_height=peg_height,
         head_room=head_room,
         least_band=least_band,
+        heights=heights,
     ).workpiece
     return workpiece if name is None else evolve(workpiece, name=name)
 
@@ -122,6 +126,7 @@ def read_workpiece(
     peg_height: float | None = None,
     head_room: float | None = None,
     least_band: float | None = None,
+    heights: Mapping[str, Sequence[float]] | None = None,
     called: Mapping[str, str] | None = None,
 ) -> Loaded:
     """Loads a part as :func:`load` does, with remarks and the list of all parts in the file.
@@ -146,7 +151,7 @@ def read_workpiece(
     for name in (unit, usual_unit):
         if name is not None:
             unit_named(name)
-    options = {
+    options: dict[str, Any] = {
         "unit": unit,
         "usual_unit": usual_unit,
         "layers": layers,
@@ -155,6 +160,7 @@ def read_workpiece(
     }
     options |= {"axis": axis, "section": section}
     options |= {"peg_height": peg_height, "head_room": head_room, "least_band": least_band}
+    options |= {"heights": dict(heights or {})}
     path = found(part) if isinstance(part, str | PathLike) else None
     try:
         if path is None:
@@ -271,7 +277,7 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
     if asked or (options["section"] is None and options["fit"] is None):
         from workhold.files.step.by_height import HeightView, read_by_height_apart, read_usual_apart
 
-        keys = ("axis", "peg_height", "head_room", "least_band", "part_number")
+        keys = ("axis", "peg_height", "head_room", "least_band", "part_number", "heights")
         view = HeightView(**{key: options[key] for key in keys})
         read = read_by_height_apart(content, view) if asked else read_usual_apart(content, view)
         if isinstance(read, Drawing):

@@ -26,6 +26,7 @@ from workhold.files.outline.diagnostics import (
 from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.nesting import DrawnPart, as_one, chosen_part, nest, refuse_loops_across
 from workhold.files.questions import PART_NUMBER
+from workhold.model.own_outlines import own_name
 from workhold.model.solid import HeightRow, SolidOutline
 from workhold.model.workpiece import Workpiece
 
@@ -70,6 +71,14 @@ def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
     refuse_large(sum(len(loop) for loop in drawing.loops))
     loops = [Loop(loop, ("",) * len(loop)) for loop in drawing.loops]
     workpiece = built(name, loops, with_labels=False, solid=drawing.solid)
+    own = []
+    for one in drawing.own:
+        refuse_large(sum(len(loop) for loop in one.loops))
+        rows = [Loop(loop, ("",) * len(loop)) for loop in one.loops]
+        between = own_name(name, (one.solid.low, one.solid.peg_height))
+        own.append((one.role, built(between, rows, with_labels=False, solid=one.solid)))
+    if own:
+        workpiece = evolve(workpiece, outlines=tuple(own))
     remarks = (*drawing.remarks, *workpiece.remarks)
     return Loaded(workpiece, remarks, (as_one(loops),), heights=drawing.heights)
 

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
+from workhold.files.result.column_types import HEAD, columns_of, columns_said
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees, significant
-from workhold.files.result.forms import HEAD, columns_of, columns_said
 from workhold.files.result.parts import (
     checked_head,
     checked_query,

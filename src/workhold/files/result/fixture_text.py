@@ -258,8 +258,8 @@ class WrittenBlock:
             force, quality = significant(table.force) + 0.0, significant(quality) + 0.0
             low, high = (significant(ends).tolist() for ends in ratios(force))
             ratio = [low, ["null" if isnan(end) else repr(end) for end in high]]
-        solid, walls, pegs = self.workpiece.solid, list[NDArray[Any]](), list[NDArray[Any]]()
-        bands = [] if solid is None else [np.array([json.dumps(band) for band in solid.bands], object)]
+        known, walls, pegs = self.workpiece.numbered.bands, list[NDArray[Any]](), list[NDArray[Any]]()
+        bands = [np.array([json.dumps(band) for band in known], object)] if known else []
         for ends in toolkit.ends_on_walls:
             several = self.contacts[ends]
             walls += [array[:, k] for k in several for array in (self.x, self.y)]

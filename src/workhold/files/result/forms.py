@@ -1,48 +1,37 @@
-"""The shape of a result file: its head, checked by pydantic, with what that is in the model, and its columns.
-
-A result file in columns has the name of its head, and arrays whose types and widths stand here.
-"""
+"""The shape of a result file: its head, checked by pydantic, with what that is in the model."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from workhold.archive import Column, Columns
 from workhold.errors import InputError
 from workhold.files.input_forms import forms_by_noun, one_of, optional
-from workhold.fixels.fields import CLAMPS
 from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import Fit
+from workhold.model.own_outlines import with_own_outlines
 from workhold.model.program import Program
-from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.search_report import Proof, Undecided
 from workhold.model.solid import SolidOutline
-from workhold.model.swept_piece import PIECE_KEYS
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "COLUMNS",
-    "COLUMNS_OF",
-    "columns_of",
-    "HEAD",
     "Head",
     "LoadPart",
-    "PAIR_COLUMNS",
     "ProofPart",
     "RestrictionsPart",
     "TolerancePart",
-    "columns_said",
 ]
 
 LONGEST_STANDARD = 40
+
+
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
@@ -102,6 +91,14 @@ class SolidPart(FormPart):
         return SolidOutline.of_entries(self.model_dump(), workpiece.model_dump())
 
 
+class OutlinePart(FormPart):
+    """What carriers with heights of their own meet of the solid."""
+
+    loops: list[list[list[float]]]
+    bands: list[Pair | None]
+    solid_faces: list[list[int]] | None = None
+
+
 class FlatPart(FormPart):
     """The keys of a flat."""
 
@@ -115,6 +112,7 @@ TYPES: Mapping[Form, Any] = {
     "pitch": Pair,
     "span": Pair,
     "flat": FlatPart,
+    "heights": Pair,
     "holes": list[str],
     "directions": list[str | list[str]],
 }
@@ -253,6 +251,9 @@ class Head(FormPart):
     format: Literal["workhold-result/1"]
     solid: SolidPart | None = None
     workpiece: WorkpiecePart
+    outlines: dict[str, OutlinePart] | None = Field(
+        None, description="what carriers with heights of their own meet, numbered on after the workpiece"
+    )
     vise: VisePart | None = None
     toolkit: ToolkitPart | None = None
     counts: Counts
@@ -303,14 +304,19 @@ class Head(FormPart):
         InputError
             When a part of it cannot be.
         """
+        toolkit = self.asked_toolkit()
+        workpiece = Workpiece.from_loops(
+            self.workpiece.name,
+            self.workpiece.loops,
+            departure=self.workpiece.departure,
+            solid=None if self.solid is None else self.solid.outline(self.workpiece),
+        )
+        if self.outlines is not None:
+            entries = {role: one.model_dump() for role, one in self.outlines.items()}
+            workpiece = with_own_outlines(workpiece, entries, toolkit.heights)
         return Query(
-            Workpiece.from_loops(
-                self.workpiece.name,
-                self.workpiece.loops,
-                departure=self.workpiece.departure,
-                solid=None if self.solid is None else self.solid.outline(self.workpiece),
-            ),
-            self.asked_toolkit(),
+            workpiece,
+            toolkit,
             self.types,
             contact_margin=self.contact_margin,
             restrictions=self.restrictions.restrictions(),
@@ -341,51 +347,3 @@ class Head(FormPart):
             return Program.of_entries(self.program)
         except (LookupError, TypeError, ValueError, AttributeError) as error:
             raise InputError(f"its program cannot be used: {error}.") from error
-
-
-HEAD = "result.json"
-# What each column holds, N fixtures: see docs/columns.md and ``model.result.FixtureTable``.
-COLUMNS = {
-    "arrangement": Column("|i1"),
-    "column": Column("<i4", (4,)),
-    "row": Column("<i4", (4,)),
-    "face": Column("<i4", (4,)),
-    "theta": Column("<f8"),
-    "position": Column("<f8", (2,)),
-    "jaw_separation": Column("<f8"),
-    "force": Column("<f8", (4,)),
-    "quality": Column("<f8", (len(FIGURES),)),
-}
-# What each column holds of fixtures with two clamps.
-PAIR_COLUMNS = COLUMNS | {
-    "column": Column("<i4", (5,)),
-    "row": Column("<i4", (5,)),
-    "face": Column("<i4", (5,)),
-    "jaw_separation": Column("<f8", (2,)),
-    "force": Column("<f8", (5, 2)),
-    "pairs": Column("<i4"),
-}
-# By how many things move in a fixture.
-COLUMNS_OF = {1: COLUMNS, 2: PAIR_COLUMNS}
-
-
-def columns_of(travels: int, has_program: bool) -> Columns:
-    """What the columns hold, by how many things move in a fixture; with a program its clearance, too."""
-    columns = COLUMNS_OF[travels]
-    return columns | {"quality": Column("<f8", (len(FIGURES) + 1,))} if has_program else columns
-
-
-def without_piece(entries: dict[str, Any]) -> dict[str, Any] | None:
-    """Entries as they are, but for those of a swept piece, which are many."""
-    return None if entries.keys() == PIECE_KEYS else entries
-
-
-def columns_said(head: str) -> Columns:
-    """What the columns hold beside a head, which may be of any kind of file."""
-    try:
-        said = json.loads(head, object_hook=without_piece)
-        toolkit = said.get("toolkit")
-        travels = 2 if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else 1
-        return columns_of(travels, said.get("program") is not None)
-    except (ValueError, AttributeError, RecursionError):
-        return COLUMNS

@@ -96,7 +96,7 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
                 (places_on < 0) | (places_on >= (LARGEST_NUMBER if most is None else most))
             )
             refuse(outside, f"has a peg in a {what} beyond the {most} of the {carrier.title}")
-    faces = [face.number for face in query.workpiece.faces]
+    faces = [face.number for face in query.workpiece.numbered.faces]
     refuse(~np.isin(table.face, faces), "has a peg on a segment that does not name a face of the workpiece")
     for values in (table.theta, table.position, table.jaw_separation, table.force):
         refuse(~(np.abs(values.reshape(len(table), -1)) <= LARGEST_LENGTH), NOT_FINITE)
@@ -216,7 +216,7 @@ def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
             f"{path}: the proof says {part.candidates} candidates, but {accounted} are discarded, verified "
             "or undecided."
         )
-    faces = {face.number for face in query.workpiece.faces}
+    faces = {face.number for face in query.workpiece.numbered.faces}
     # With two clamps also contacts of one of them may be undecided.
     toolkits = (query.toolkit, *query.toolkit.ways)
     types = list(dict.fromkeys(one.title for toolkit in toolkits for one in toolkit.arrangements))

@@ -21,9 +21,9 @@ from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
 from workhold.files.result.program_entries import program_text
 from workhold.fixels.carrier import Holes
-from workhold.fixels.fields import FLAT
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
+from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.program import Program
@@ -151,6 +151,7 @@ def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
         "format": FORMAT,
         **solid_entry(result.workpiece.solid),
         "workpiece": workpiece_entry(result.workpiece),
+        **outlines_entry(result.workpiece),
         **asked_entry(result.query, with_pieces),
         "counts": result.counts,
         "found": {kind: int(count) for kind, count in result.found.items()},
@@ -197,6 +198,19 @@ def solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
             "least_band": solid.least_band,
         }
     }
+
+
+def outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
+    """What carriers with heights of their own meet, as it is written; nothing where there are none.
+
+    Their segments are numbered on after those of the workpiece, in the order in which they stand. An outline
+    that is equal to one before it has the numbers of that.
+    """
+    own = {
+        role: {"loops": [(loop + 0.0).tolist() for loop in one.loops], **bands_entry(one.solid)}
+        for role, one in workpiece.outlines
+    }
+    return {"outlines": own} if own else {}
 
 
 def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
@@ -250,7 +264,8 @@ def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
     """The fields of a toolkit as they are written: lengths in mm, holes by name, their number first."""
     values = asdict(toolkit, recurse=False)  # type: ignore[arg-type]
     fields = {name: written(value) for name, value in values.items()}
-    fields = {name: value for name, value in fields.items() if name != FLAT.name or value is not None}
+    silent = {row.name for row in toolkit.table.fields if row.form in SILENT}
+    fields = {name: value for name, value in fields.items() if name not in silent or value is not None}
     return {name: fields.pop(name) for name in ("pitch", "columns", "rows") if name in fields} | fields
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from workhold.files.step.heights import StandingSolid, standing
 from workhold.files.step.level_faces import known_levels
 from workhold.files.step.library import load_step_library
 from workhold.files.step.other_curves import OtherCurveError
+from workhold.files.step.own_outlines import OwnDrawing, ordered_loops, own_drawings
 from workhold.files.step.reader import drawing_of, guarded, plain_drawing, prepare, read_solid
 from workhold.files.step.solids import (
     Solid,
@@ -33,8 +34,7 @@ from workhold.files.step.solids import (
     solid_remarks,
     sub_shapes,
 )
-from workhold.files.step.which_height import advice, height_remarks, height_table, vertices_of
-from workhold.geometry.loop import loop_segments, signed_area
+from workhold.files.step.which_height import advice, height_remarks, height_table
 from workhold.model.solid import HeightRow, SolidOutline
 
 __all__ = [
@@ -62,6 +62,7 @@ class HeightView:
     peg_height : up to which pegs reach above the plane on which the part lies, in mm; the part's height when
         None.
     head_room, least_band : in mm; the usual ones when None.
+    heights : from which to which carriers with heights of their own reach, in mm, by their role.
     part_number : which solid to take of several; the largest when None.
     """
 
@@ -70,6 +71,7 @@ class HeightView:
     head_room: float | None = None
     least_band: float | None = None
     part_number: int | None = None
+    heights: Mapping[str, Sequence[float]] = {}
 
     def __attrs_post_init__(self) -> None:
         for name, value, least in (
@@ -93,12 +95,14 @@ class HeightDrawing:
     solid : how the solid stands, with the bands of the segments.
     remarks : sentences for the user.
     heights : what other heights of the pegs offer.
+    own : what carriers with heights of their own meet.
     """
 
     loops: tuple[NDArray[np.float64], ...]
     solid: SolidOutline
     remarks: tuple[str, ...]
     heights: tuple[HeightRow, ...]
+    own: tuple[OwnDrawing, ...] = ()
 
 
 def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
@@ -127,12 +131,13 @@ def read_usual_apart(content: bytes, view: HeightView) -> HeightDrawing | Drawin
 
 def height_drawing_of(answered: Any) -> HeightDrawing:
     """The drawing of what :func:`plain_heights` makes."""
-    loops, solid, remarks, rows = answered
+    loops, solid, remarks, rows, own = answered
     return HeightDrawing(
         tuple(np.array(loop) for loop in loops),
         SolidOutline(*solid),
         tuple(remarks),
         tuple(HeightRow(*row) for row in rows),
+        tuple(OwnDrawing(name, tuple(map(np.array, lines)), SolidOutline(*of)) for name, lines, of in own),
     )
 
 
@@ -209,12 +214,10 @@ def sections_take_long(solid: StandingSolid) -> bool:
 
 def plain_heights(drawing: HeightDrawing) -> Any:
     """An outline by height as plain data, see :func:`height_drawing_of`."""
-    solid = drawing.solid
-    heights = (solid.height, solid.peg_height, solid.head_room, solid.least_band)
     loops = [loop.tolist() for loop in drawing.loops]
     rows = [astuple(row) for row in drawing.heights]
-    described = (solid.axis, *heights, solid.bands, solid.faces, solid.bottom, solid.top, solid.top_heights)
-    return loops, described, drawing.remarks, rows
+    own = [(one.role, [loop.tolist() for loop in one.loops], astuple(one.solid)) for one in drawing.own]
+    return loops, astuple(drawing.solid), drawing.remarks, rows, own
 
 
 def read_by_height(content: bytes, view: HeightView) -> HeightDrawing:
@@ -297,25 +300,21 @@ def drawn(shape: Any, solid: StandingSolid, view: HeightView, *, is_advised: boo
     except InputError as error:
         refusal = InputError(f"along {axis}: {error}.")
         raise advised(refusal, solid, view) if is_advised else refusal from error
-    loops = [vertices_of(loop) for loop in outline.loops]
-    areas = [signed_area(loop_segments(loop)) for loop in loops]
-    order = sorted(range(len(loops)), key=lambda k: -areas[k])
-    bands = [strip.band for k in order for strip in outline.loops[k]]
-    faces = [strip.faces for k in order for strip in outline.loops[k]]
-    if not any(bands):
+    ordered = ordered_loops(outline)
+    if not any(ordered.bands):
         raise InputError(
             f"along {axis} no upright face of the part is at least {least:g} mm high below "
             f"{outline.peg_height:g} mm: {advice(solid, room, least)}."
         )
-    feet = sum(area > 0 for area in areas)
-    heights = (solid.height, outline.peg_height, room, least)
-    found = SolidOutline(axis, *heights, bands, faces, **known_levels(solid))
+    sizes = (solid.height, outline.peg_height, room, least)
+    found = SolidOutline(axis, *sizes, ordered.bands, ordered.faces, **known_levels(solid))
+    own = tuple(own_drawings(solid, view.heights, found))
     plain_prism = view.peg_height is None and is_prism(solid)
     rows = [] if plain_prism else height_table(solid, room, least)
-    remarks = [] if plain_prism else height_remarks(outline, found, rows, feet)
-    if any(band is None for band in bands):
+    remarks = [] if plain_prism else height_remarks(outline, found, rows, ordered.feet)
+    if any(band is None for band in ordered.bands):
         remarks += other_axis_remarks(shape, axis)
-    return HeightDrawing(tuple(loops[k] for k in order), found, tuple(remarks), tuple(rows))
+    return HeightDrawing(ordered.loops, found, tuple(remarks), tuple(rows), own)
 
 
 def lengths_of(view: HeightView) -> tuple[float, float]:

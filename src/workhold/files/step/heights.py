@@ -93,15 +93,20 @@ class StandingSolid:
         return self.folds[index]
 
     def outline(
-        self, peg_height: float | None = None, head_room: float = HEAD_ROOM, least_band: float = LEAST_BAND
+        self,
+        peg_height: float | None = None,
+        head_room: float = HEAD_ROOM,
+        least_band: float = LEAST_BAND,
+        low: float = 0.0,
     ) -> HeightOutline:
-        """The outline of pegs that reach from below up to a height.
+        """The outline of pegs that reach from below up to a height, or from another height.
 
         Parameters
         ----------
         peg_height : in mm; the solid's height when None.
         head_room : kept free above the pegs, in mm.
         least_band : shortest band in mm that may be touched.
+        low : from which pegs reach, in mm; 0 is from below.
 
         Raises
         ------
@@ -109,8 +114,8 @@ class StandingSolid:
             For heights that leave nothing, and where the outline has a curve that is neither line nor arc.
         """
         top = self.height if peg_height is None else peg_height
-        walls = Walls(self.faces, self.edges, 0.0, min(top, self.height))
-        loops = self.border(-inf, top + head_room, walls)
+        walls = Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height))
+        loops = self.border(low if low > 0.0 else -inf, top + head_room, walls)
         strips = tuple(tuple(strips_of_loop(loop, walls, least_band)) for loop in loops)
         return HeightOutline(strips, top, head_room, least_band)
 

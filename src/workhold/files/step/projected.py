@@ -55,7 +55,9 @@ def projected_curves(
     cuts: list[tuple[Segment, Point]] = []
     others: list[tuple[int, NDArray[np.float64]]] = []
     for edge in edges:
-        if edge.high < low - SAME_HEIGHT or edge.low > high + SAME_HEIGHT:
+        # A wall that reaches up into the slab stands on edges below it.
+        reaches_up = faces[edge.face].lie == "upright" and faces[edge.face].high > low + SAME_HEIGHT
+        if (edge.high < low - SAME_HEIGHT and not reaches_up) or edge.low > high + SAME_HEIGHT:
             continue
         if edge.segment is not None:
             segments.append(edge.segment)

@@ -18,12 +18,14 @@ from attrs import evolve, field, frozen
 from flint import arb
 
 from workhold.errors import InputError
+from workhold.fixels.carrier import WALL
 from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.verification.ball_geometry import BallOutline, Point, Side, exact_point
 from workhold.verification.contacts import BallContact, BallPose, standoff
+from workhold.verification.own_outlines import met_by
 from workhold.verification.rules.travel import (
     WAYS,
     Stroke,
@@ -89,8 +91,11 @@ class ToolkitRules:
 
     @property
     def half_turns(self) -> bool:
-        """Whether half a turn leaves the toolkit as it is, which with a wall nothing does."""
-        return not self.walls
+        """Whether half a turn leaves the toolkit as it is.
+
+        With a wall nothing does, nor do jaws whose pegs have different heights.
+        """
+        return not self.walls and len({one.heights for one in self.lattices}) == 1
 
     @property
     def keeps_rows(self) -> bool:
@@ -250,7 +255,7 @@ class ToolkitRules:
         ends: Iterator[WallContact] = iter(())
         if self.walls:
             on_wall = [side for peg, side in zip(fixture.pegs, sides, strict=True) if peg.is_on_wall]
-            ends = iter(wall_contacts(on_wall, outline, BallPose.written(fixture.pose)))
+            ends = iter(wall_contacts(on_wall, met_by(outline, WALL), BallPose.written(fixture.pose)))
         out: list[BallContact] = []
         for peg, side in zip(fixture.pegs, sides, strict=True):
             out.append(next(ends) if peg.is_on_wall else self.contact(peg, side))
@@ -352,7 +357,7 @@ class ToolkitRules:
         named = list(zip(self.names, fixture.pegs, contacts, strict=True))
         if self.walls:
             ends = [(name, peg, end) for name, peg, end in named if isinstance(end, WallContact)]
-            yield from flush_findings(self.wall_noun, ends, pose, outline)
+            yield from flush_findings(self.wall_noun, ends, pose, met_by(outline, WALL))
         for jaw in self.lattices:
             if jaw.travel is not None:
                 yield from opening_findings(jaw, pose.travels[0])
@@ -361,8 +366,9 @@ class ToolkitRules:
                     yield from nearest_row_findings(jaw, lowest, pose.travels[0])
         locators = [(name, contact) for name, peg, contact in named if peg.carrier == self.lattices[0].name]
         clamps = [(name, peg, contact) for name, peg, contact in named if direction_of(peg)]
-        for name, _, clamp in clamps:
-            yield from self.stroke.findings(name, locators, clamp, pose, outline)
+        for name, peg, clamp in clamps:
+            met = met_by(outline, peg.carrier)
+            yield from self.stroke.findings(name, locators, clamp, pose, met)
         if len(clamps) > 1:
             yield from self.stroke.apart_findings(clamps[0][2], clamps[1][2], pose)
         elif self.stroke.span is not None:

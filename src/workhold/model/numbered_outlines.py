@@ -1,0 +1,102 @@
+"""The segments and faces of several outlines of one part, with numbers that run on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence, Set
+from typing import Protocol, TypeVar
+
+from attrs import evolve, frozen
+
+from workhold.geometry.loop import Face
+from workhold.geometry.segment import Segment
+from workhold.model.solid import Band, SolidOutline
+
+__all__ = ["NumberedOutlines", "unlike"]
+
+Value = TypeVar("Value")
+
+
+class OutlineOfPart(Protocol):
+    """What an outline has, such as a workpiece."""
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """All segments; their places are their numbers."""
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """All faces, ordered by their numbers."""
+
+    @property
+    def outer_count(self) -> int:
+        """How many segments the outer loops have, which come first."""
+
+    @property
+    def solid(self) -> SolidOutline | None:
+        """The solid that it is of; None for a prism."""
+
+
+@frozen(eq=False)
+class NumberedOutlines:
+    """The segments and faces of a workpiece and of the outlines of carriers, numbered on.
+
+    Parameters
+    ----------
+    segments : their places in this tuple are their numbers.
+    faces : ordered by their numbers.
+    bands : for every segment its band; None where it may not be touched, nothing at all without a solid.
+    over : for every segment the numbers of the solid's faces over it; nothing where these are not known.
+    marks : for every face the number of its outline: 0 for the workpiece itself.
+    inside : the numbers of the faces of holes.
+    """
+
+    segments: tuple[Segment, ...]
+    faces: tuple[Face, ...]
+    bands: tuple[Band | None, ...]
+    over: tuple[tuple[int, ...], ...]
+    marks: tuple[int, ...]
+    inside: frozenset[int]
+
+    @classmethod
+    def of(cls, outlines: Sequence[OutlineOfPart]) -> NumberedOutlines:
+        """Several outlines, the first of which the others belong to."""
+        segments, faces, bands = list[Segment](), list[Face](), list[Band | None]()
+        over, inside = list[tuple[int, ...]](), set[int]()
+        for one in outlines:
+            inside.update(len(segments) + f.number for f in one.faces if f.number >= one.outer_count)
+            faces += faces_from(one.faces, len(segments))
+            segments += one.segments
+            if one.solid is not None:
+                bands += one.solid.bands
+                over += one.solid.faces
+        marks = tuple(number for number, one in enumerate(outlines) for _ in one.faces)
+        known = len(over) == len(segments)
+        solids = tuple(over) if known else ()
+        return cls(tuple(segments), tuple(faces), tuple(bands), solids, marks, frozenset(inside))
+
+    def faces_over(self, segments: Iterable[int]) -> set[int]:
+        """Numbers of the solid's faces over some segments."""
+        return {face for segment in segments for face in self.over[segment]} if self.over else set()
+
+    def segments_under(self, faces: Set[int]) -> list[int]:
+        """Numbers of the segments with one of these faces of the solid over them."""
+        return [segment for segment, over in enumerate(self.over) if not faces.isdisjoint(over)]
+
+
+def faces_from(faces: Sequence[Face], first: int) -> list[Face]:
+    """Faces with numbers that begin at ``first``."""
+    if first == 0:
+        return list(faces)
+    return [
+        evolve(face, number=first + face.number, segments=tuple(first + k for k in face.segments))
+        for face in faces
+    ]
+
+
+def unlike(values: Iterable[Value]) -> Iterator[Value]:
+    """The values without those that are equal to one before them."""
+    known = list[Value]()
+    for value in values:
+        if value not in known:
+            known.append(value)
+            yield value
