@@ -190,12 +190,12 @@ def possible_triples(rules: Rules, holes: list[Hole]) -> Iterator[tuple[list[Hol
     for i in range(len(holes) - 2):
         others = np.flatnonzero(fits[i])
         first, second = np.triu_indices(len(others), 1)
-        j, k = others[first], others[second]
-        both = fits[j, k]
-        j, k = j[both], k[both]
-        triangles = np.stack([np.broadcast_to(points[i], (len(j), 2)), points[j], points[k]], axis=1)
+        pairs = np.column_stack([others[first], others[second]])
+        pairs = pairs[fits[pairs[:, 0], pairs[:, 1]]]
+        corner = np.broadcast_to(points[i], (len(pairs), 2))
+        triangles = np.stack([corner, points[pairs[:, 0]], points[pairs[:, 1]]], axis=1)
         for one in np.flatnonzero(large_enough(triangles, rules.request.inside)).tolist():
-            yield [holes[i], holes[j[one]], holes[k[one]]], triangles[one], cells
+            yield [holes[i], *(holes[k] for k in pairs[one].tolist())], triangles[one], cells
 
 
 def words_of(hole: Hole) -> str:
