@@ -1,0 +1,109 @@
+"""The command ``workhold`` as a child process, in the environment that was chosen for it."""
+
+import json
+import os
+import shutil
+import subprocess
+import threading
+from pathlib import Path
+
+import FreeCAD as App
+
+__all__ = ["PREFERENCES", "Refusal", "answer", "command", "run", "use"]
+
+PREFERENCES = "User parameter:BaseApp/Preferences/Mod/Workhold"
+# Variables with which FreeCAD points its own Python at its own libraries.
+OWN_VARIABLES = ("PYTHONPATH", "PYTHONHOME", "LD_LIBRARY_PATH")
+# Seconds between looks at a child, and at whether it was cancelled.
+NAP = 0.05
+
+
+class Refusal(Exception):
+    """A sentence that says what cannot be done, and what to do."""
+
+
+def command():
+    """The path of the command that was chosen, or that is found.
+
+    Raises
+    ------
+    Refusal
+        When there is none.
+    """
+    chosen = App.ParamGet(PREFERENCES).GetString("Command", "")
+    found = chosen if chosen and os.access(chosen, os.X_OK) else shutil.which("workhold")
+    if not found:
+        raise Refusal(
+            "The command workhold was not found: choose the environment that has it with Workhold > Environment."
+        )
+    return found
+
+
+def use(path):
+    """Chooses the command: its path, or the folder of a Python environment that has it.
+
+    Raises
+    ------
+    Refusal
+        When there is none.
+    """
+    places = [Path(path), Path(path) / "bin" / "workhold", Path(path) / "Scripts" / "workhold.exe"]
+    for place in places:
+        if place.is_file() and os.access(str(place), os.X_OK):
+            App.ParamGet(PREFERENCES).SetString("Command", str(place))
+            return str(place)
+    raise Refusal("There is no command workhold in {}: choose an environment that has it.".format(path))
+
+
+def run(*words, cancel=None, wait=None):
+    """What the command prints on standard output.
+
+    Parameters
+    ----------
+    words : the command's words.
+    cancel : a ``threading.Event`` that ends the child; what it has found by then counts.
+    wait : called between looks at the child, so that a window stays alive.
+
+    Raises
+    ------
+    Refusal
+        With what the command says, where it ends with an error.
+    """
+    environment = {name: value for name, value in os.environ.items() if name not in OWN_VARIABLES}
+    child = subprocess.Popen(
+        [command(), *map(str, words)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=environment,
+    )
+    said = {}
+    readers = [
+        threading.Thread(
+            target=lambda name=name: said.update({name: getattr(child, name).read()}), daemon=True
+        )
+        for name in ("stdout", "stderr")
+    ]
+    for reader in readers:
+        reader.start()
+    while any(reader.is_alive() for reader in readers):
+        readers[0].join(NAP)
+        if wait is not None:
+            wait()
+        if cancel is not None and cancel.is_set():
+            child.terminate()
+            cancel = None
+    child.wait()
+    error = said["stderr"].decode("utf-8", "replace")
+    if child.returncode not in (0, 143):
+        lines = [line for line in error.splitlines() if "error: " in line] or error.splitlines()[-1:]
+        sentence = lines[-1].split("error: ", 1)[-1].strip() if lines else "workhold ended without a word."
+        raise Refusal(sentence[:1].upper() + sentence[1:])
+    for line in error.splitlines():
+        App.Console.PrintMessage(line + "\n")
+    return said["stdout"].decode("utf-8", "replace")
+
+
+def answer(*words, cancel=None, wait=None):
+    """The object that the command prints with ``--json``."""
+    return json.loads(run(*words, "--json", cancel=cancel, wait=wait))

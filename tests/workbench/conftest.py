@@ -1,0 +1,73 @@
+"""Scripts that run in FreeCAD, with the workbench of this folder and a command ``workhold`` of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+# What every script begins with: two parts, one on the other, away from the origin.
+HEAD = f"""
+import json, sys
+sys.path.insert(0, {str(ROOT / "freecad")!r})
+import FreeCAD as App, Part
+from workhold_workbench import child, fixture, solid
+child.use("WORKHOLD")
+document = App.newDocument("held")
+block = document.addObject("Part::Box", "Block")
+block.Length, block.Width, block.Height = 60, 40, 12
+block.Placement.Base = App.Vector(100, 20, 5)
+document.recompute()
+
+def answered(**values):
+    with open("ANSWER", "w") as stream:
+        json.dump(values, stream)
+
+def distances(held):
+    return {{one.Label: round(one.Shape.distToShape(held.HeldPart.Shape)[0], 6) for one in held.Group}}
+"""
+Scripted = Callable[..., dict[str, Any]]
+
+
+@pytest.fixture
+def scripted(tmp_path: Path) -> Scripted:
+    """Runs a script in FreeCAD, and returns what it answers."""
+    command = tmp_path / "workhold"
+    run = shlex.join([sys.executable, "-m", "workhold"])
+    path = os.pathsep.join(entry for entry in sys.path if entry)
+    command.write_text(f'#!/bin/sh\nPYTHONPATH={shlex.quote(path)} exec {run} "$@"\n')
+    command.chmod(0o755)
+
+    def ran(code: str, program: tuple[str, ...] = ("freecadcmd",), **environment: str) -> dict[str, Any]:
+        if shutil.which(program[0]) is None:
+            pytest.skip(f"{program[0]} is not installed")
+        script = tmp_path / "script.py"
+        head = HEAD.replace("WORKHOLD", str(command)).replace("ANSWER", str(tmp_path / "answer.json"))
+        script.write_text(head + code)
+        own = {**os.environ, "HOME": str(tmp_path), **environment}
+        own.pop("PYTHONPATH", None)
+        outcome = subprocess.run(
+            [*program, str(script)],
+            cwd=tmp_path,
+            env=own,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        answer = tmp_path / "answer.json"
+        assert answer.exists(), outcome.stdout[-3000:] + outcome.stderr[-3000:]
+        values: dict[str, Any] = json.loads(answer.read_text())
+        return values
+
+    return ran
