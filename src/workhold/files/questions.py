@@ -17,6 +17,7 @@ __all__ = [
     "DRAWING_UNIT",
     "FIT",
     "HEAD_ROOM",
+    "HEIGHTS",
     "JOIN_TOLERANCE",
     "LAYERS",
     "LEAST_BAND",

@@ -23,7 +23,7 @@ from math import acos, floor, pi, radians, sin, tan
 from typing import Any
 
 import numpy as np
-from attrs import cmp_using, field, frozen
+from attrs import cmp_using, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -96,6 +96,14 @@ class CuttingForces:
         axial = self.axial[move].tolist()
         force, torque, height = (float(one[move]) for one in (self.force, self.torque, self.height))
         return {"cutting": {"force": force, "torque": torque, "axial": axial, "height": height}}
+
+    def without(self, moves: NDArray[np.bool_]) -> CuttingForces:
+        """The forces with none on some moves (M,); itself where none acts there."""
+        if not (moves & ((self.force > 0.0) | (self.torque > 0.0))).any():
+            return self
+        force, torque, height = (np.where(moves, 0.0, one) for one in (self.force, self.torque, self.height))
+        axial = np.where(moves[:, None], 0.0, self.axial)
+        return evolve(self, force=force, torque=torque, axial=axial, height=height)
 
     @classmethod
     def of_entries(cls, rows: list[Mapping[str, Any] | bytes], said: Mapping[str, Any]) -> CuttingForces:

@@ -16,16 +16,18 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.delegates import delegate
 from workhold.errors import InputError
+from workhold.geometry.segment import Box
 from workhold.limits import real, refuse_long
 from workhold.model.cutting_data import CuttingData
 from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.model.moves import Moves, along, shares_between
+from workhold.model.raw_block import beside_block
 from workhold.model.swept_piece import (
     CUT,
     RAPID,
@@ -277,6 +279,18 @@ class Program:
         moved = self.moves.start != self.moves.end
         boxed: NDArray[np.bool_] = ~self.moves.cutting & (moved.sum(axis=1) > 1)
         return boxed
+
+    def pressing_on(self, part: Box) -> Program:
+        """The program without forces on moves that stay beside the raw block of a part; see ``raw_block``.
+
+        Parameters
+        ----------
+        part : its outside dimensions, in mm.
+        """
+        if self.forces is None:
+            return self
+        forces = self.forces.without(beside_block(self.moves, self.tools, part))
+        return self if forces is self.forces else evolve(self, forces=forces)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data as in a result file."""

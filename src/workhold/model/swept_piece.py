@@ -7,6 +7,7 @@ are complete, so that no more than a few are objects at a time.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from struct import Struct
 from typing import Any, Literal
 
@@ -137,6 +138,8 @@ def packed_piece(entries: Mapping[str, Any]) -> bytes:
     if (is_box and one.path != box_path((x, y), (to_x, to_y))) or one.line.bit_length() > 62:
         raise InputError(f"a piece of line {one.line} of the program is none: leave it out.")
     ends, cutting = (x, y, bulge, to_x, to_y), one.kind == CUT
+    if not all(map(isfinite, (*ends, *one.tip))):
+        raise InputError(f"a move of line {one.line} of the program ends nowhere: correct it.")
     return PACKED.pack(one.line, one.tool, cutting, len(one.path), *ends, *one.tip, *one.heights, one.radius)
 
 

@@ -58,6 +58,7 @@ CALLED = {
     "peg_height": '"Peg height"',
     "head_room": '"Head room"',
     "least_band": "the least band",
+    "heights": "the toolkit's own heights",
 }
 ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
 

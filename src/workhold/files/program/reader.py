@@ -25,6 +25,7 @@ from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
+from workhold.model.raw_block import above_block
 from workhold.units import Unit
 
 __all__ = ["ReadProgram", "read_program", "read_program_with_calls"]
@@ -117,6 +118,8 @@ def read_program_with_calls(
         forces = forces_on(moves, found, CuttingData.of(cutting))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
+    if forces is not None and thickness is not None:
+        forces = forces.without(above_block(moves, thickness))
     program = evolve(program, moves=moves, forces=forces)
     return ReadProgram(program, tuple(control.calls), content.count(b"\n") + 1)
 

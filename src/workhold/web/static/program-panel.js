@@ -129,7 +129,8 @@ const readSoon = quiet(async () => {
   const mine = ++latest;
   const { program, part } = state;
   if (!program) {
-    say("");
+    // What is said of a table that waits for its program stays, also when the part comes in meanwhile.
+    if (!waiting) say("");
     return;
   }
   const solid = part?.solid ?? null;
