@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import typer
 from attrs import asdict, evolve
@@ -46,19 +46,25 @@ def supports(
     pad_radius: str | None = option(
         SUPPORTS,
         "LENGTH",
-        "Radius of the supports' round pads; 4mm, or less where the holes ask for it, if not given.",
+        "Radius of the supports' round pads; the toolkit's, or 4mm, or less where the holes ask for it, if "
+        "not given.",
     ),
-    pad_margin: str = option(
-        SUPPORTS, "LENGTH", "Least distance of a pad from the border of the face below.", default="0mm"
+    pad_margin: str | None = option(
+        SUPPORTS,
+        "LENGTH",
+        "Least distance of a pad from the border of the face below; the toolkit's, or 0mm, if not given.",
     ),
     keep_out_below: list[str] | None = option(
         SUPPORTS, "ZONE", "A place that no pad may stand under, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
     ),
-    tip_radius: str = option(CLAMP, "LENGTH", "Radius of the clamp's round tip.", default="5mm"),
+    tip_radius: str | None = option(
+        CLAMP, "LENGTH", "Radius of the clamp's round tip; the toolkit's, or 5mm, if not given."
+    ),
     inside: str | None = option(
         CLAMP,
         "LENGTH",
-        "Least distance of the clamp from the triangle's sides; the tip's radius if not given.",
+        "Least distance of the clamp from the triangle's sides; the toolkit's, or the tip's radius, if not "
+        "given.",
     ),
     keep_out_above: list[str] | None = option(
         CLAMP, "ZONE", "A place that the tip may not stand on, such as where the cutter goes."
@@ -66,7 +72,8 @@ def supports(
     reach: list[str] | None = option(
         CLAMP,
         "X,Y,LEAST,MOST",
-        "A ring about a point of the toolkit in which the tip can stand; everywhere if not given.",
+        "A ring about a point of the toolkit in which the tip can stand; the toolkit's, or everywhere, if "
+        "not given.",
     ),
     clamp_at: str | None = option(CLAMP, "X,Y", "Where the clamp presses; its best place if not given."),
     load: list[str] | None = option(
@@ -83,7 +90,10 @@ def supports(
     ),
     step: str | None = option(None, "FILE", "The same as a STEP assembly, for CAM, into this .step file."),
     support_height: str | None = option(
-        SUPPORTS, "LENGTH", "How far supports stand out of the plates, in --glb and --step; 6mm if not given."
+        SUPPORTS,
+        "LENGTH",
+        "How far supports stand out of the plates, in --glb and --step; the toolkit's, or 10mm, if not "
+        "given.",
     ),
     force: ForceOption = False,
     unit: str | None = SHOWN_UNIT,
@@ -114,21 +124,24 @@ def supports(
 
     high = asked_thickness(True, thickness, result.workpiece, shown)
     assert high is not None
+    own: dict[str, Any] = {
+        "pad_margin": optional_length("--pad-margin", pad_margin, shown),
+        "inside": optional_length("--inside", inside, shown),
+        "reach": [lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
+    }
     request = evolve(
         SupportRequest.of(
             result.workpiece,
             high,
             pad_radius=optional_length("--pad-radius", pad_radius, shown),
-            tip_radius=length("--tip-radius", tip_radius, shown),
+            tip_radius=optional_length("--tip-radius", tip_radius, shown),
             toolkit=result.toolkit,
         ),
         band=None if band is None else lengths("--band", band, ":", 2, shown),
-        pad_margin=length("--pad-margin", pad_margin, shown),
         bottom_zones=[zone(text, shown) for text in keep_out_below or ()],
         top_zones=[zone(text, shown) for text in keep_out_above or ()],
-        reach=[lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
         point=None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
-        inside=length("--tip-radius" if inside is None else "--inside", inside or tip_radius, shown),
+        **{name: value for name, value in own.items() if value is not None},
     )
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in load] if load else None
