@@ -14,10 +14,17 @@ from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
 from workhold.cli.progress import progress_bar
-from workhold.cli.search_options import JAW_FORCE, zone
+from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.spatial_loads import spatial_load
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import length, length_unit, optional_count, optional_force, optional_length
+from workhold.cli.values import (
+    length,
+    length_unit,
+    optional_count,
+    optional_force,
+    optional_length,
+    positive_number,
+)
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 
@@ -83,6 +90,7 @@ def supports(
         "and tilt=ABOUTX,ABOUTY; those of the result, at the part's upper side, if not given.",
     ),
     jaw_force: str | None = JAW_FORCE,
+    friction: str | None = FRICTION,
     triples: str = option(None, "K", "How many sets of three to list.", default="3"),
     out: str | None = option(None, "FILE", "Write all sets of three, with every figure, into this file."),
     glb: str | None = option(
@@ -110,6 +118,7 @@ def supports(
     shown = length_unit(unit)
     count = optional_count("--triples", triples)
     closing = optional_force("--jaw-force", jaw_force)
+    coefficient = positive_number("--friction", friction)
     for path, endings in ((out, None), (glb, (".glb",)), (step, (".step", ".stp"))):
         if path is not None:
             refuse_output(path, (result_file,), force)
@@ -160,15 +169,41 @@ def supports(
             cancel=cancel,
             progress=lambda fraction: show(fraction, 0),
         )
+    helped = with_friction(found, count, coefficient)
     if out is not None:
         from workhold.files.supports.writer import write_supports
 
         write_supports(found, out)
     if glb is not None or step is not None:
         write_standing(found, glb, step, raised)
-    report(found, count, result, rank, written, shown, json_)
+    report(found, count, result, rank, written, shown, json_, coefficient, helped)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
+
+
+def with_friction(found: Supports, count: int | None, friction: float | None) -> list[float]:
+    """The least clamp forces in N with friction, of the sets that are listed; none where it is not asked for.
+
+    Raises
+    ------
+    InputError
+        For a coefficient that is too large, and where there is no load.
+    """
+    if friction is None:
+        return []
+    if not found.loads:
+        raise InputError("--friction is asked of loads, of which there are none: give --load too.")
+    return [found.clamp_with_friction(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
+
+
+def friction_words(friction: float, helped: list[float]) -> str:
+    """Says what friction could add to the sets that are listed."""
+    forces = ", ".join(f"{force:.0f} N" for force in helped)
+    sets = "that set" if len(helped) == 1 else "these sets, in their order,"
+    return (
+        f"With a friction of {friction:g} at every contact the clamp of {sets} could do with {forces} at "
+        "best. With friction the forces are not determined: clamp for the force without it."
+    )
 
 
 def write_standing(found: Supports, glb: str | None, step: str | None, raised: float | None) -> None:
@@ -300,13 +335,16 @@ def report(
     written: list[str],
     unit: Unit,
     as_json: bool,
+    friction: float | None,
+    helped: list[float],
 ) -> None:
     """Prints the best sets, and what is not seen in the table."""
     listed = found.triples[:count]
     if as_json:
         rows = [asdict(triple) for triple in listed]
         counts = {"positions": found.positions, "sets": found.count}
-        print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written)
+        more = {} if friction is None else {"friction": friction, "needed_with_friction": helped}
+        print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written, **more)
         return
     if not found.triples:
         from workhold.supports.why_none import why_none
@@ -314,6 +352,8 @@ def report(
         print_tables(f"Fixture {rank}: {why_none(found, unit)}")
     else:
         print_sets(found, listed, result, rank, unit)
+        if friction is not None:
+            print_tables(friction_words(friction, helped))
     if found.count is not None and found.count > len(listed) and not written:
         print_remark("more sets can be listed with --triples, and written into a file with --out.")
     if written:
