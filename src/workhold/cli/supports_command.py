@@ -16,6 +16,7 @@ from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_out
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.spatial_loads import spatial_load
+from workhold.cli.supports_friction import friction_words, with_friction
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
     length,
@@ -179,31 +180,6 @@ def supports(
     report(found, count, result, rank, written, shown, json_, coefficient, helped)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
-
-
-def with_friction(found: Supports, count: int | None, friction: float | None) -> list[float]:
-    """The least clamp forces in N with friction, of the sets that are listed; none where it is not asked for.
-
-    Raises
-    ------
-    InputError
-        For a coefficient that is too large, and where there is no load.
-    """
-    if friction is None:
-        return []
-    if not found.loads:
-        raise InputError("--friction is asked of loads, of which there are none: give --load too.")
-    return [found.clamp_with_friction(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
-
-
-def friction_words(friction: float, helped: list[float]) -> str:
-    """Says what friction could add to the sets that are listed."""
-    forces = ", ".join(f"{force:.0f} N" for force in helped)
-    sets = "that set" if len(helped) == 1 else "these sets, in their order,"
-    return (
-        f"With a friction of {friction:g} at every contact the clamp of {sets} could do with {forces} at "
-        "best. With friction the forces are not determined: clamp for the force without it."
-    )
 
 
 def write_standing(found: Supports, glb: str | None, step: str | None, raised: float | None) -> None:

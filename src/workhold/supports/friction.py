@@ -2,10 +2,10 @@
 
 Every contact presses within its cone of friction: pegs on their faces, supports from below, the clamp from
 above. Of the heights at which pegs may press, the ends of their bands are looked at, and the worst counts.
-What moves pushes with the jaw force as before. The least clamp force that
-balances a load is a linear program in the forces along the edges of pyramids inside the cones, six equations
-of balance and one of the jaw. It is convex in the load, so the ends of ranges, and corners around a range of
-directions, are the worst there can be.
+What moves pushes with the jaw force as before. The least clamp force that balances a load is a linear program
+in the forces along the edges of pyramids inside the cones. It has six equations of balance and one of the jaw.
+It is convex in the load. So the ends of ranges, and corners around a range of directions, are the worst there
+can be.
 
 It is optimistic: with friction statics does not determine the forces, and this is what the best of them would
 need. It ranks nothing.
@@ -55,8 +55,8 @@ def clamp_with_friction(supports: Supports, triple: Triple, friction: float) -> 
     coefficient = real(friction)
     if not (isfinite(coefficient) and 0 <= coefficient <= MOST_FRICTION):
         raise InputError(
-            f"friction {coefficient:g} cannot be used: give a coefficient from 0 to {MOST_FRICTION:g}, such as "
-            "0.15."
+            f"friction {coefficient:g} cannot be used: give a coefficient from 0 to {MOST_FRICTION:g}, such "
+            "as 0.15."
         )
     if not supports.loads:
         raise InputError("what friction adds is asked of loads, of which there are none: give a load too.")
@@ -82,8 +82,8 @@ def balance(
 
     Returns
     -------
-    matrix : (7, V) forces in x, y and z, moments about x, y and z through the centre of the part over a
-        length, and the push against what moves, per unit of each force.
+    matrix : (7, V) per unit of each force: its parts in x, y and z, its moments about the centre of the part
+        over a length, and its push against what moves.
     costs : (V,) what each adds to the force of the clamp.
     length : that length in mm.
     """
