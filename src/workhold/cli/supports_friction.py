@@ -28,7 +28,13 @@ def with_friction(found: Supports, count: int | None, friction: float | None) ->
 
 
 def friction_words(friction: float, helped: list[float]) -> str:
-    """Says what friction could add to the sets that are listed."""
+    """Says what friction could add to the sets that are listed.
+
+    Parameters
+    ----------
+    friction : its coefficient.
+    helped : least clamp forces in N, one for each set.
+    """
     forces = ", ".join(f"{force:.0f} N" for force in helped)
     sets = "that set" if len(helped) == 1 else "these sets, in their order,"
     return (

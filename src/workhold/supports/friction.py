@@ -3,9 +3,9 @@
 Every contact presses within its cone of friction: pegs on their faces, supports from below, the clamp from
 above. Of the heights at which pegs may press, the ends of their bands are looked at, and the worst counts.
 What moves pushes with the jaw force as before. The least clamp force that balances a load is a linear program
-in the forces along the edges of pyramids inside the cones. It has six equations of balance and one of the jaw.
-It is convex in the load. So the ends of ranges, and corners around a range of directions, are the worst there
-can be.
+in the forces along the edges of pyramids inside the cones. Six of its equations are of balance, one is of the
+jaw. It is convex in the load. So the ends of ranges, and corners around a range of directions, are the worst
+there can be.
 
 It is optimistic: with friction statics does not determine the forces, and this is what the best of them would
 need. It ranks nothing.
@@ -82,10 +82,10 @@ def balance(
 
     Returns
     -------
-    matrix : (7, V) per unit of each force: its parts in x, y and z, its moments about the centre of the part
-        over a length, and its push against what moves.
+    matrix : (7, V) of each unit force the parts in x, y and z, the moments over a length, and the push
+        against what moves.
     costs : (V,) what each adds to the force of the clamp.
-    length : that length in mm.
+    length : by which moments about the centre of the part are divided, in mm.
     """
     query, fixture = supports.query, supports.fixture
     touched = Touched.of(query.workpiece, query.toolkit)
