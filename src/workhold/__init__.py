@@ -106,6 +106,7 @@ HOMES = {
 
 # The functions that methods of the model's classes call, see ``delegates``.
 DELEGATES = {
+    "clamp_with_friction": "workhold.supports.friction",
     "fixture_picture": "workhold.presenting.papers",
     "fixture_supports": "workhold.supports.asking",
     "preset_fields": "workhold.files.toolkit_file",

@@ -153,3 +153,23 @@ def test_supports_of_a_result_in_python() -> None:
         result[0].supports(20, pads=3)
     with pytest.raises(workhold.InputError, match="how thick the part is, is not known"):
         result.supports()
+
+
+def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run: Run) -> None:
+    """The table stays as it is; without loads, and for what is no coefficient, a sentence says so."""
+    words = ("supports", result_file, "1", "--thickness", "20", "--load", "at=40,25 force=200 axial=-30..60")
+    plain, more = run(*words), run(*words, "--friction", "0.2")
+    assert more.exit_code == 0 and more.stdout.startswith(plain.stdout.rstrip())
+    line = more.stdout[len(plain.stdout.rstrip()) :]
+    assert "With a friction of 0.2 at every contact the clamp of these sets, in their order, could do" in line
+    told = json.loads(run(*words, "--friction", "0.2", "--json").stdout)
+    assert told["friction"] == 0.2 and len(told["needed_with_friction"]) == len(told["triples"]) == 3
+    for force, one in zip(told["needed_with_friction"], told["triples"], strict=True):
+        assert 0 <= force < one["best"]["clamp_needed"]
+        assert f"{force:.0f} N" in line
+    assert "friction" not in json.loads(run(*words, "--json").stdout)
+    for wrong, sentence in (("0", "--friction '0' is not a positive number"), ("1e6", "give a coefficient")):
+        refused = run(*words, "--friction", wrong)
+        assert refused.exit_code == 2 and sentence in refused.stderr
+    bare = run(*words[:5], "--friction", "0.2")
+    assert bare.exit_code == 2 and "--friction is asked of loads, of which there are none" in bare.stderr

@@ -14,6 +14,7 @@ from workhold.files.toolkit_file import load_toolkit, preset_names
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
 from workhold.fixels.plate import Plate
+from workhold.fixels.support_hardware import HARDWARE
 from workhold.web.forms import JobForm
 from workhold.web.toolkits import DESCRIBED, Described, kinds_answer, page_kind
 
@@ -40,7 +41,7 @@ def test_every_field_of_a_kind_is_on_the_page(one: Described) -> None:
     """Once for each set of other values, but for those that the name says; what must be filled in begins with a value."""
     kind = KINDS[kind_of(one.name)[0]]
     shown = [field.name for field in one.fields]
-    assert set(shown) | set(one.said) == set(fields_dict(kind))  # type: ignore[arg-type]
+    assert set(shown) | set(one.said) | set(HARDWARE) == set(fields_dict(kind))  # type: ignore[arg-type]
     assert not set(shown) & set(one.said)
     for _, group in groupby(sorted(one.fields, key=lambda field: field.name), key=lambda field: field.name):
         alike = list(group)

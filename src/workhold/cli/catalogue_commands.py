@@ -159,6 +159,14 @@ def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
     from workhold.fixels.kinds import table_of
 
     toolkit = loaded.toolkit
+    for hardware in (toolkit.supports, toolkit.top_clamp):
+        for row in () if hardware is None else hardware.table.fields:
+            value = getattr(hardware, row.name)
+            if row.form == "length" and value is not None:
+                yield row.figure, words_of_value(row.form, value, unit)
+            elif value is not None:
+                each = (f"{words_of_value(row.form, one, unit).replace(' to ', ', ')}" for one in value)
+                yield row.figure, "; ".join(each)
     for row in table_of(loaded.kind).fields:
         value = getattr(toolkit, row.name)
         is_usual = value == (toolkit.followed(row) if row.follows else row.default)

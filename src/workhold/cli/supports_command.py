@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import typer
 from attrs import asdict, evolve
@@ -14,10 +14,18 @@ from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
 from workhold.cli.progress import progress_bar
-from workhold.cli.search_options import JAW_FORCE, zone
+from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.spatial_loads import spatial_load
+from workhold.cli.supports_friction import friction_words, with_friction
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import length, length_unit, optional_count, optional_force, optional_length
+from workhold.cli.values import (
+    length,
+    length_unit,
+    optional_count,
+    optional_force,
+    optional_length,
+    positive_number,
+)
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 
@@ -46,19 +54,25 @@ def supports(
     pad_radius: str | None = option(
         SUPPORTS,
         "LENGTH",
-        "Radius of the supports' round pads; 4mm, or less where the holes ask for it, if not given.",
+        "Radius of the supports' round pads; the toolkit's, or 4mm, or less where the holes ask for it, if "
+        "not given.",
     ),
-    pad_margin: str = option(
-        SUPPORTS, "LENGTH", "Least distance of a pad from the border of the face below.", default="0mm"
+    pad_margin: str | None = option(
+        SUPPORTS,
+        "LENGTH",
+        "Least distance of a pad from the border of the face below; the toolkit's, or 0mm, if not given.",
     ),
     keep_out_below: list[str] | None = option(
         SUPPORTS, "ZONE", "A place that no pad may stand under, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
     ),
-    tip_radius: str = option(CLAMP, "LENGTH", "Radius of the clamp's round tip.", default="5mm"),
+    tip_radius: str | None = option(
+        CLAMP, "LENGTH", "Radius of the clamp's round tip; the toolkit's, or 5mm, if not given."
+    ),
     inside: str | None = option(
         CLAMP,
         "LENGTH",
-        "Least distance of the clamp from the triangle's sides; the tip's radius if not given.",
+        "Least distance of the clamp from the triangle's sides; the toolkit's, or the tip's radius, if not "
+        "given.",
     ),
     keep_out_above: list[str] | None = option(
         CLAMP, "ZONE", "A place that the tip may not stand on, such as where the cutter goes."
@@ -66,7 +80,8 @@ def supports(
     reach: list[str] | None = option(
         CLAMP,
         "X,Y,LEAST,MOST",
-        "A ring about a point of the toolkit in which the tip can stand; everywhere if not given.",
+        "A ring about a point of the toolkit in which the tip can stand; the toolkit's, or everywhere, if "
+        "not given.",
     ),
     clamp_at: str | None = option(CLAMP, "X,Y", "Where the clamp presses; its best place if not given."),
     load: list[str] | None = option(
@@ -76,6 +91,7 @@ def supports(
         "and tilt=ABOUTX,ABOUTY; those of the result, at the part's upper side, if not given.",
     ),
     jaw_force: str | None = JAW_FORCE,
+    friction: str | None = FRICTION,
     triples: str = option(None, "K", "How many sets of three to list.", default="3"),
     out: str | None = option(None, "FILE", "Write all sets of three, with every figure, into this file."),
     glb: str | None = option(
@@ -83,7 +99,10 @@ def supports(
     ),
     step: str | None = option(None, "FILE", "The same as a STEP assembly, for CAM, into this .step file."),
     support_height: str | None = option(
-        SUPPORTS, "LENGTH", "How far supports stand out of the plates, in --glb and --step; 6mm if not given."
+        SUPPORTS,
+        "LENGTH",
+        "How far supports stand out of the plates, in --glb and --step; the toolkit's, or 10mm, if not "
+        "given.",
     ),
     force: ForceOption = False,
     unit: str | None = SHOWN_UNIT,
@@ -100,6 +119,7 @@ def supports(
     shown = length_unit(unit)
     count = optional_count("--triples", triples)
     closing = optional_force("--jaw-force", jaw_force)
+    coefficient = positive_number("--friction", friction)
     for path, endings in ((out, None), (glb, (".glb",)), (step, (".step", ".stp"))):
         if path is not None:
             refuse_output(path, (result_file,), force)
@@ -114,21 +134,24 @@ def supports(
 
     high = asked_thickness(True, thickness, result.workpiece, shown)
     assert high is not None
+    own: dict[str, Any] = {
+        "pad_margin": optional_length("--pad-margin", pad_margin, shown),
+        "inside": optional_length("--inside", inside, shown),
+        "reach": [lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
+    }
     request = evolve(
         SupportRequest.of(
             result.workpiece,
             high,
             pad_radius=optional_length("--pad-radius", pad_radius, shown),
-            tip_radius=length("--tip-radius", tip_radius, shown),
+            tip_radius=optional_length("--tip-radius", tip_radius, shown),
             toolkit=result.toolkit,
         ),
         band=None if band is None else lengths("--band", band, ":", 2, shown),
-        pad_margin=length("--pad-margin", pad_margin, shown),
         bottom_zones=[zone(text, shown) for text in keep_out_below or ()],
         top_zones=[zone(text, shown) for text in keep_out_above or ()],
-        reach=[lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
         point=None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
-        inside=length("--tip-radius" if inside is None else "--inside", inside or tip_radius, shown),
+        **{name: value for name, value in own.items() if value is not None},
     )
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in load] if load else None
@@ -147,13 +170,14 @@ def supports(
             cancel=cancel,
             progress=lambda fraction: show(fraction, 0),
         )
+    helped = with_friction(found, count, coefficient)
     if out is not None:
         from workhold.files.supports.writer import write_supports
 
         write_supports(found, out)
     if glb is not None or step is not None:
         write_standing(found, glb, step, raised)
-    report(found, count, result, rank, written, shown, json_)
+    report(found, count, result, rank, written, shown, json_, coefficient, helped)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
 
@@ -287,13 +311,16 @@ def report(
     written: list[str],
     unit: Unit,
     as_json: bool,
+    friction: float | None,
+    helped: list[float],
 ) -> None:
     """Prints the best sets, and what is not seen in the table."""
     listed = found.triples[:count]
     if as_json:
         rows = [asdict(triple) for triple in listed]
         counts = {"positions": found.positions, "sets": found.count}
-        print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written)
+        more = {} if friction is None else {"friction": friction, "needed_with_friction": helped}
+        print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written, **more)
         return
     if not found.triples:
         from workhold.supports.why_none import why_none
@@ -301,6 +328,8 @@ def report(
         print_tables(f"Fixture {rank}: {why_none(found, unit)}")
     else:
         print_sets(found, listed, result, rank, unit)
+        if friction is not None:
+            print_tables(friction_words(friction, helped))
     if found.count is not None and found.count > len(listed) and not written:
         print_remark("more sets can be listed with --triples, and written into a file with --out.")
     if written:

@@ -17,6 +17,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import numbered_solid
 from workhold.model.recounted import ChosenSupports
 from workhold.model.solid import Band
+from workhold.model.support_bodies import height_of_supports
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["SheetHeights", "heights_of", "lift_of"]
@@ -85,7 +86,7 @@ def heights_of(
         return None
     assumed = set()
     lift = lift_of(supports, details.support_height)
-    if supports is not None and details.support_height is None:
+    if supports is not None and details.support_height is None and height_of_supports(toolkit) is None:
         assumed.add("supported_by")
     plate = THICKNESS if details.plate_thickness is None else details.plate_thickness
     if details.plate_thickness is None:
@@ -130,7 +131,8 @@ def lift_of(supports: ChosenSupports | None, support_height: float | None) -> fl
     """How far the part lies above the plates in mm: as high as its supports, or 0 without any."""
     if supports is None:
         return 0.0
-    return SUPPORT_HEIGHT if support_height is None else support_height
+    own = height_of_supports(supports.supports.query.toolkit) if support_height is None else support_height
+    return SUPPORT_HEIGHT if own is None else own
 
 
 def bands_of_pegs(

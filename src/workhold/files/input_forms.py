@@ -29,10 +29,15 @@ from pydantic import (
 from workhold.errors import InputError
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.kinds import TABLES, USUAL, kind_of, table_of
+from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import Form, ToolkitField
 
 __all__ = ["TAGS", "LoadsFile", "checked_toolkit", "checked_workpiece", "forms_by_noun", "one_of", "optional"]
 
+# Figures of supports and of a clamp on top, whose names are checked where they are made.
+HARDWARE_KEYS: Mapping[str, Any] = dict.fromkeys(
+    HARDWARE, (dict[str, FiniteFloat | list[list[FiniteFloat]]] | None, None)
+)
 BY_NOUN = {table.noun: table for table in TABLES.values()}
 # What distinguishes the forms in a place of pydantic's; they are no keys of a file.
 TAGS = tuple(f"<{noun}>" for noun in BY_NOUN)
@@ -44,6 +49,7 @@ def forms_by_noun(
     entry: Callable[[ToolkitField], Any],
     kind: Callable[[tuple[str, ...]], Any] | None = None,
     summary: str = "{}.",
+    hardware: Mapping[str, Any] | None = None,
 ) -> Mapping[str, Any]:
     """Makes a form for each table, by the table's noun.
 
@@ -55,6 +61,7 @@ def forms_by_noun(
     kind : type and default of the key ``kind`` for the kinds of a table; None where no form has one of its
         own.
     summary : of the forms, in which "{}" stands for what the table describes.
+    hardware : type and default of supports and a clamp on top, by their names; the usual ones if None.
     """
     forms: dict[str, Any] = {}
     for noun, table in BY_NOUN.items():
@@ -67,6 +74,7 @@ def forms_by_noun(
             __doc__=summary.format(table.summary),
             **fields,
             **{row.name: entry(row) for row in table.fields},
+            **(HARDWARE_KEYS if hardware is None else hardware),
         )
         # Another process finds a form that it is handed by module and name.
         setattr(sys.modules[base.__module__], forms[noun].__name__, forms[noun])
@@ -132,14 +140,29 @@ def entry_of(row: ToolkitField) -> tuple[Any, Any]:
     return (TYPES[row.form], ...) if row.is_required else (TYPES[row.form] | None, None)
 
 
+def table_key(name: str) -> str:
+    """What the table of supports or of a clamp on top is called in a file."""
+    return name.replace("_", "-")
+
+
 # By the noun of their tables.
-FORMS = forms_by_noun(ToolkitForm, "{}Form", entry_of, summary="{}, as its file describes it.")
+FORMS = forms_by_noun(
+    ToolkitForm,
+    "{}Form",
+    entry_of,
+    summary="{}, as its file describes it.",
+    hardware={
+        name: (kind, Field(default=None, alias=table_key(name))) for name, (kind, _) in HARDWARE_KEYS.items()
+    },
+)
 
 WANTED = {
     "unit": 'write unit = "mm" or unit = "inch"',
     "assumed": 'write a list of the entries that no source gives, such as ["travel"]',
     "pin_diameter": "write the smallest and the largest diameter, such as [5.982, 6.0]",
     "hole_diameter": "write the smallest and the largest diameter, such as [6.0, 6.012]",
+    "supports": "write a table of numbers, such as [supports] and below it pad_radius = 4",
+    "top-clamp": "write a table, such as [top-clamp] and below it tip_radius = 5, reach = [[0, 0, 10, 90]]",
 } | {row.name: row.entry for row in OPTIONS if row.entry}
 
 
@@ -165,23 +188,27 @@ def toolkit_fault(error: ValidationError, form: type[ToolkitForm], noun: str) ->
     first = error.errors(include_url=False, include_context=False)[0]
     name, kind = str(first["loc"][0]), first["type"]
     if kind == "extra_forbidden":
-        known = get_close_matches(name, form.model_fields, n=1)
+        known = get_close_matches(name, [field.alias or key for key, field in form.model_fields.items()], n=1)
         # The fields of the toolkit stand right after what it is.
         first_ones = [
             "unit",
             "kind",
             *(field for field in form.model_fields if field not in ToolkitForm.model_fields),
         ]
-        entries = dict.fromkeys([*first_ones, *form.model_fields])
+        entries = dict.fromkeys(
+            form.model_fields[one].alias or one for one in (*first_ones, *form.model_fields)
+        )
         meant = f"did you mean {known[0]}?" if known else f"the entries are {', '.join(entries)}."
         return f'"{name[:40]}" is no entry of a {noun}: {meant}'
     if kind == "missing":
         return f"{name} is missing: {WANTED[name]}."
+    if name in WANTED:
+        return f"{name} is not what it should be: {WANTED[name]}."
     field = form.model_fields[name].annotation
     usual = "write text in quotes" if field == str | None else "write a finite number"
     if field == int | None:
         usual = "write a whole number"
-    return f"{name} is not what it should be: {WANTED.get(name, usual)}."
+    return f"{name} is not what it should be: {usual}."
 
 
 COLUMNS = ("x", "y", "bulge")

@@ -29,6 +29,7 @@ from attrs import frozen
 from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
 from workhold.files.text import read_text, toml_table
+from workhold.files.toolkit_hardware import hardware_entries, refuse_wide_pads
 from workhold.fixels.fields import COLUMNS, OPTIONS, PEG_RADIUS, PITCH
 from workhold.fixels.kinds import KINDS, USUAL, kind_of, toolkit_of
 from workhold.fixels.table import Form
@@ -191,8 +192,9 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
         raise InputError('the unit of a toolkit is "mm" or "inch".')
     kind, said = kind_of(entries.get("kind", USUAL))
     given = {row.name: in_mm(row.form, entries[row.name], unit) for row in OPTIONS if row.name in entries}
+    given |= hardware_entries(entries, unit)
     fields: dict[str, Any] = {**said, **given}
-    toolkit_of(kind, fields)
+    refuse_wide_pads(toolkit_of(kind, fields))
     fit = fit_of(entries, unit, fields[PEG_RADIUS.name])
     return LoadedToolkit(
         name=name,

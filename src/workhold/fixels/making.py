@@ -21,6 +21,7 @@ from workhold.fixels.carrier import WALL, Carrier, Holes, holes_named
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import PITCH
 from workhold.fixels.pegs import flat_of, resolved_flat
+from workhold.fixels.support_hardware import HARDWARE, hardware_of
 from workhold.fixels.table import SILENT, ToolkitField
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.limits import MOST_BLOCKED, MOST_HOLES, real, refuse_long
@@ -124,7 +125,14 @@ def made_from_table(kind: Kind) -> Kind:
     rows = {row.name: row for row in kind.table.fields}
     names = [name for name, form in kind.__annotations__.items() if not str(form).startswith("ClassVar")]
     these = {name: attribute_of(rows[name], inherits=kind.__base__ is not Toolkit) for name in names}
+    if kind.__base__ is Toolkit:
+        these |= {name: hardware_attribute(name) for name in HARDWARE}
     return frozen(these=these)(kind)
+
+
+def hardware_attribute(name: str) -> Any:
+    """Returns the attribute of supports or of a clamp on top, which every kind may have."""
+    return field(default=None, converter=partial(hardware_of, name), kw_only=True)
 
 
 def attribute_of(row: ToolkitField, *, inherits: bool) -> Any:

@@ -29,8 +29,8 @@ __all__ = [
 
 # What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a
 # flat's distance with or without half its width; the heights between which something touches; names of holes;
-# directions or pairs of them.
-Form = Literal["count", "length", "pitch", "span", "flat", "heights", "holes", "directions"]
+# directions or pairs of them; rings about points.
+Form = Literal["count", "length", "pitch", "span", "flat", "heights", "holes", "directions", "rings"]
 # Forms of which files say nothing where there is none.
 SILENT: frozenset[Form] = frozenset({"flat", "heights"})
 # Sections of the command's help.

@@ -29,6 +29,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, Heights, Travel
 from workhold.fixels.contacts import CLAMP_TIP, Arrangement, ContactKind, Symmetry
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
+from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.fixels.table import FieldTable, ToolkitField
 from workhold.units import Unit
 
@@ -111,6 +112,7 @@ class Toolkit:
     wording : what its things are called where it holds nothing.
     setup_words : what setting it up is called on sheets, pictures and pages.
     page : what the page calls it.
+    supports, top_clamp : the supports and the clamp on top that its owner has; None where nobody says.
     """
 
     __slots__ = ()
@@ -118,6 +120,9 @@ class Toolkit:
     if TYPE_CHECKING:
         # Made from the table of fields, where a type checker does not look.
         def __init__(self, *args: Any, **fields: Any) -> None: ...
+
+        supports: SupportPads | None
+        top_clamp: TopClamp | None
 
     kind: ClassVar[str]
     table: ClassVar[FieldTable]

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from workhold.errors import InputError
 from workhold.fixels.pegs import peg_outline
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import (
     SUPPORT_HEIGHT,
     BodyKind,
@@ -30,6 +31,7 @@ __all__ = [
     "bodies_with_supports",
     "clamp_pieces",
     "clamped_height",
+    "height_of_supports",
     "supported_sizes",
 ]
 
@@ -37,6 +39,11 @@ __all__ = [
 # radii in tips. The knob stands so far above part and pegs that it touches neither.
 TIP, SPINDLE, KNOB = (3.0, 1.0), (18.0, 0.6), (6.0, 1.5)
 KNOB_ROOM = 5.0
+
+
+def height_of_supports(toolkit: Toolkit) -> float | None:
+    """How high the supports are that a toolkit has, in mm; None where nobody says."""
+    return None if toolkit.supports is None else toolkit.supports.height
 
 
 def supported_sizes(
@@ -52,7 +59,7 @@ def supported_sizes(
     Parameters
     ----------
     peg_length, peg_height : of the pegs, and how far they stand out of the plates.
-    support_height : of the supports above the plates.
+    support_height : of the supports above the plates; if None that of the toolkit's own.
     thickness : of the part; that which the supports were asked for if None.
 
     Raises
@@ -60,7 +67,8 @@ def supported_sizes(
     InputError
         For a length that is not positive, as of pegs that end below the part.
     """
-    raised = SUPPORT_HEIGHT if support_height is None else support_height
+    own = height_of_supports(supports.query.toolkit) if support_height is None else support_height
+    raised = SUPPORT_HEIGHT if own is None else own
     return BodySizes.of(
         supports.query.workpiece,
         supports.request.thickness if thickness is None else thickness,

@@ -19,6 +19,7 @@ from attrs import Factory, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
+from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import checked_vertices, loop_segments
 from workhold.geometry.segment import segment_rows
@@ -281,7 +282,8 @@ class SupportRequest:
         ----------
         thickness : in mm; that of the solid if None.
         pad_radius, tip_radius : in mm; the usual ones if None.
-        toolkit : in which the part is held; the usual pad is then made as small as its holes ask for.
+        toolkit : in which the part is held; its own supports and clamp on top are the usual ones. Where it
+            has none, the usual pad is made as small as its holes ask for.
 
         Raises
         ------
@@ -297,16 +299,24 @@ class SupportRequest:
         solid = workpiece.solid
         if thickness is None and solid is None:
             raise InputError("how thick the part is, is not known: give its thickness in mm.")
+        pads = toolkit.supports if toolkit is not None and toolkit.supports is not None else SupportPads()
+        clamp = toolkit.top_clamp if toolkit is not None and toolkit.top_clamp is not None else TopClamp()
+        pad_radius = pads.pad_radius if pad_radius is None else pad_radius
+        tip_radius = clamp.tip_radius if tip_radius is None else tip_radius
+        tip_radius = TIP_RADIUS if tip_radius is None else tip_radius
         if pad_radius is None:
             room = PAD_RADIUS if toolkit is None else least_apart(toolkit) / 2
             pad_radius = min(PAD_RADIUS, room) if room >= LEAST_PAD_RADIUS else PAD_RADIUS
         return cls(
             thickness=solid.height if thickness is None and solid is not None else thickness,
             pad_radius=pad_radius,
-            tip_radius=TIP_RADIUS if tip_radius is None else tip_radius,
+            tip_radius=tip_radius,
             bottom=None if solid is None else solid.bottom or None,
             top=None if solid is None else solid.top or None,
             top_heights=None if solid is None else solid.top_heights or None,
+            pad_margin=0.0 if pads.pad_margin is None else pads.pad_margin,
+            inside=tip_radius if clamp.inside is None else clamp.inside,
+            reach=clamp.reach,
         )
 
     def clamped_height(self, point: tuple[float, float]) -> float:

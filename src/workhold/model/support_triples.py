@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from attrs import evolve, frozen
 
+from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.fixels.carrier import hole_name, letter_of
 from workhold.model.fixture import Fixture
@@ -147,6 +148,24 @@ class Supports:
             there = f"{count} are listed" if count else "there is no set of three"
             raise InputError(f"there is no set {rank} of supports: {there}.")
         return self.triples[rank - 1]
+
+    def clamp_with_friction(self, friction: float, rank: int = 1) -> float:
+        """The least clamp force in N for which friction could balance the loads, if all goes well.
+
+        It is optimistic, ranks nothing and is at most that without friction; see ``supports.friction``.
+
+        Parameters
+        ----------
+        friction : Coulomb's coefficient of all contacts.
+        rank : of the set of three, from 1.
+
+        Raises
+        ------
+        InputError
+            For a coefficient that is none, without loads, and when there is no such set.
+        """
+        found: float = delegate("clamp_with_friction")(self, self.ranked(rank), friction)
+        return found
 
     def best(self, count: int) -> Supports:
         """A copy with the first triples only."""

@@ -25,6 +25,7 @@ from workhold.files.result.forms import Head
 from workhold.files.result.parts import checked_head, read_parts
 from workhold.files.result.program_entries import head_value
 from workhold.fixels.fields import OPTIONS
+from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
@@ -338,7 +339,7 @@ def keys_missing(head: Head) -> list[str]:
     # Where nobody counted pairs and seats a note says so, for which the account looks.
     spared |= {"workpiece.departure", "tolerance.departure", "pairs", "seats"}
     # A toolkit without flats, or heights of its own, says nothing of them.
-    silent = [row.name for row in OPTIONS if row.form in SILENT]
+    silent = [row.name for row in OPTIONS if row.form in SILENT] + list(HARDWARE)
     spared |= {f"{key}.{name}" for key in ("vise", "toolkit") for name in silent}
     # A prism has no solid, and where the bands are there, nothing rests on the numbers of the solid's faces.
     roles = () if head.outlines is None else tuple(head.outlines)

@@ -15,6 +15,7 @@ from workhold.files.input_forms import TAGS, forms_by_noun, one_of, optional
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.kinds import USUAL, toolkit_of
+from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.query import Query, asked_ranking
@@ -157,10 +158,21 @@ def asked_kind(kinds: tuple[str, ...]) -> tuple[Any, Any]:
     return (Name, USUAL) if USUAL in kinds else (Literal[kinds], ...)
 
 
+# Figures of supports and of a clamp on top.
+RINGS = Annotated[
+    list[Annotated[list[Number], Field(min_length=4, max_length=4)]], Field(max_length=MOST_RANGES)
+]
+FIGURES = Annotated[dict[Name, Number | RINGS | None], Field(max_length=MOST_RANGES)]
+HARDWARE_FORMS = dict.fromkeys(HARDWARE, (FIGURES | None, None))
 # By the noun of their tables.
-FORMS = forms_by_noun(ToolkitRequest, "{}Form", asked_field, asked_kind, "{}; lengths in mm.")
+FORMS = forms_by_noun(ToolkitRequest, "{}Form", asked_field, asked_kind, "{}; lengths in mm.", HARDWARE_FORMS)
 NAMED_FORMS = forms_by_noun(
-    NamedToolkitRequest, "Named{}Form", asked_field, asked_kind, "{} to compare, with what to call it."
+    NamedToolkitRequest,
+    "Named{}Form",
+    asked_field,
+    asked_kind,
+    "{} to compare, with what to call it.",
+    HARDWARE_FORMS,
 )
 if TYPE_CHECKING:
     HeldIn = ToolkitRequest

@@ -82,7 +82,7 @@ class SupportsForm(Form):
     thickness: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     band: BandForm | None = None
     pad_radius: Length | None = None
-    pad_margin: Length = 0.0
+    pad_margin: Length | None = None
     tip_radius: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     inside: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
     bottom_zones: Zones = Field(default=[])

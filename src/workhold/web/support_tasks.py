@@ -84,15 +84,14 @@ def request_of(asked: SupportsOrder) -> SupportRequest:
         tip_radius=form.tip_radius,
         toolkit=asked.query.toolkit,
     )
+    own: dict[str, Any] = {"pad_margin": form.pad_margin, "inside": form.inside, "reach": form.reach}
     return evolve(
         usual,
         band=form.band,
-        pad_margin=form.pad_margin,
         bottom_zones=[zone_of(loop) for loop in form.bottom_zones],
         top_zones=[zone_of(loop) for loop in form.top_zones],
-        inside=usual.tip_radius if form.inside is None else form.inside,
-        reach=form.reach,
         point=form.point,
+        **{name: value for name, value in own.items() if value is not None},
     )
 
 

@@ -23,6 +23,7 @@ from workhold.files.result.program_entries import program_text
 from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
+from workhold.fixels.support_hardware import HARDWARE, SupportPads, TopClamp
 from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
@@ -264,7 +265,7 @@ def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
     """The fields of a toolkit as they are written: lengths in mm, holes by name, their number first."""
     values = asdict(toolkit, recurse=False)  # type: ignore[arg-type]
     fields = {name: written(value) for name, value in values.items()}
-    silent = {row.name for row in toolkit.table.fields if row.form in SILENT}
+    silent = {row.name for row in toolkit.table.fields if row.form in SILENT} | set(HARDWARE)
     fields = {name: value for name, value in fields.items() if name not in silent or value is not None}
     return {name: fields.pop(name) for name in ("pitch", "columns", "rows") if name in fields} | fields
 
@@ -275,6 +276,8 @@ def written(value: Any) -> Any:
         return [written(one) for one in value]
     if isinstance(value, Flat):
         return asdict(value)
+    if isinstance(value, (SupportPads, TopClamp)):
+        return {name: written(one) for name, one in asdict(value).items() if one is not None}
     return value.name if isinstance(value, Holes) else value
 
 

@@ -5,7 +5,7 @@ import { ask } from "./api.js";
 import { byId, make, quiet, show } from "./dom.js";
 import { change, on, state } from "./state.js";
 import { makeFields, readField, writeField } from "./toolkit-fields.js";
-import { asKind, fieldsOf, kindOf, kinds, learnKinds, same } from "./toolkits.js";
+import { asKind, fieldsOf, hardwareOf, kindOf, kinds, learnKinds, same } from "./toolkits.js";
 import { fieldLength, readLength, unitWord } from "./units.js";
 
 const TOLERANCES = ["tolerance-peg", "tolerance-face"];
@@ -85,7 +85,7 @@ function typesOf(toolkit) {
 /** Read the fields into the state; what cannot be read is marked and changes nothing. */
 function read() {
   const kind = kindOf(state.toolkit);
-  const toolkit = { kind: kind.name, ...kind.said };
+  const toolkit = { kind: kind.name, ...kind.said, ...hardwareOf(state.toolkit) };
   let bad = "";
   for (const each of fieldsOf(kind, state.toolkit)) {
     const { value, wrong } = readField(each, state.toolkit[each.name]);

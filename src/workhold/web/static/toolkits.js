@@ -9,6 +9,9 @@ import { ask } from "./api.js";
 /** What a toolkit is that does not say. */
 const USUAL = "vise";
 
+/** What a toolkit has for three dimensions, from a file; the page keeps it and has no fields for it. */
+const HARDWARE = ["supports", "top_clamp"];
+
 /** @type {Kind[]} */
 export let kinds = [];
 
@@ -29,6 +32,14 @@ export function kindOf(toolkit) {
 /** Values that are the same to the server. */
 export function same(a, b) {
   return JSON.stringify(a ?? null) === JSON.stringify(b ?? null);
+}
+
+/**
+ * What a toolkit has for three dimensions.
+ * @param {any} toolkit
+ */
+export function hardwareOf(toolkit) {
+  return Object.fromEntries(HARDWARE.filter((name) => toolkit[name]).map((name) => [name, toolkit[name]]));
 }
 
 /**
@@ -58,7 +69,7 @@ export function withFields(toolkit, fields) {
  * @param {any} toolkit
  */
 export function asKind(kind, toolkit) {
-  const kept = kind.fields.map(({ name }) => name).filter((name) => name in toolkit);
+  const kept = [...kind.fields.map(({ name }) => name), ...HARDWARE].filter((name) => name in toolkit);
   return tidy({ kind: kind.name, ...kind.start, ...Object.fromEntries(kept.map((name) => [name, toolkit[name]])), ...kind.said });
 }
 

@@ -1,0 +1,176 @@
+"""Supports and a clamp on top that an owner of a toolkit has: defaults of what is asked in three dimensions.
+
+Every kind of toolkit may have both. Each figure is a row, of which files, requests and the constructors are
+made; one that is not given is None and stays the usual one. Files say nothing of a toolkit without them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from math import isfinite
+from typing import Any, ClassVar
+
+from attrs import field, frozen
+from attrs.converters import optional
+
+from workhold.errors import InputError
+from workhold.fixels.table import FieldTable, ToolkitField
+from workhold.limits import real, refuse_long
+
+__all__ = ["HARDWARE", "SUPPORTS", "TOP_CLAMP", "SupportPads", "TopClamp", "hardware_of"]
+
+# What the tables are called in a toolkit's file, and in all that the program writes.
+SUPPORTS, TOP_CLAMP = "supports", "top_clamp"
+
+Rings = tuple[tuple[float, ...], ...]
+
+
+def length_row(name: str, least: Any, figure: str) -> ToolkitField:
+    """A row of a length that may be left out."""
+    return ToolkitField(name, "length", "LENGTH", figure, (), least=least, figure=figure)
+
+
+def rings(values: Iterable[Iterable[Any]] | None) -> Rings | None:
+    """Rings as tuples of numbers, or None."""
+    return None if values is None else tuple(tuple(real(one) for one in ring) for ring in values)
+
+
+PADS = FieldTable(
+    SUPPORTS,
+    "Supports under the part",
+    (
+        length_row("pad_radius", "0", "radius of the supports' pads"),
+        length_row("pad_margin", "0", "from a pad to the border of the face below"),
+        length_row("height", "above 0", "height of the supports"),
+    ),
+)
+CLAMP = FieldTable(
+    TOP_CLAMP,
+    "A clamp on top",
+    (
+        length_row("tip_radius", "above 0", "radius of the tip of the clamp on top"),
+        length_row("inside", "above 0", "from the clamp on top to the supports' triangle"),
+        ToolkitField("reach", "rings", "X,Y,LEAST,MOST", "where the tip of the clamp on top can stand", ()),
+    ),
+)
+
+
+def refuse_wrong(hardware: SupportPads | TopClamp) -> None:
+    """Refuses lengths that cannot be.
+
+    Raises
+    ------
+    InputError
+        Naming the table, the entry and the remedy.
+    """
+    for row in hardware.table.fields:
+        value, words = getattr(hardware, row.name), f"{hardware.table.noun.replace('_', '-')}: {row.words}"
+        if row.form == "length" and value is not None:
+            if not isfinite(value) or value < 0 or (value == 0 and row.least == "above 0"):
+                least = "0 or more" if row.least == "0" else "a length above 0"
+                raise InputError(f"{words} {value:g} cannot be used: give {least}.")
+            refuse_long(words, value)
+        if row.form == "rings":
+            for ring in value or ():
+                if len(ring) != 4 or not all(map(isfinite, ring)) or not 0 <= ring[2] <= ring[3]:
+                    raise InputError(
+                        f"{words} is no list of rings: give of each x, y, the least and the most distance."
+                    )
+                for one in ring:
+                    refuse_long(words, one)
+
+
+@frozen(kw_only=True)
+class SupportPads:
+    """The supports that there are; lengths in mm, None for the usual one.
+
+    Parameters
+    ----------
+    pad_radius : of the round pads.
+    pad_margin : smallest distance from a pad to the border of the face it supports.
+    height : of the supports above the plates.
+
+    Raises
+    ------
+    InputError
+        For lengths that cannot be.
+
+    Examples
+    --------
+    >>> SupportPads(pad_radius=3).pad_radius
+    3.0
+    """
+
+    table: ClassVar[FieldTable] = PADS
+
+    pad_radius: float | None = field(default=None, converter=optional(real))
+    pad_margin: float | None = field(default=None, converter=optional(real))
+    height: float | None = field(default=None, converter=optional(real))
+
+    def __attrs_post_init__(self) -> None:
+        refuse_wrong(self)
+
+
+@frozen(kw_only=True)
+class TopClamp:
+    """The clamp that presses from above; lengths in mm, None for the usual one.
+
+    Parameters
+    ----------
+    tip_radius : of its round tip.
+    inside : smallest distance from its tip's centre to each side of the supports' triangle.
+    reach : rings (x, y, least, most) in the toolkit's frame in which its tip can stand; anywhere if None.
+
+    Raises
+    ------
+    InputError
+        For lengths and rings that cannot be.
+    """
+
+    table: ClassVar[FieldTable] = CLAMP
+
+    tip_radius: float | None = field(default=None, converter=optional(real))
+    inside: float | None = field(default=None, converter=optional(real))
+    reach: Rings | None = field(default=None, converter=rings)
+
+    def __attrs_post_init__(self) -> None:
+        refuse_wrong(self)
+
+
+# The classes by the names of the toolkits' fields.
+HARDWARE: Mapping[str, type[SupportPads] | type[TopClamp]] = {SUPPORTS: SupportPads, TOP_CLAMP: TopClamp}
+
+
+def hardware_of(name: str, value: Any) -> SupportPads | TopClamp | None:
+    """Supports or the clamp from a mapping of their figures.
+
+    Parameters
+    ----------
+    name : of the toolkit's field.
+
+    Raises
+    ------
+    InputError
+        For anything else, and figures that there are none of.
+
+    Examples
+    --------
+    >>> hardware_of("supports", {"height": 8}).height
+    8.0
+    """
+    kind = HARDWARE[name]
+    if value is None or isinstance(value, kind):
+        return value
+    known = [row.name for row in kind.table.fields]
+    words = f"{name.replace('_', '-')}: "
+    if not isinstance(value, Mapping):
+        raise InputError(f"{words}{value!r} is no table: give some of {', '.join(known)}.")
+    for one in value:
+        if one not in known:
+            raise InputError(f"{words}there is no {str(one)[:40]!r}: give some of {', '.join(known)}.")
+    for row in kind.table.fields:
+        given = value.get(row.name)
+        if given is not None and isinstance(given, list | tuple) != (row.form == "rings"):
+            wanted = "a list of rings [x, y, least, most]" if row.form == "rings" else "one number"
+            raise InputError(f"{words}{row.words} is not what it should be: give {wanted}.")
+    return kind(**value)

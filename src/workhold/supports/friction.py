@@ -1,0 +1,155 @@
+"""What friction could add on supports: the least clamp force for which any friction forces balance the loads.
+
+Every contact presses within its cone of friction: pegs on their faces, supports from below, the clamp from
+above. Of the heights at which pegs may press, the ends of their bands are looked at, and the worst counts.
+What moves pushes with the jaw force as before. The least clamp force that balances a load is a linear program
+in the forces along the edges of pyramids inside the cones. Six of its equations are of balance, one is of the
+jaw. It is convex in the load. So the ends of ranges, and corners around a range of directions, are the worst
+there can be.
+
+It is optimistic: with friction statics does not determine the forces, and this is what the best of them would
+need. It ranks nothing.
+
+Reference: J. Kerr and B. Roth, "Analysis of multifingered hands", International Journal of Robotics Research
+4, 1986, for pyramids inside the cones and linear programs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+from math import ceil, cos, isfinite, pi, radians, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.errors import InputError
+from workhold.limits import MOST_FRICTION, real
+from workhold.model.support_request import SpatialLoad
+from workhold.model.support_triples import Supports, Triple
+from workhold.statics.contact_matrix import Touched
+from workhold.statics.loads import contacts_on_part
+from workhold.statics.simplex import least_costs
+
+__all__ = ["balance", "clamp_with_friction", "load_wrenches"]
+
+Array = NDArray[np.float64]
+# Edges of each pyramid; and the widest step in degrees between corners around a range of directions, which
+# makes the force at most 0.5 % larger than it is.
+EDGES, WIDEST_STEP = 8, 11.25
+
+
+def clamp_with_friction(supports: Supports, triple: Triple, friction: float) -> float:
+    """The least clamp force in N for which friction could balance every load; at most that without friction.
+
+    Parameters
+    ----------
+    triple : of these supports, with the clamp where :attr:`Triple.clamp` has it.
+    friction : Coulomb's coefficient of all contacts.
+
+    Raises
+    ------
+    InputError
+        For a coefficient that is none, and without loads.
+    """
+    coefficient = real(friction)
+    if not (isfinite(coefficient) and 0 <= coefficient <= MOST_FRICTION):
+        raise InputError(
+            f"friction {coefficient:g} cannot be used: give a coefficient from 0 to {MOST_FRICTION:g}, such "
+            "as 0.15."
+        )
+    if not supports.loads:
+        raise InputError("what friction adds is asked of loads, of which there are none: give a load too.")
+    wrenches = np.array([one for load in supports.loads for one in load_wrenches(load, supports)])
+    bands = supports.request.peg_bands(len(supports.fixture.pegs)).tolist()
+    worst = 0.0
+    for heights in product(*(sorted(set(band)) for band in bands)):
+        matrix, costs, length = balance(supports, triple, coefficient, heights)
+        sides = np.column_stack([-wrenches, np.full(len(wrenches), supports.jaw_force)])
+        sides[:, 3:6] /= length
+        worst = max(worst, float(least_costs(matrix, costs, sides).max()))
+    return min(worst, triple.clamp.clamp_needed)
+
+
+def balance(
+    supports: Supports, triple: Triple, friction: float, heights: Sequence[float]
+) -> tuple[Array, Array, float]:
+    """What the forces along the edges of pyramids do.
+
+    Parameters
+    ----------
+    heights : at which each peg presses, in mm.
+
+    Returns
+    -------
+    matrix : (7, V) of each unit force the parts in x, y and z, the moments over a length, and the push
+        against what moves.
+    costs : (V,) what each adds to the force of the clamp.
+    length : by which moments about the centre of the part are divided, in mm.
+    """
+    query, fixture = supports.query, supports.fixture
+    touched = Touched.of(query.workpiece, query.toolkit)
+    matrices = touched.of_fixture(fixture, query.toolkit)
+    points, normals, moving, against = contacts_on_part(
+        fixture, query.workpiece, query.toolkit, touched, matrices
+    )
+    against = np.broadcast_to(against, normals.shape)
+    columns, costs = [], []
+
+    def add(point: Array, push: Array, back: Array, cost: float) -> None:
+        """Adds the edges of a pyramid about a unit push, with the direction against what moves."""
+        for edge in pyramid(push, friction):
+            moment = np.cross(point, edge) / touched.length
+            columns.append([*edge, *moment, -(edge[:2] @ back)])
+            costs.append(cost)
+
+    still = np.zeros(2)
+    for peg, height in enumerate(heights):
+        push = np.array([*-normals[peg], 0.0])
+        add(np.array([*points[peg], height]), push, against[peg] * moving[peg], 0.0)
+    for pad in triple.supports:
+        at = np.array([pad.x, pad.y]) - touched.center
+        add(np.array([*at, 0.0]), np.array([0.0, 0.0, 1.0]), still, 0.0)
+    high = supports.request.clamped_height(triple.clamp.at)
+    at = np.array(triple.clamp.at) - touched.center
+    add(np.array([*at, high]), np.array([0.0, 0.0, -1.0]), still, 1.0)
+    return np.array(columns).T, np.array(costs), touched.length
+
+
+def pyramid(push: Array, friction: float) -> Iterator[Array]:
+    """Yields the edges of a pyramid inside the cone about a unit push, each with 1 along it."""
+    one = np.array([-push[1], push[0], 0.0]) if push[2] == 0.0 else np.array([1.0, 0.0, 0.0])
+    other = np.cross(push, one)
+    if friction == 0.0:
+        yield push
+        return
+    for k in range(EDGES):
+        turn = 2 * pi * k / EDGES
+        yield push + friction * (cos(turn) * one + sin(turn) * other)
+
+
+def load_wrenches(load: SpatialLoad, supports: Supports) -> Iterator[list[float]]:
+    """Yields forces and moments about the centre of the part that have a load between them, in N and N mm."""
+    center = Touched.of(supports.query.workpiece, supports.query.toolkit).center
+    assert load.heights is not None
+    ways = list(around(load.directions)) if load.force else [(0.0, 0.0)]
+    for point in load.points or (tuple(center.tolist()),):
+        for height, axial, way in product(sorted(set(load.heights)), sorted(set(load.axial)), ways):
+            force = np.array([load.force * way[0], load.force * way[1], -axial])
+            moment = np.cross([point[0] - center[0], point[1] - center[1], height], force)
+            moment += [*load.tilt, load.moment]
+            yield [*force, *moment]
+
+
+def around(directions: tuple[float, float]) -> Iterator[tuple[float, float]]:
+    """Yields corners of a polygon around the unit vectors of a range of directions in degrees."""
+    low, wide = radians(directions[0]), radians(min(directions[1] - directions[0], 360.0))
+    steps = max(ceil(wide / radians(WIDEST_STEP)), 1)
+    half = wide / steps / 2
+    if wide < 2 * pi:
+        yield cos(low), sin(low)
+        yield cos(low + wide), sin(low + wide)
+    if wide > 0.0:
+        for k in range(steps):
+            turn = low + (2 * k + 1) * half
+            yield cos(turn) / cos(half), sin(turn) / cos(half)
