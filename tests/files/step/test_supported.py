@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+from math import pi
 from pathlib import Path
+from typing import Any
 
 import pytest
 from attrs import evolve
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
 
 from files.step_shapes import box, fused
 from workhold import Result, Vise, design, load
 from workhold.errors import InputError
+from workhold.files.step.solids import Solid, read_solids
+from workhold.files.step.writer import supports_step
 from workhold.files.supports.reader import read_supports
 from workhold.files.supports.writer import write_supports
 from workhold.model.recounted import ChosenSupports
@@ -26,10 +34,36 @@ def result() -> Result:
     return design(load(stepped, name="stepped", peg_height=12), VISE, best=4)
 
 
-def on_face(result: Result, at: tuple[float, float]) -> ChosenSupports:
+def on_face(result: Result, at: tuple[float, float], tip_radius: float = 5.0) -> ChosenSupports:
     """The best supports with the clamp at a point of the part."""
-    found = next(one for one in result.supports(best=4, point=at, inside=1) if one.triples)
+    asked = result.supports(best=4, point=at, inside=1, tip_radius=tip_radius)
+    found = next(one for one in asked if one.triples)
     return ChosenSupports.of(evolve(found, triples=tuple(t for t in found.triples if t.given is not None)))
+
+
+def volume(shape: Any) -> float:
+    """The volume of a shape in mm³."""
+    found = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, found)
+    return float(found.Mass())
+
+
+def assert_apart(solids: list[Solid]) -> None:
+    """No two solids of a file have a volume in common, by Open CASCADE."""
+    for one, other in combinations(solids, 2):
+        if all(one.low[k] < other.high[k] and other.low[k] < one.high[k] for k in range(3)):
+            common = volume(BRepAlgoAPI_Common(one.shape, other.shape).Shape())
+            assert abs(common) < 1e-6, (one, other, common)
+
+
+@pytest.mark.parametrize(
+    ("at", "tip", "room"), [((60, 30), 5, 25 * pi), ((20, 30), 5, 0), ((60, 30), 30, 90 * 60)]
+)
+def test_no_body_is_inside_another(result: Result, at: tuple[float, float], tip: float, room: float) -> None:
+    """Above a lower face the part has room for the clamp: a well, or all where the tip reaches to its border."""
+    solids = read_solids(supports_step(on_face(result, at, tip)))
+    assert_apart(solids)
+    assert solids[0].volume == pytest.approx(90 * 60 * HIGH - room * (HIGH - LOW))
 
 
 @pytest.mark.parametrize(("at", "height"), [((60, 30), LOW), ((20, 30), HIGH)])
