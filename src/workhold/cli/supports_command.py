@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 import typer
 from attrs import asdict, evolve
 
+from workhold.cli.body_options import asked_models, write_bodies
 from workhold.cli.commands import option, print_remark
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
@@ -19,7 +19,6 @@ from workhold.cli.spatial_loads import spatial_load
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import length, length_unit, optional_count, optional_force, optional_length
 from workhold.errors import InputError
-from workhold.files.atomic import write_bytes
 
 if TYPE_CHECKING:
     from workhold.model.result import Result
@@ -100,14 +99,10 @@ def supports(
     shown = length_unit(unit)
     count = optional_count("--triples", triples)
     closing = optional_force("--jaw-force", jaw_force)
-    for path, endings in ((out, None), (glb, (".glb",)), (step, (".step", ".stp"))):
-        if path is not None:
-            refuse_output(path, (result_file,), force)
-            if endings is not None and Path(path).suffix.lower() not in endings:
-                raise InputError(f"{path} is not the name of such a file: let it end in {endings[0]}.")
+    if out is not None:
+        refuse_output(out, (result_file,), force)
+    models = asked_models(glb, step, (result_file,), force, support_height=support_height)
     raised = optional_length("--support-height", support_height, shown)
-    if raised is not None and glb is None and step is None:
-        raise InputError("--support-height is of a file in three dimensions: give --glb or --step too.")
     result = result_with(result_file, rank)
     from workhold.model.support_request import SupportRequest
     from workhold.supports.listing import supports_of
@@ -151,33 +146,16 @@ def supports(
         from workhold.files.supports.writer import write_supports
 
         write_supports(found, out)
-    if glb is not None or step is not None:
-        write_standing(found, glb, step, raised)
+    if models:
+        from workhold.model.recounted import ChosenSupports
+        from workhold.presenting.assembly import Assembly
+
+        best = ChosenSupports.of(found)
+        assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best)
+        write_bodies(assembly, models, shown)
     report(found, count, result, rank, written, shown, json_)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
-
-
-def write_standing(found: Supports, glb: str | None, step: str | None, raised: float | None) -> None:
-    """Writes the fixture on its best set of three supports as a GLB file and as a STEP assembly.
-
-    Raises
-    ------
-    InputError
-        When there is no set.
-    """
-    from workhold.model.recounted import ChosenSupports
-    from workhold.model.support_bodies import supported_sizes
-
-    first, sizes = ChosenSupports.of(found), supported_sizes(found, support_height=raised)
-    if glb is not None:
-        from workhold.files.glb.writer import supports_glb
-
-        write_bytes(glb, supports_glb(first, sizes))
-    if step is not None:
-        from workhold.files.step.writer import supports_step
-
-        write_bytes(step, supports_step(first, sizes))
 
 
 def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
