@@ -158,6 +158,10 @@ def test_show_and_sheet_write_the_best_supports_of_the_usual_sizes(
     assert b"clamp on top" not in step.read_bytes()
     refused = run("show", result_file, "1", "--step", tmp_path / "c.step", "--supports")
     assert refused.exit_code == 2 and "give --thickness" in refused.stderr
+    refused = run("show", result_file, "1", "--part", "a.step")
+    assert refused.exit_code == 2 and "--part is of a file in three dimensions" in refused.stderr
+    refused = run("show", result_file, "1", "--glb", tmp_path / "d.glb", "--part", step)
+    assert refused.exit_code == 2 and "was not read from a solid" in " ".join(refused.stderr.split())
     refused = run("show", result_file, "1", "--supports")
     assert refused.exit_code == 2 and "--supports is of a file in three dimensions" in refused.stderr
 

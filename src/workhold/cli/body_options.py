@@ -14,9 +14,20 @@ from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
+    from workhold.model.requirements import Load
+    from workhold.model.result import Result
     from workhold.presenting.assembly import Assembly
 
-__all__ = ["BODY_THICKNESS", "GLB", "STEP", "SupportedOption", "asked_models", "write_bodies"]
+__all__ = [
+    "BODY_THICKNESS",
+    "GLB",
+    "PART_FILE",
+    "STEP",
+    "SupportedOption",
+    "asked_models",
+    "write_bodies",
+    "write_fixture",
+]
 
 GLB = option(None, "FILE", "Write it in three dimensions into this file, whose name ends in .glb.")
 STEP = option(None, "FILE", "The same as a STEP assembly, for CAD and CAM; its name ends in .step.")
@@ -24,6 +35,13 @@ BODY_THICKNESS = option(
     None,
     "LENGTH",
     "Height of the part in the GLB and STEP; that of its solid, or 10 mm, if not given.",
+)
+PART_FILE = option(
+    None,
+    "FILE",
+    "The STEP file that the result was designed from, so that the GLB and STEP show the part's own shape, "
+    "not a prism.",
+    "--part",
 )
 SupportedOption = Annotated[
     bool,
@@ -67,6 +85,31 @@ def asked_models(
     return paths
 
 
+def write_fixture(
+    result: Result,
+    rank: int,
+    paths: Sequence[Path],
+    wishes: tuple[float | None, Sequence[Load] | None, float | None],
+    part: str | None,
+    *,
+    supported: bool,
+    unit: Unit,
+) -> None:
+    """Writes the fixture of a rank as GLB and STEP files, on the best supports of the usual sizes if wanted.
+
+    Parameters
+    ----------
+    wishes : thickness of the part in mm, loads on it and jaw force in N; None where nobody says.
+    part : the STEP file of its own shape.
+    """
+    from workhold.cli.sheet_supports import chosen_supports
+    from workhold.presenting.assembly import Assembly, shape_in
+
+    shape = shape_in(part, result.workpiece)
+    chosen = chosen_supports(result, rank, *wishes) if supported else None
+    write_bodies(Assembly.of(result[rank - 1], result, {"thickness": wishes[0]}, chosen, shape), paths, unit)
+
+
 def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
     """Writes a set-up as GLB and STEP files, and says what the part was taken to be."""
     for path in paths:
@@ -79,4 +122,7 @@ def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
             f"in {files} the part is {unit.text(sizes.thickness)} high, as nobody said; give --thickness."
         )
     if assembly.is_simplified:
-        print_remark(f"in {files} the part is a prism of its outline, not the shape of its solid.")
+        print_remark(
+            f"in {files} the part is drawn as a prism of its outline; for its own shape give --part with the "
+            "STEP file that it was read from."
+        )

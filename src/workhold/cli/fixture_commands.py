@@ -10,7 +10,15 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
-from workhold.cli.body_options import BODY_THICKNESS, GLB, STEP, SupportedOption, asked_models, write_bodies
+from workhold.cli.body_options import (
+    BODY_THICKNESS,
+    GLB,
+    PART_FILE,
+    STEP,
+    SupportedOption,
+    asked_models,
+    write_fixture,
+)
 from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
@@ -304,6 +312,7 @@ def show(
     step: str | None = STEP,
     supports: SupportedOption = False,
     thickness: str | None = BODY_THICKNESS,
+    part: str | None = PART_FILE,
     force: ForceOption = False,
     load: list[str] | None = LOAD,
     loads: str | None = LOADS_FILE,
@@ -328,9 +337,10 @@ def show(
     coefficient = positive_number("--friction", friction)
     asked = asked_loads(load, loads, shown_unit)
     picture = asked_picture(draw, (result_file, loads), force)
-    models = asked_models(glb, step, (result_file, loads), force, thickness=thickness, supports=supports)
+    models = asked_models(
+        glb, step, (result_file, loads, part), force, thickness=thickness, supports=supports, part=part
+    )
     height = optional_positive_length("--thickness", thickness, shown_unit)
-
     stiffness = jaw_stiffness(jaw)
     result = result_with(result_file, rank)
     fixture = result[rank - 1]
@@ -351,13 +361,8 @@ def show(
         svg = draw_fixture(*held, title=f"Fixture {rank}", unit=shown_unit, path=path)
         write_picture(picture, svg)
     if models:
-        from workhold.cli.sheet_supports import chosen_supports
-        from workhold.presenting.assembly import Assembly
-
-        asked_for = (result, rank, height, asked or None, closing_force)
-        chosen = chosen_supports(*asked_for) if supports else None
-        assembly = Assembly.of(fixture, result, {"thickness": height}, chosen)
-        write_bodies(assembly, models, shown_unit)
+        wishes = (height, asked or None, closing_force)
+        write_fixture(result, rank, models, wishes, part, supported=supports, unit=shown_unit)
     written = [*([] if picture is None else [picture]), *models]
     if json_:
         from workhold.presenting.data import fixture_data, load_case_data

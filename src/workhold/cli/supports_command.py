@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TextIO
 import typer
 from attrs import asdict, evolve
 
-from workhold.cli.body_options import asked_models, write_bodies
+from workhold.cli.body_options import PART_FILE, asked_models, write_bodies
 from workhold.cli.commands import option, print_remark
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
@@ -84,6 +84,7 @@ def supports(
     support_height: str | None = option(
         SUPPORTS, "LENGTH", "How far supports stand out of the plates, in --glb and --step; 6mm if not given."
     ),
+    part: str | None = PART_FILE,
     force: ForceOption = False,
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
@@ -101,7 +102,7 @@ def supports(
     closing = optional_force("--jaw-force", jaw_force)
     if out is not None:
         refuse_output(out, (result_file,), force)
-    models = asked_models(glb, step, (result_file,), force, support_height=support_height)
+    models = asked_models(glb, step, (result_file, part), force, support_height=support_height, part=part)
     raised = optional_length("--support-height", support_height, shown)
     result = result_with(result_file, rank)
     from workhold.model.support_request import SupportRequest
@@ -148,10 +149,10 @@ def supports(
         write_supports(found, out)
     if models:
         from workhold.model.recounted import ChosenSupports
-        from workhold.presenting.assembly import Assembly
+        from workhold.presenting.assembly import Assembly, shape_in
 
-        best = ChosenSupports.of(found)
-        assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best)
+        best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
+        assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
         write_bodies(assembly, models, shown)
     report(found, count, result, rank, written, shown, json_)
     if found.stopped:

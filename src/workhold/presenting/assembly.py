@@ -13,18 +13,22 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
+from workhold.files.glb.meshes import surface_mesh
 from workhold.files.glb.writer import bodies_glb
+from workhold.files.part.finding import read_bytes
 from workhold.model.bodies import BodySizes, FixtureBody, fixture_bodies
 from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.support_bodies import bodies_with_supports, supported_sizes
 
 if TYPE_CHECKING:
+    from workhold.files.step.part_shape import PartShape
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.model.support_triples import Supports
+    from workhold.model.workpiece import Workpiece
 
-__all__ = ["GLB_ENDINGS", "STEP_ENDINGS", "Assembly", "save_glb"]
+__all__ = ["GLB_ENDINGS", "STEP_ENDINGS", "Assembly", "save_glb", "shape_in"]
 
 GLB_ENDINGS, STEP_ENDINGS = (".glb",), (".step", ".stp")
 
@@ -39,12 +43,14 @@ class Assembly:
     result : which has its part and toolkit.
     sizes : heights.
     bodies : the part first.
+    shape : of the part, as its own file has it; None where the prism of its body stands for it.
     """
 
     fixture: Fixture
     result: Result
     sizes: BodySizes
     bodies: tuple[FixtureBody, ...]
+    shape: PartShape | None = None
 
     @classmethod
     def of(
@@ -53,6 +59,7 @@ class Assembly:
         result: Result,
         lengths: Mapping[str, Any],
         chosen: ChosenSupports | None = None,
+        shape: PartShape | None = None,
     ) -> Assembly:
         """Makes the bodies of a fixture; on a set of supports where one is chosen, counted as its holes are.
 
@@ -69,17 +76,21 @@ class Assembly:
         if chosen is None:
             sizes = BodySizes.of(result.workpiece, **lengths)
             bodies = fixture_bodies(fixture, result.workpiece, result.toolkit, sizes)
-            return cls(fixture, result, sizes, bodies)
+            return cls(fixture, result, sizes, bodies, shape)
         sizes = supported_sizes(chosen.supports, **lengths)
-        return cls(chosen.recounted.fixture, result, sizes, bodies_with_supports(chosen, sizes))
+        return cls(chosen.recounted.fixture, result, sizes, bodies_with_supports(chosen, sizes), shape)
 
     @property
     def is_simplified(self) -> bool:
         """Whether the part's solid is another shape than the prism that stands for it, as far as is known."""
         solid = self.result.workpiece.solid
-        return solid is not None and not (
-            all(band == (0.0, solid.height) for band in solid.bands)
-            and all(height == solid.height for height in solid.top_heights)
+        return (
+            solid is not None
+            and self.shape is None
+            and not (
+                all(band == (0.0, solid.height) for band in solid.bands)
+                and all(height == solid.height for height in solid.top_heights)
+            )
         )
 
     def content(self, ending: str, zero: PartZero | None = None) -> bytes:
@@ -94,12 +105,15 @@ class Assembly:
         InputError
             For a STEP file when the extra ``step`` is not installed.
         """
+        shape, pose = self.shape, self.fixture.pose
         if ending in GLB_ENDINGS:
-            return bodies_glb(self.bodies, f"{self.bodies[0].name} set-up")
+            mesh = None if shape is None else surface_mesh(*shape.surface(pose))
+            return bodies_glb(self.bodies, f"{self.bodies[0].name} set-up", mesh)
         from workhold.files.step.writer import bodies_step
 
         point = (zero or part_zero(self.result.workpiece)).point
-        return bodies_step(self.bodies, self.result.toolkit, point, self.fixture.pose)
+        solid = None if shape is None else shape.solid(pose)
+        return bodies_step(self.bodies, self.result.toolkit, point, pose, solid)
 
     def write(self, path: str | Path) -> None:
         """Writes a file of the kind that its ending names.
@@ -115,6 +129,24 @@ class Assembly:
         write_bytes(path, self.content(ending))
 
 
+def shape_in(path: str | Path | None, workpiece: Workpiece) -> PartShape | None:
+    """The shape of a part in the STEP file that it was read from; None without a file.
+
+    Raises
+    ------
+    InputError
+        Naming the file, where it cannot be read, or is of another part.
+    """
+    if path is None:
+        return None
+    from workhold.files.step.part_shape import part_shape
+
+    try:
+        return part_shape(read_bytes(Path(path)), workpiece)
+    except InputError as error:
+        raise InputError(f"{Path(path).name}: {error}") from error
+
+
 def save_glb(
     fixture: Fixture,
     path: str | Path,
@@ -122,8 +154,11 @@ def save_glb(
     thickness: float | None = None,
     supports: Supports | None = None,
     best: int = 1,
+    part: str | Path | None = None,
 ) -> None:
     """Writes a GLB file, see :meth:`workhold.Fixture.save_glb`."""
     chosen = None if supports is None else ChosenSupports.of(supports, best)
-    assembly = Assembly.of(fixture, fixture.listing.result, {"thickness": thickness}, chosen)
+    result = fixture.listing.result
+    shape = shape_in(part, result.workpiece)
+    assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen, shape)
     write_bytes(path, assembly.content(GLB_ENDINGS[0]))

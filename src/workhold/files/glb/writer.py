@@ -47,14 +47,20 @@ def fixture_glb(
     return bodies_glb(bodies, f"{bodies[0].name} set-up")
 
 
-def bodies_glb(bodies: Sequence[FixtureBody], name: str) -> bytes:
-    """The GLB file of bodies below one node of a name."""
+def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = None) -> bytes:
+    """The GLB file of bodies below one node of a name.
+
+    Parameters
+    ----------
+    part : the mesh of the part's own shape; of its prism if None.
+    """
     kinds = [kind for kind in BodyKind if any(body.kind is kind for body in bodies)]
     scene = GlbBuffer()
     nodes: list[dict[str, Any]] = [{"name": name, "children": [k + 1 for k in range(len(bodies))]}]
     meshes = []
     for number, body in enumerate(bodies):
-        meshes.append({"name": body.name, "primitives": [scene.add(body_mesh(body), kinds.index(body.kind))]})
+        mesh = body_mesh(body) if part is None or body.kind is not BodyKind.PART else part
+        meshes.append({"name": body.name, "primitives": [scene.add(mesh, kinds.index(body.kind))]})
         extras: dict[str, Any] = {"kind": str(body.kind)}
         if body.opens is not None:
             extras["opens"] = [body.opens[0], 0.0, 0.0 - body.opens[1]]

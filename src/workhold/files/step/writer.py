@@ -106,15 +106,25 @@ def setup_step(
     return bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
 
 
-def bodies_step(bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose) -> bytes:
+def bodies_step(
+    bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose, part: Any = None
+) -> bytes:
     """The bytes of the assembly of a set-up's bodies, with the axes at part zero.
+
+    Parameters
+    ----------
+    part : the part's own solid in its pose; the prism of its body if None.
 
     Raises
     ------
     InputError
         When the extra ``step`` is not installed.
     """
-    named = named_solids(bodies)
+    if part is None:
+        named = named_solids(bodies)
+    else:
+        others = named_solids([body for body in bodies if body.kind is not BodyKind.PART])
+        named = [(bodies[0].name, part, COLOURS[BodyKind.PART]), *others]
     pitch = min(min(carrier.pitch) for carrier in toolkit.plates)
     axes = axes_at(zero, pose, pitch)
     return assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])
