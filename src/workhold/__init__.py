@@ -115,7 +115,7 @@ DELEGATES = {
     "read_program": "workhold.files.program.reader",
     "result_picture": "workhold.presenting.papers",
     "result_supports": "workhold.supports.asking",
-    "save_glb": "workhold.files.glb.writer",
+    "save_glb": "workhold.presenting.assembly",
     "save_sheet": "workhold.presenting.papers",
     "to_arrow": "workhold.presenting.data",
     "to_build123d": "workhold.presenting.cad",

@@ -64,7 +64,7 @@ def test_show_writes_bodies(run: Any, result_file: Path, tmp_path: Path) -> None
     ("arguments", "message"),
     [
         (("r.json", "1", "--glb", "a.gltf"), "let the name end in .glb"),
-        (("r.json", "1", "--thickness", "5"), "give --glb too"),
+        (("r.json", "1", "--thickness", "5"), "give --glb or --step too"),
         (("r.json", "0"), "there is no fixture 0: fixtures are counted from 1"),
         (("r.json", "7"), "lists 6 fixtures: there is no fixture 7"),
         (("r.json", "best"), "fixture 'best' is not a whole number"),

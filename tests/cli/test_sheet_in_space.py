@@ -152,7 +152,7 @@ def test_sheet_of_a_set_of_supports(run: Run, folder: Path) -> None:
     ("words", "sentence"),
     [
         (("r.json", "-o", "a.pdf", "--supports"), "how thick the part is, is not known: give --thickness."),
-        (("op10.json", "-o", "a.dxf", "--supports"), "supports are of a sheet on paper, not of a.dxf"),
+        (("op10.json", "-o", "a.dxf", "--supports"), "a.dxf has no supports"),
         (("op10.json", "-o", "a.csv", "--first-setup", "op20.json"), "--first-setup is of a sheet on paper"),
         (("op10.json", "-o", "a.pdf", "--support-height", "8"), "--support-height is of supports"),
         (("r.json", "-o", "a.pdf", "--first-setup", "op10.json"), "plate has no faces of a solid"),

@@ -64,7 +64,7 @@ def test_best_sets_and_a_file_that_verify_accepts(result_file: Path, tmp_path: P
         (("--thickness", "12", "--load", "at=1,1 axial=a..b"), "give a number, or a range LOW..HIGH"),
         (("--thickness", "12", "--load", "at=1,1 axial=5 jump=3"), "unknown key 'jump'"),
         (("--thickness", "12", "--reach", "1,2,3"), "give 4 lengths"),
-        (("--thickness", "12", "--glb", "a.step"), "let it end in .glb"),
+        (("--thickness", "12", "--glb", "a.step"), "let the name end in .glb"),
         (("--thickness", "12", "--support-height", "5"), "give --glb or --step too"),
     ],
 )
@@ -139,6 +139,31 @@ def test_files_in_three_dimensions(result_file: Path, tmp_path: Path, run: Run) 
     names = next(line.split()[1:4] for line in shown.stdout.splitlines() if line.strip().startswith("1 "))
     content = path.read_bytes()
     assert all(f"support {name}".encode() in content for name in names) and b"clamp on top" in content
+
+
+def test_show_and_sheet_write_the_best_supports_of_the_usual_sizes(
+    result_file: Path, tmp_path: Path, run: Run
+) -> None:
+    """GLB and STEP of ``show --supports``, and the .step of ``sheet --supports``, have the same bodies."""
+    pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+    glb, step, sheet = (tmp_path / name for name in ("a.glb", "a.step", "b.step"))
+    words = ("--supports", "--thickness", "20")
+    shown = run("show", result_file, "1", "--glb", glb, "--step", step, *words)
+    assert shown.exit_code == 0, shown.stderr
+    assert f"Drawn in {glb}." in shown.stdout and f"Drawn in {step}." in shown.stdout
+    assert run("sheet", result_file, "1", "--out", sheet, *words).exit_code == 0
+    assert step.read_bytes() == sheet.read_bytes()
+    assert glb.read_bytes().count(b"support ") == 2 * 3 and b"clamp on top" in step.read_bytes()
+    run("show", result_file, "1", "--step", step, "--thickness", "20", "--force")
+    assert b"clamp on top" not in step.read_bytes()
+    refused = run("show", result_file, "1", "--step", tmp_path / "c.step", "--supports")
+    assert refused.exit_code == 2 and "give --thickness" in refused.stderr
+    refused = run("show", result_file, "1", "--part", "a.step")
+    assert refused.exit_code == 2 and "--part is of a file in three dimensions" in refused.stderr
+    refused = run("show", result_file, "1", "--glb", tmp_path / "d.glb", "--part", step)
+    assert refused.exit_code == 2 and "was not read from a solid" in " ".join(refused.stderr.split())
+    refused = run("show", result_file, "1", "--supports")
+    assert refused.exit_code == 2 and "--supports is of a file in three dimensions" in refused.stderr
 
 
 def test_supports_of_a_result_in_python() -> None:

@@ -12,9 +12,9 @@ from workhold import Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
-from workhold.model.bodies import SUPPORT_HEIGHT, BodyKind, BodySizes, FixtureBody
+from workhold.model.bodies import SUPPORT_HEIGHT, BodyKind, BodySizes, FixtureBody, part_slabs
 from workhold.model.recounted import ChosenSupports, Recounted, recounted
-from workhold.model.support_bodies import bodies_with_supports, supported_sizes
+from workhold.model.support_bodies import bodies_with_supports, supported_sizes, with_room
 from workhold.model.support_triples import Supports, Triple
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
@@ -107,6 +107,32 @@ def test_heights_and_radii_of_the_bodies() -> None:
     at = pytest.approx(fixture.pose.apply(*triple.clamp.at))
     tip, spindle, knob = circles(clamp)
     assert tip[:3] == (at, 4.0, 15) and tip[3] == spindle[2] and spindle[3] == knob[2]
+
+
+@pytest.mark.parametrize(
+    ("center", "holes"),
+    [
+        ((20, 20), [1, 2]),
+        ((20, 4.9), [1]),
+        ((70, 30), [1]),
+        ((70, 22), [1]),
+        ((120, 20), None),
+        ((70, 30.5), [1]),
+    ],
+)
+def test_room_for_the_clamp_is_a_well_or_all_above(
+    center: tuple[float, float], holes: list[int] | None
+) -> None:
+    """A circle of 5 mm inside leaves a well; on the border or in a small hole nothing stays above; outside all does."""
+    (slab,) = part_slabs(Workpiece.from_loops("holed", [*PLATE.loops, [[74, 30, -1], [66, 30, -1]]]), 30.0)
+    pieces = list(with_room(slab, center, 5.0, 12.0))
+    if holes is None:
+        assert pieces == [slab]
+        return
+    assert [len(piece.holes) for piece in pieces] == holes
+    assert [piece.low for piece in pieces] == [0.0, 12.0][: len(holes)]
+    assert pieces[-1].high == (30.0 if len(holes) == 2 else 12.0)
+    assert list(with_room(slab, center, 5.0, 30.0)) == [slab]
 
 
 def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path) -> None:

@@ -10,7 +10,15 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
-from workhold.cli.body_options import GLB, GLB_THICKNESS, asked_model, write_bodies
+from workhold.cli.body_options import (
+    BODY_THICKNESS,
+    GLB,
+    PART_FILE,
+    STEP,
+    SupportedOption,
+    asked_models,
+    write_fixture,
+)
 from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
@@ -301,7 +309,10 @@ def show(
     number: RankArgument,
     draw: str | None = option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
     glb: str | None = GLB,
-    thickness: str | None = GLB_THICKNESS,
+    step: str | None = STEP,
+    supports: SupportedOption = False,
+    thickness: str | None = BODY_THICKNESS,
+    part: str | None = PART_FILE,
     force: ForceOption = False,
     load: list[str] | None = LOAD,
     loads: str | None = LOADS_FILE,
@@ -326,9 +337,10 @@ def show(
     coefficient = positive_number("--friction", friction)
     asked = asked_loads(load, loads, shown_unit)
     picture = asked_picture(draw, (result_file, loads), force)
-    model = asked_model(glb, thickness, (result_file, loads), force)
+    models = asked_models(
+        glb, step, (result_file, loads, part), force, thickness=thickness, supports=supports, part=part
+    )
     height = optional_positive_length("--thickness", thickness, shown_unit)
-
     stiffness = jaw_stiffness(jaw)
     result = result_with(result_file, rank)
     fixture = result[rank - 1]
@@ -348,8 +360,10 @@ def show(
         held = (fixture, result.workpiece, result.toolkit)
         svg = draw_fixture(*held, title=f"Fixture {rank}", unit=shown_unit, path=path)
         write_picture(picture, svg)
-    if model is not None:
-        write_bodies(result, rank, model, height, shown_unit)
+    if models:
+        wishes = (height, asked or None, closing_force)
+        write_fixture(result, rank, models, wishes, part, supported=supports, unit=shown_unit)
+    written = [*([] if picture is None else [picture]), *models]
     if json_:
         from workhold.presenting.data import fixture_data, load_case_data
 
@@ -359,10 +373,10 @@ def show(
             listed=len(result),
             complete=bool(result.complete),
             loads=[load_case_data(case) for case in cases],
-            written=[str(path) for path in (picture, model) if path is not None],
+            written=[str(path) for path in written],
         )
     else:
-        print_tables(*(f"Drawn in {path}." for path in (picture, model) if path is not None))
+        print_tables(*(f"Drawn in {path}." for path in written))
 
 
 def print_fixture(

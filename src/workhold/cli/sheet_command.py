@@ -129,6 +129,7 @@ def sheet(
 
     Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
+    from workhold.presenting.assembly import STEP_ENDINGS
     from workhold.presenting.papers import MODEL_ENDINGS, PAPER_ENDINGS, write_model, write_paper
 
     rank = asked_rank(number)
@@ -168,7 +169,9 @@ def sheet(
         "support_height": optional_positive_length("--support-height", support_height, shown_unit),
         "plate_thickness": optional_positive_length("--plate-thickness", plate_thickness, shown_unit),
     }
-    refuse_in_space(ending in MODEL_ENDINGS, path, supports or on_supports, support_height, first_setup)
+    for_cam = ending in MODEL_ENDINGS
+    shows_supports = not for_cam or ending in STEP_ENDINGS
+    refuse_in_space(for_cam, shows_supports, path, supports or on_supports, support_height, first_setup)
     refuse_output(path, (result_file, loads, first_setup), force)
     if on_supports:
         chosen = chosen_of_file(result_file, rank, settings, given)
@@ -188,8 +191,8 @@ def sheet(
         from workhold.cli.warming import compile_seating
 
         compile_seating(Event())
-    if ending in MODEL_ENDINGS:
-        write_model(path, result, rank, settings, keep_off)
+    if for_cam:
+        write_model(path, result, rank, settings | in_space, keep_off)
     else:
         settings |= {"loads": given or result.query.loads, **in_space}
         write_paper(path, result, rank, result_file, settings)
@@ -197,7 +200,12 @@ def sheet(
 
 
 def refuse_in_space(
-    for_cam: bool, path: Path, supported: bool, support_height: str | None, first_setup: str | None
+    for_cam: bool,
+    shows_supports: bool,
+    path: Path,
+    supported: bool,
+    support_height: str | None,
+    first_setup: str | None,
 ) -> None:
     """Refuses what stands on paper only in a file for a CAM system, and a height of no supports.
 
@@ -206,10 +214,13 @@ def refuse_in_space(
     InputError
         Naming the option.
     """
-    if for_cam and (supported or first_setup is not None):
-        what = "--first-setup is" if first_setup is not None else "supports are"
+    if for_cam and first_setup is not None:
         raise InputError(
-            f"{what} of a sheet on paper, not of {path}: let the name end in .pdf, .svg or .png."
+            f"--first-setup is of a sheet on paper, not of {path}: let the name end in .pdf, .svg or .png."
+        )
+    if supported and not shows_supports:
+        raise InputError(
+            f"{path} has no supports: let the name end in .pdf, .svg, .png or .step, or leave --supports out."
         )
     if support_height is not None and not supported:
         raise InputError("--support-height is of supports: give --supports, or leave it out.")

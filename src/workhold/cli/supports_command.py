@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 import typer
 from attrs import asdict, evolve
 
+from workhold.cli.body_options import PART_FILE, asked_models, write_bodies
 from workhold.cli.commands import option, print_remark
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
@@ -27,7 +27,6 @@ from workhold.cli.values import (
     positive_number,
 )
 from workhold.errors import InputError
-from workhold.files.atomic import write_bytes
 
 if TYPE_CHECKING:
     from workhold.model.result import Result
@@ -104,6 +103,7 @@ def supports(
         "How far supports stand out of the plates, in --glb and --step; the toolkit's, or 10mm, if not "
         "given.",
     ),
+    part: str | None = PART_FILE,
     force: ForceOption = False,
     unit: str | None = SHOWN_UNIT,
     json_: JsonOption = False,
@@ -120,14 +120,10 @@ def supports(
     count = optional_count("--triples", triples)
     closing = optional_force("--jaw-force", jaw_force)
     coefficient = positive_number("--friction", friction)
-    for path, endings in ((out, None), (glb, (".glb",)), (step, (".step", ".stp"))):
-        if path is not None:
-            refuse_output(path, (result_file,), force)
-            if endings is not None and Path(path).suffix.lower() not in endings:
-                raise InputError(f"{path} is not the name of such a file: let it end in {endings[0]}.")
+    if out is not None:
+        refuse_output(out, (result_file,), force)
+    models = asked_models(glb, step, (result_file, part), force, support_height=support_height, part=part)
     raised = optional_length("--support-height", support_height, shown)
-    if raised is not None and glb is None and step is None:
-        raise InputError("--support-height is of a file in three dimensions: give --glb or --step too.")
     result = result_with(result_file, rank)
     from workhold.model.support_request import SupportRequest
     from workhold.supports.listing import supports_of
@@ -175,33 +171,16 @@ def supports(
         from workhold.files.supports.writer import write_supports
 
         write_supports(found, out)
-    if glb is not None or step is not None:
-        write_standing(found, glb, step, raised)
+    if models:
+        from workhold.model.recounted import ChosenSupports
+        from workhold.presenting.assembly import Assembly, shape_in
+
+        best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
+        assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
+        write_bodies(assembly, models, shown)
     report(found, count, result, rank, written, shown, json_, coefficient, helped)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
-
-
-def write_standing(found: Supports, glb: str | None, step: str | None, raised: float | None) -> None:
-    """Writes the fixture on its best set of three supports as a GLB file and as a STEP assembly.
-
-    Raises
-    ------
-    InputError
-        When there is no set.
-    """
-    from workhold.model.recounted import ChosenSupports
-    from workhold.model.support_bodies import supported_sizes
-
-    first, sizes = ChosenSupports.of(found), supported_sizes(found, support_height=raised)
-    if glb is not None:
-        from workhold.files.glb.writer import supports_glb
-
-        write_bytes(glb, supports_glb(first, sizes))
-    if step is not None:
-        from workhold.files.step.writer import supports_step
-
-        write_bytes(step, supports_step(first, sizes))
 
 
 def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:

@@ -29,6 +29,7 @@ from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "COLOURS",
+    "FILM",
     "SUPPORT_HEIGHT",
     "THICKNESS",
     "BodyKind",
@@ -36,6 +37,7 @@ __all__ = [
     "FixtureBody",
     "Slab",
     "fixture_bodies",
+    "part_slabs",
 ]
 
 Loop = tuple[Segment, ...]

@@ -287,6 +287,9 @@ class Fixture:
         unit: str = "mm",
         clearance: float | None = None,
         result_file: str | Path | None = None,
+        supports: Any = None,
+        best: int = 1,
+        part: str | Path | None = None,
         **asked: Any,
     ) -> None:
         """Writes the setup sheet (.pdf, .svg, .png), the set-up for CAM (.dxf, .step) or the pins (.csv).
@@ -296,6 +299,10 @@ class Fixture:
         unit : of the lengths on paper, "mm" or "inch".
         clearance : how far the cutter is to keep off the pegs of a .dxf, in mm; 1 if None.
         result_file : the file that the result was saved in; its hash then stands on the sheet.
+        supports : of what :meth:`supports` returns, also the pads under the part and the clamp on top, on a
+            sheet and in a .step.
+        best : which of its sets of three, from 1.
+        part : the STEP file of the part, for its own shape in a .step.
         asked : what else stands on the sheet. Words are ``paper`` ("a4" or "letter"), ``day``, ``part_name``
             and ``dowel``. Forces are ``jaw_force`` in N, ``jaw`` ("screw", "constant" or a stiffness),
             ``friction``, and ``loads`` instead of the result's. Places are ``zero`` ("corner", "centre",
@@ -308,10 +315,17 @@ class Fixture:
             For a fixture that is not one of a result, values that cannot be, and when the file cannot be
             written.
         """
-        delegate("save_sheet")(self, path, unit=unit, clearance=clearance, result_file=result_file, **asked)
+        asked |= {"supports": supports, "best": best, "part": part, "result_file": result_file}
+        delegate("save_sheet")(self, path, unit=unit, clearance=clearance, **asked)
 
     def save_glb(
-        self, path: str | Path, *, thickness: float | None = None, supports: Any = None, best: int = 1
+        self,
+        path: str | Path,
+        *,
+        thickness: float | None = None,
+        supports: Any = None,
+        best: int = 1,
+        part: str | Path | None = None,
     ) -> None:
         """Writes the fixture in three dimensions as a GLB file, which browsers and phones show.
 
@@ -320,14 +334,16 @@ class Fixture:
         thickness : of the part in mm; that of its solid, or 10, if None.
         supports : also the pads under the part and the clamp on top, of what :meth:`supports` returns.
         best : which of its sets of three, from 1.
+        part : the STEP file that the part was read from, for its own shape; a prism of its outline if None.
 
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, a set that is not there, and when the file cannot be
-            written.
+            For a fixture that is not one of a result, a set that is not there, a file of another part, and
+            when the file cannot be written.
         """
-        delegate("save_glb")(self, path, thickness=thickness, supports=supports, best=best)
+        asked = {"thickness": thickness, "supports": supports, "best": best, "part": part}
+        delegate("save_glb")(self, path, **asked)
 
     def to_build123d(
         self, around: Any = None, *, thickness: float | None = None, supports: Any = None, best: int = 1

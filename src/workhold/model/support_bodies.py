@@ -2,17 +2,24 @@
 
 The part lies on the supports at z = 0, and the plates lie below by the height of the supports. Each pad has
 a pin down through the hole it stands in. The clamp is drawn as a screw from above, a tip, a spindle and a
-knob over the point where it presses: what holds it nobody says.
+knob over the point where it presses: what holds it nobody says. Where it presses on a face lower than the
+part is high, the part, which is drawn as a prism of its outline, has room for it above that face.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import pi
+
+from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Arc, Point, distance_to_segment, segment_rows
+from workhold.kernels.base.distance import is_inside
 from workhold.model.bodies import (
+    FILM,
     SUPPORT_HEIGHT,
     BodyKind,
     BodySizes,
@@ -33,6 +40,7 @@ __all__ = [
     "clamped_height",
     "height_of_supports",
     "supported_sizes",
+    "with_room",
 ]
 
 # Of the screw on top, in mm: how high its tip and its knob are, and the least height of its spindle; their
@@ -116,9 +124,29 @@ def bodies_on_supports(
     """
     if supports.request.pad_radius <= 0.0:
         raise InputError("pads of radius 0 have no body to write or show: give a pad radius.")
-    query = supports.query
-    more = (*pad_bodies(supports, fixture, pads, sizes), screw(supports, triple, fixture, sizes))
-    return fixture_bodies(fixture, query.workpiece, query.toolkit, sizes, more)
+    query, clamp = supports.query, screw(supports, triple, fixture, sizes)
+    more = (*pad_bodies(supports, fixture, pads, sizes), clamp)
+    part, *others = fixture_bodies(fixture, query.workpiece, query.toolkit, sizes, more)
+    center, radius = fixture.pose.apply(*triple.clamp.at), supports.request.tip_radius
+    slabs = [piece for slab in part.slabs for piece in with_room(slab, center, radius, clamp.slabs[0].low)]
+    return evolve(part, slabs=tuple(slabs)), *others
+
+
+def with_room(slab: Slab, center: Point, radius: float, low: float) -> Iterator[Slab]:
+    """A slab of a part with room above a height in mm for what stands within a circle there.
+
+    A circle inside leaves a round well. One that meets the border of the slab leaves nothing of it above the
+    height.
+    """
+    border = [segment for loop in (slab.outer, *slab.holes) for segment in loop]
+    away = min(distance_to_segment(center, segment) for segment in border)
+    inside = is_inside(*center, segment_rows(border))
+    if low >= slab.high or (away >= radius and not inside):
+        yield slab
+        return
+    yield evolve(slab, high=low)
+    if away >= radius + FILM:
+        yield evolve(slab, holes=(*slab.holes, (Arc(center, radius, 0.0, pi, -1.0),)), low=low)
 
 
 def pad_bodies(

@@ -16,12 +16,15 @@ from workhold.drawing.sheet_facts import PAPERS
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.listing.identity import entries
+from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import part_zero
+from workhold.presenting.assembly import STEP_ENDINGS, Assembly, shape_in
 from workhold.units import unit_named
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
+    from workhold.model.support_triples import Supports
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -112,6 +115,9 @@ def save_sheet(
     unit: str = "mm",
     clearance: float | None = None,
     result_file: str | Path | None = None,
+    supports: Supports | None = None,
+    best: int = 1,
+    part: str | Path | None = None,
     **asked: Any,
 ) -> None:
     """Writes the setup sheet or the set-up of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
@@ -123,6 +129,16 @@ def save_sheet(
             "this fixture was changed since it was listed: take the sheet of the one in its result."
         )
     settings = {"zero": None, "dowel": None, **dict.fromkeys(SIZES), **asked, "unit": unit_named(unit)}
+    if supports is not None:
+        if ending in MODEL_ENDINGS and ending not in STEP_ENDINGS:
+            raise InputError(f"{path} has no supports: let the name end in .pdf, .svg, .png or .step.")
+        settings["supports"] = ChosenSupports.of(supports, best)
+    if part is not None:
+        if ending not in STEP_ENDINGS:
+            raise InputError(
+                f"{path} has no shape of the part: let the name end in .step, or leave part out."
+            )
+        settings["shape"] = shape_in(part, listed.result.workpiece)
     if ending in MODEL_ENDINGS:
         write_model(path, listed.result, listed.row + 1, settings, clearance)
         return
@@ -204,7 +220,9 @@ def write_model(
     Parameters
     ----------
     path : of a file whose name ends in .dxf, .step, .stp or .csv.
-    settings : ``unit``, ``zero``, ``dowel``, ``thickness``, ``peg_length`` and ``peg_height``, lengths in mm.
+    settings : ``unit``, ``zero``, ``dowel``, ``thickness``, ``peg_length`` and ``peg_height``, lengths in mm;
+        of a STEP file also ``supports``, a set that was chosen, their ``support_height``, and
+        the ``shape`` of the part.
     clearance : how far the cutter is to keep off the pegs of a DXF, in mm; None is the usual length.
 
     Raises
@@ -234,7 +252,8 @@ def model_bytes(
 
         keep_off = CLEARANCE if clearance is None else clearance
         return setup_dxf(fixture, result.workpiece, toolkit, zero, keep_off)
-    from workhold.files.step.writer import setup_step
-
-    sizes = {name: settings[name] for name in SIZES}
-    return setup_step(fixture, result.workpiece, toolkit, zero=zero, **sizes)
+    lengths, chosen = {name: settings[name] for name in SIZES}, settings.get("supports")
+    shape = settings.get("shape")
+    if chosen is not None:
+        lengths["support_height"] = settings.get("support_height")
+    return Assembly.of(fixture, result, lengths, chosen, shape).content(ending, zero)

@@ -185,6 +185,9 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
     settings = {**order.wishes, "unit": unit_named(order.unit)}
     if ending == ".csv":
         settings["zero"] = None
+    chosen = order.chosen_supports() if ending == ".step" else None
+    if chosen is not None:
+        settings |= {"supports": chosen, "thickness": None}
     return model_bytes(order.fixture, order.result, ending, settings, order.wishes["clearance"]), None
 
 
@@ -203,19 +206,12 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
 
 def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
     """Writes the fixture in three dimensions."""
-    from workhold.files.glb.writer import bodies_glb, fixture_glb
-    from workhold.model.bodies import BodySizes
-    from workhold.model.support_bodies import bodies_with_supports, supported_sizes
+    from workhold.presenting.assembly import Assembly
 
-    result, wishes = order.result, order.wishes
     chosen = order.chosen_supports()
-    if chosen is not None:
-        lengths = {name: wishes[name] for name in ("peg_length", "peg_height")}
-        made = bodies_with_supports(chosen, supported_sizes(chosen.supports, **lengths))
-        return bodies_glb(made, f"{made[0].name} set-up"), None
-    heights = {name: wishes[name] for name in ("thickness", "peg_length", "peg_height")}
-    sizes = BodySizes.of(result.workpiece, **heights)
-    return fixture_glb(order.fixture, result.workpiece, result.toolkit, sizes), None
+    names = ("peg_length", "peg_height", *(("thickness",) if chosen is None else ()))
+    lengths = {name: order.wishes[name] for name in names}
+    return Assembly.of(order.fixture, order.result, lengths, chosen).content(".glb"), None
 
 
 MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {

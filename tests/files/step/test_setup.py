@@ -24,12 +24,12 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 from plate_examples import WAYS, on_plate
 
+from files.step_bodies import named_bodies
 from workhold import design
 from workhold.errors import InputError
 from workhold.files.step.solids import Solid, read_solids
 from workhold.files.step.writer import setup_step, write_setup_step
 from workhold.fixels.vise import Vise
-from workhold.model.bodies import COLOURS, BodyKind
 from workhold.model.fixture import Fixture, Peg, Pose
 from workhold.model.setup import part_zero
 from workhold.model.workpiece import Workpiece
@@ -234,34 +234,5 @@ def test_pegs_with_flats_are_round_in_their_holes_and_flat_on_the_part() -> None
 
 def test_bodies_have_the_colours_of_their_kinds() -> None:
     """Read again by the library: each solid has its kind's colour, as on a screen."""
-    from OCP.collections import Sequence_TDF_Label
-    from OCP.Quantity import Quantity_Color
-    from OCP.STEPCAFControl import STEPCAFControl_Reader
-    from OCP.TCollection import TCollection_ExtendedString
-    from OCP.TDocStd import TDocStd_Document
-    from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
-
-    document, reader = TDocStd_Document(TCollection_ExtendedString("XmlOcaf")), STEPCAFControl_Reader()
-    reader.ReadStream("set-up.step", BytesIO(setup_step(fixture(POSES[1]), part(POSES[1]), VISE)))
-    assert reader.Transfer(document)
-    shapes, found = XCAFDoc_DocumentTool.ShapeTool_s(document.Main()), Sequence_TDF_Label()
-    colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
-    shapes.GetShapes(found)
-    seen = []
-    for k in range(1, found.Length() + 1):
-        label, colour = found.Value(k), Quantity_Color()
-        shape = shapes.GetShape_s(label)
-        if shapes.IsSimpleShape_s(label) and colours.GetColor(
-            shape, XCAFDoc_ColorType.XCAFDoc_ColorSurf, colour
-        ):
-            kind = next(kind for kind in BodyKind if near(colour, COLOURS[kind]))
-            seen.append(str(kind))
+    seen = [kind for _, kind, _ in named_bodies(setup_step(fixture(POSES[1]), part(POSES[1]), VISE))]
     assert seen == ["part", *["peg"] * 4, *["plate"] * 2]
-
-
-def near(colour: Any, wanted: tuple[float, float, float]) -> bool:
-    """Whether a colour of the library is one as on a screen."""
-    from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
-
-    other = Quantity_Color(*wanted, Quantity_TypeOfColor.Quantity_TOC_sRGB)
-    return bool(colour.Distance(other) < 0.01)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from math import pi
 from pathlib import Path
 
 import pytest
 from attrs import evolve
 
+from files.step_bodies import assert_apart, named_bodies, volume
 from files.step_shapes import box, fused
 from workhold import Result, Vise, design, load
 from workhold.errors import InputError
@@ -14,6 +16,7 @@ from workhold.files.supports.reader import read_supports
 from workhold.files.supports.writer import write_supports
 from workhold.model.recounted import ChosenSupports
 from workhold.model.support_bodies import bodies_with_supports
+from workhold.presenting.assembly import Assembly
 
 LOW, HIGH = 20.0, 34.0
 VISE = Vise(pitch=10, columns=8, peg_radius=3)
@@ -26,10 +29,54 @@ def result() -> Result:
     return design(load(stepped, name="stepped", peg_height=12), VISE, best=4)
 
 
-def on_face(result: Result, at: tuple[float, float]) -> ChosenSupports:
+def on_face(result: Result, at: tuple[float, float], tip_radius: float = 5.0) -> ChosenSupports:
     """The best supports with the clamp at a point of the part."""
-    found = next(one for one in result.supports(best=4, point=at, inside=1) if one.triples)
+    asked = result.supports(best=4, point=at, inside=1, tip_radius=tip_radius)
+    found = next(one for one in asked if one.triples)
     return ChosenSupports.of(evolve(found, triples=tuple(t for t in found.triples if t.given is not None)))
+
+
+def assembled(chosen: ChosenSupports) -> Assembly:
+    """The bodies of a set-up on chosen supports."""
+    fixture = chosen.supports.fixture
+    return Assembly.of(fixture, fixture.listing.result, {}, chosen)
+
+
+@pytest.mark.parametrize(
+    ("at", "tip", "room"), [((60, 30), 5, 25 * pi), ((20, 30), 5, 0), ((60, 30), 30, 90 * 60)]
+)
+def test_no_body_is_inside_another(result: Result, at: tuple[float, float], tip: float, room: float) -> None:
+    """Above a lower face the part has room for the clamp: a well, or all where the tip reaches to its border."""
+    chosen = on_face(result, at, tip)
+    bodies = named_bodies(assembled(chosen).content(".step"))
+    assert_apart(bodies)
+    assert [body[:2] for body in bodies] == [
+        ("stepped", "part"),
+        *((f"peg {peg.hole}", "peg") for peg in chosen.recounted.fixture.pegs),
+        ("left jaw", "plate"),
+        ("right jaw", "plate"),
+        *((f"support {pad.hole}", "support") for pad in chosen.pads),
+        ("clamp on top", "clamp"),
+    ]
+    assert volume(bodies[0][2]) == pytest.approx(90 * 60 * HIGH - room * (HIGH - LOW))
+    low = chosen.supports.fixture.listing.result.query.toolkit.peg_radius**2 * pi
+    pad = chosen.supports.request.pad_radius**2 * pi
+    pads = [volume(shape) for _, kind, shape in bodies if kind == "support"]
+    assert pads == pytest.approx([10 * low + 10 * pad] * 3)
+
+
+def test_python_writes_supports_into_step_and_sheets(result: Result, tmp_path: Path) -> None:
+    """``save_sheet`` has them in a .step as in the command's file, and on paper; a .dxf has none."""
+    chosen = on_face(result, (60, 30))
+    found = chosen.supports
+    for name in ("a.step", "a.svg"):
+        found.fixture.save_sheet(tmp_path / name, supports=found)
+    assert (tmp_path / "a.step").read_bytes() == assembled(chosen).content(".step")
+    assert "clamp" in (tmp_path / "a.svg").read_text(encoding="utf-8").lower()
+    with pytest.raises(InputError, match=r"a\.dxf has no supports: let the name end in"):
+        found.fixture.save_sheet(tmp_path / "a.dxf", supports=found)
+    with pytest.raises(InputError, match="there is no set 99"):
+        found.fixture.save_sheet(tmp_path / "a.step", supports=found, best=99)
 
 
 @pytest.mark.parametrize(("at", "height"), [((60, 30), LOW), ((20, 30), HIGH)])

@@ -17,7 +17,7 @@ from workhold.geometry.segment import Line, Point, Segment
 from workhold.geometry.triangulation import triangulate
 from workhold.model.bodies import FixtureBody, Slab
 
-__all__ = ["SAGITTA", "Mesh", "body_mesh"]
+__all__ = ["SAGITTA", "Mesh", "body_mesh", "surface_mesh"]
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -62,11 +62,18 @@ def body_mesh(body: FixtureBody, sagitta: float = SAGITTA) -> Mesh:
             normals.append(outward)
             triangles.append(numbers + count)
             count += len(points)
-    return Mesh(
-        as_gltf(np.concatenate(positions) / 1000.0),
-        as_gltf(np.concatenate(normals)),
-        np.concatenate(triangles).astype(np.uint32),
-    )
+    return surface_mesh(np.concatenate(positions), np.concatenate(normals), np.concatenate(triangles))
+
+
+def surface_mesh(positions: Array, normals: Array, triangles: Triangles) -> Mesh:
+    """The mesh of a surface with z up.
+
+    Parameters
+    ----------
+    positions, normals : (N, 3) vertices in mm and unit vectors outward.
+    triangles : (M, 3) numbers of vertices.
+    """
+    return Mesh(as_gltf(positions / 1000.0), as_gltf(normals), triangles.astype(np.uint32))
 
 
 def as_gltf(vectors: Array) -> NDArray[np.float32]:

@@ -10,45 +10,23 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.files.atomic import write_bytes
 from workhold.files.glb.meshes import Mesh, body_mesh
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.fixture import Fixture
-from workhold.model.recounted import ChosenSupports
-from workhold.model.support_bodies import bodies_with_supports, supported_sizes
-from workhold.model.support_triples import Supports
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["bodies_glb", "fixture_glb", "save_glb", "supports_glb", "write_fixture_glb"]
+__all__ = ["bodies_glb", "fixture_glb"]
 
 # Numbers of the specification: its name, kinds of chunks, component types, targets of buffer views.
 MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 FLOAT, UNSIGNED_INT = 5126, 5125
 VERTICES, ELEMENTS = 34962, 34963
-
-
-def write_fixture_glb(
-    fixture: Fixture,
-    workpiece: Workpiece,
-    toolkit: Toolkit,
-    path: str | Path,
-    sizes: BodySizes | None = None,
-) -> None:
-    """Writes a fixture as a GLB file; the same fixture gives the same bytes.
-
-    Raises
-    ------
-    InputError
-        For pegs without a radius, and a file that cannot be written.
-    """
-    write_bytes(path, fixture_glb(fixture, workpiece, toolkit, sizes))
 
 
 def fixture_glb(
@@ -69,48 +47,20 @@ def fixture_glb(
     return bodies_glb(bodies, f"{bodies[0].name} set-up")
 
 
-def supports_glb(chosen: ChosenSupports, sizes: BodySizes | None = None) -> bytes:
-    """The bytes of the GLB file of a fixture on a set of three supports, with the clamp on top.
+def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = None) -> bytes:
+    """The GLB file of bodies below one node of a name.
 
     Parameters
     ----------
-    sizes : as of :func:`workhold.model.support_bodies.bodies_with_supports`.
-
-    Raises
-    ------
-    InputError
-        For pegs and pads of radius 0, which have no body.
+    part : the mesh of the part's own shape; of its prism if None.
     """
-    bodies = bodies_with_supports(chosen, sizes)
-    return bodies_glb(bodies, f"{bodies[0].name} set-up")
-
-
-def save_glb(
-    fixture: Fixture,
-    path: str | Path,
-    *,
-    thickness: float | None = None,
-    supports: Supports | None = None,
-    best: int = 1,
-) -> None:
-    """Writes a GLB file, see :meth:`workhold.Fixture.save_glb`."""
-    result = fixture.listing.result
-    if supports is None:
-        sizes = BodySizes.of(result.workpiece, thickness)
-        write_fixture_glb(fixture, result.workpiece, result.toolkit, path, sizes)
-        return
-    sizes = supported_sizes(supports, thickness=thickness)
-    write_bytes(path, supports_glb(ChosenSupports.of(supports, best), sizes))
-
-
-def bodies_glb(bodies: Sequence[FixtureBody], name: str) -> bytes:
-    """The GLB file of bodies below one node of a name."""
     kinds = [kind for kind in BodyKind if any(body.kind is kind for body in bodies)]
     scene = GlbBuffer()
     nodes: list[dict[str, Any]] = [{"name": name, "children": [k + 1 for k in range(len(bodies))]}]
     meshes = []
     for number, body in enumerate(bodies):
-        meshes.append({"name": body.name, "primitives": [scene.add(body_mesh(body), kinds.index(body.kind))]})
+        mesh = body_mesh(body) if part is None or body.kind is not BodyKind.PART else part
+        meshes.append({"name": body.name, "primitives": [scene.add(mesh, kinds.index(body.kind))]})
         extras: dict[str, Any] = {"kind": str(body.kind)}
         if body.opens is not None:
             extras["opens"] = [body.opens[0], 0.0, 0.0 - body.opens[1]]

@@ -27,16 +27,14 @@ from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.dowels import JawPlate, plate_places
 from workhold.model.fixture import Fixture, Pose
-from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import PartZero, part_zero
-from workhold.model.support_bodies import bodies_with_supports
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "bodies_step",
     "named_solids",
     "plates_step",
     "setup_step",
-    "supports_step",
     "write_plates_step",
     "write_setup_step",
 ]
@@ -108,29 +106,25 @@ def setup_step(
     return bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
 
 
-def supports_step(
-    chosen: ChosenSupports, sizes: BodySizes | None = None, zero: PartZero | None = None
+def bodies_step(
+    bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose, part: Any = None
 ) -> bytes:
-    """The bytes of the STEP assembly of a fixture on a set of three supports, with the clamp on top.
+    """The bytes of the assembly of a set-up's bodies, with the axes at part zero.
 
     Parameters
     ----------
-    sizes : as of :func:`workhold.model.support_bodies.bodies_with_supports`.
-    zero : part zero; that of :func:`part_zero` without a wish if None.
+    part : the part's own solid in its pose; the prism of its body if None.
 
     Raises
     ------
     InputError
-        For pegs and pads of radius 0, which have no body, and when the extra ``step`` is not installed.
+        When the extra ``step`` is not installed.
     """
-    query, bodies = chosen.supports.query, bodies_with_supports(chosen, sizes)
-    point = (zero or part_zero(query.workpiece)).point
-    return bodies_step(bodies, query.toolkit, point, chosen.recounted.fixture.pose)
-
-
-def bodies_step(bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose) -> bytes:
-    """The assembly of bodies of a set-up, with the axes at part zero."""
-    named = named_solids(bodies)
+    if part is None:
+        named = named_solids(bodies)
+    else:
+        others = named_solids([body for body in bodies if body.kind is not BodyKind.PART])
+        named = [(bodies[0].name, part, COLOURS[BodyKind.PART]), *others]
     pitch = min(min(carrier.pitch) for carrier in toolkit.plates)
     axes = axes_at(zero, pose, pitch)
     return assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])

@@ -1,0 +1,195 @@
+"""The shape of a result's part, read again from its STEP file: as a mesh, and as Open CASCADE keeps it.
+
+A result file has the outline of a part and the heights of its faces, not its shape. The file that it was
+designed from has both, so it is asked for again, and looked at whether it gives the same outline.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.conventions import SAME_HEIGHT
+from workhold.errors import InputError
+from workhold.files.apart import run_apart
+from workhold.files.step.by_height import HeightView, drawn
+from workhold.files.step.heights import standing
+from workhold.files.step.library import load_step_library
+from workhold.files.step.reader import guarded, prepare
+from workhold.files.step.solids import along, read_solids, sub_shapes
+from workhold.geometry.loop import loop_segments, signed_area
+from workhold.geometry.segment import Point
+from workhold.model.fixture import Pose
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["PartShape", "part_shape", "prepare"]
+
+Array = NDArray[np.float64]
+# How far chords and triangles may be from the shape, in mm and as a turn in radians.
+SAGITTA, TURN = 0.05, 0.35
+# Outlines agree where their corners do so far, in mm, and their areas to this part.
+SAME_CORNER, SAME_AREA = 1e-5, 1e-6
+
+
+@frozen(eq=False)
+class PartShape:
+    """The shape of a part in its own coordinates, its axis up, its lowest point at z = 0.
+
+    Parameters
+    ----------
+    positions, normals : (N, 3) vertices in mm and unit vectors outward.
+    triangles : (M, 3) numbers of vertices, counter-clockwise from outside.
+    kept : the shape in Open CASCADE's own form.
+    """
+
+    positions: Array
+    normals: Array
+    triangles: NDArray[np.int64]
+    kept: str
+
+    def solid(self, pose: Pose) -> Any:
+        """Open CASCADE's solid in the pose of a fixture."""
+        from OCP.BRep import BRep_Builder
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+        from OCP.BRepTools import BRepTools
+        from OCP.gp import gp_Trsf
+        from OCP.TopLoc import TopLoc_Location
+        from OCP.TopoDS import TopoDS_Shape
+
+        load_step_library()
+        shape = TopoDS_Shape()
+        BRepTools.Read_s(shape, BytesIO(self.kept.encode("ascii")), BRep_Builder())
+        (ux, uy), (vx, vy), (x, y) = frame(pose)
+        move = gp_Trsf()
+        move.SetValues(ux, vx, 0.0, x, uy, vy, 0.0, y, 0.0, 0.0, 1.0, 0.0)
+        # An assembly keeps no place that a solid has of its own: it becomes part of the surfaces.
+        move.Multiply(shape.Location().Transformation())
+        bare = shape.Located(TopLoc_Location())
+        return sub_shapes(BRepBuilderAPI_Transform(bare, move, True).Shape(), "SOLID")[0]
+
+    def surface(self, pose: Pose) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Positions in mm, normals and triangles in the pose of a fixture."""
+        (ux, uy), (vx, vy), (x, y) = frame(pose)
+        turn = np.array([[ux, uy, 0.0], [vx, vy, 0.0], [0.0, 0.0, 1.0]])
+        return self.positions @ turn + (x, y, 0.0), self.normals @ turn, self.triangles
+
+
+def frame(pose: Pose) -> tuple[Point, Point, Point]:
+    """The directions in which the part's x and y point in a pose, and where its origin is, in mm."""
+    x, y = (float(one) for one in pose.apply(0.0, 0.0))
+    ends = (pose.apply(1.0, 0.0), pose.apply(0.0, 1.0))
+    along_x, along_y = ((float(a) - x, float(b) - y) for a, b in ends)
+    return along_x, along_y, (x, y)
+
+
+def part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
+    """The shape of a part from the bytes of the STEP file that its outline was read from.
+
+    Raises
+    ------
+    InputError
+        For a part without a solid, a file that cannot be read, and one that gives another outline.
+    """
+    solid = workpiece.solid
+    if solid is None:
+        raise InputError(
+            "the part of this result was not read from a solid at the height of the pegs: design it again "
+            "from its STEP file to show its shape."
+        )
+    view = {
+        "axis": solid.axis,
+        "peg_height": solid.peg_height,
+        "head_room": solid.head_room,
+        "least_band": solid.least_band,
+    }
+    options = {"view": view, "loops": [loop.tolist() for loop in workpiece.loops], "height": solid.height}
+    positions, normals, triangles, kept = run_apart(__name__, content, options, "the STEP file")
+    return PartShape(np.array(positions), np.array(normals), np.array(triangles, dtype=np.int64), kept)
+
+
+def plain(content: bytes, view: dict[str, Any], loops: list[Any], height: float) -> Any:
+    """Mesh and shape of the solid that gives some loops, as plain data.
+
+    Raises
+    ------
+    InputError
+        As :func:`part_shape`.
+    """
+    wanted = [np.array(loop) for loop in loops]
+    return guarded(lambda: shape_of_outline(content, view, wanted, height), ValueError)
+
+
+def shape_of_outline(content: bytes, view: dict[str, Any], loops: list[Array], height: float) -> Any:
+    """Meshes and keeps the solid of a file that gives some loops, see :func:`plain`.
+
+    Raises
+    ------
+    InputError
+        Where no solid of the file gives these loops.
+    """
+    load_step_library()
+    for solid in read_solids(content):
+        found = standing(along(solid.shape, view["axis"]))
+        if abs(found.height - height) > SAME_HEIGHT:
+            continue
+        with suppress(InputError):
+            if is_same(loops, drawn(solid.shape, found, HeightView(**view), is_advised=False).loops):
+                return *meshed(found.shape), kept(found.shape)
+    raise InputError(
+        "no solid of the STEP file gives the outline of the result, as of another part or after a change: "
+        "give the file that it was designed from, or design it again."
+    )
+
+
+def is_same(loops: list[Array], others: tuple[Array, ...]) -> bool:
+    """Whether corners of some loops are among those of others, and both enclose the same area."""
+    corners = np.concatenate(others)[:, :2]
+    ours = np.concatenate(loops)[:, :2]
+    near = np.abs(ours[:, None, :] - corners[None, :, :]).max(axis=2).min(axis=1)
+    areas = [sum(signed_area(loop_segments(loop)) for loop in every) for every in (loops, others)]
+    return bool(near.max() <= SAME_CORNER and abs(areas[0] - areas[1]) <= SAME_AREA * abs(areas[0]))
+
+
+def kept(shape: Any) -> str:
+    """A shape in Open CASCADE's own form, without its triangles."""
+    from OCP.BRepTools import BRepTools
+
+    BRepTools.Clean_s(shape)
+    stream = BytesIO()
+    BRepTools.Write_s(shape, stream)
+    return stream.getvalue().decode("ascii")
+
+
+def meshed(shape: Any) -> tuple[list[Any], list[Any], list[Any]]:
+    """Positions in mm, normals and triangles of a shape; each face has its own vertices."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepLib import BRepLib_ToolTriangulatedShape
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+    from OCP.TopAbs import TopAbs_Orientation
+    from OCP.TopLoc import TopLoc_Location
+
+    BRepMesh_IncrementalMesh(shape, SAGITTA, False, TURN, False)
+    positions: list[Any] = []
+    normals: list[Any] = []
+    triangles: list[Any] = []
+    for face in sub_shapes(shape, "FACE"):
+        location = TopLoc_Location()
+        mesh = BRep_Tool.Triangulation_s(face, location)
+        if mesh is None:
+            continue
+        BRepLib_ToolTriangulatedShape.ComputeNormals_s(face, mesh)
+        turned = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+        move, sign, first = location.Transformation(), -1.0 if turned else 1.0, len(positions)
+        for k in range(1, mesh.NbNodes() + 1):
+            point, normal = mesh.Node(k).Transformed(move), mesh.Normal(k).Transformed(move)
+            positions.append([point.X(), point.Y(), point.Z()])
+            normals.append([sign * normal.X(), sign * normal.Y(), sign * normal.Z()])
+        for k in range(1, mesh.NbTriangles() + 1):
+            a, b, c = (number - 1 + first for number in mesh.Triangle(k).Get())
+            triangles.append([a, c, b] if turned else [a, b, c])
+    return positions, normals, triangles
