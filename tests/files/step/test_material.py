@@ -44,6 +44,49 @@ def test_intervals_are_where_the_library_finds_material(name: str) -> None:
         assert inside == material.is_inside((x, y), z), (x, y, z)
 
 
+FUNNEL = cut(
+    box(60, 40, 20), BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(30, 20, 2), gp_Dir(0, 0, 1)), 0.0, 25.0, 30.0).Shape()
+)
+CONES = {
+    "one with gaps": cut(
+        CONE, *(cylinder(1.5, 30, (20 + x, 12 + y, 5)) for x in (-6, 0, 6) for y in (-6, 6))
+    ),
+    "one cut aslant": cut(CONE, box(20, 20, 8, (22, 9, 15)), cylinder(2, 40, (0, 12, 14), (1, 0, 0))),
+    "a funnel to its tip": FUNNEL,
+    "upside down": BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(20, 12, 22), gp_Dir(0, 0, -1)), 9.0, 0.0, 14.0).Shape(),
+}
+
+
+@pytest.mark.parametrize("name", CONES)
+def test_upright_cones_are_met_where_the_library_meets_them(name: str) -> None:
+    """A line passes a cone at the very heights that the library finds, also beside the cone's edges."""
+    from OCP.gp import gp_Lin
+    from OCP.IntCurvesFace import IntCurvesFace_Intersector
+
+    faces = [face for face in solid_faces(CONES[name]) if face.kind == "cone"]
+    edges = edge_curves(faces)
+    flat, others = PlaneFaces.of(faces, edges)
+    assert bool(others) == (name == "one cut aslant")
+    random = np.random.default_rng(5)
+    met = 0
+    for point in [*random.uniform((5.0, 0.0), (55.0, 40.0), (300, 2)).tolist(), *beside(edges, random)]:
+        found = []
+        for face in faces:
+            asked = IntCurvesFace_Intersector(face.shape, 1e-9)
+            asked.Perform(gp_Lin(gp_Pnt(*point, -9.0), gp_Dir(0.0, 0.0, 1.0)), -1.0, 1e3)
+            found += [asked.WParameter(k) - 9.0 for k in range(1, asked.NbPnt() + 1)]
+        if not others:
+            assert sorted(flat.heights(tuple(point))) == pytest.approx(sorted(found), abs=1e-9), point
+        met += len(found)
+    assert met > 20
+
+
+def beside(edges: Any, random: np.random.Generator) -> list[list[float]]:
+    """Points a few 0.0001 mm beside edges that are seen from above."""
+    points = [point[:2] for edge in edges if edge.segment for point in edge.points[1:-1]]
+    return [(point + random.uniform(-4e-4, 4e-4, 2)).tolist() for point in points]
+
+
 @pytest.mark.parametrize("passed", [[0.0, 0.0, 14.0], [0.0, 0.0, 14.0, 14.0], [0.0, 6.0, 14.0]])
 def test_faces_met_twice_or_not_at_all(monkeypatch: pytest.MonkeyPatch, passed: list[float]) -> None:
     """Where a line meets two neighbours on their edge, or a face too much, each range is asked for by itself."""
@@ -60,7 +103,7 @@ def test_inside_of_a_border_is_found_at_the_heights_of_its_corners() -> None:
     corners = [(0.0, 0.0), (30.0, 0.0), (30.0, 20.0), (0.0, 20.0)]
     lines = [(*a, b[0] - a[0], b[1] - a[1]) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
     arcs = np.array([(20.0, 10.0, 5.0, 0.0, np.pi)])
-    planes, boxes = np.array([(7.0, 0.5, 0.0)]), np.array([(0.0, 0.0, 30.0, 20.0)])
+    planes, boxes = np.array([(7.0, 0.5, 0.0, 0.0, 0.0, 0.0)]), np.array([(0.0, 0.0, 30.0, 20.0)])
     border = PlaneFaces(planes, np.array(lines), np.array([0, 4]), arcs, np.array([0, 1]), boxes)
     for x, y in [(5.0, 10.0), (14.9, 10.0), (25.1, 10.0), (20.0, 4.9), (1e-3, 1e-3)]:
         assert border.heights((x, y)) == [7.0 + 0.5 * x]

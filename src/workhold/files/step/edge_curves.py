@@ -135,9 +135,12 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     ]
     carriers = {index: wall_carrier(face) for index, face in enumerate(faces) if face.lie == "upright"}
     walls = {number: carriers[index] for index, _, number in edges if carriers.get(index) is not None}
-    return [
-        on_wall(curve_of(index, BRepAdaptor_Curve(edge)), walls.get(number)) for index, edge, number in edges
-    ]
+    # Two faces have an edge, and it is the same curve for both.
+    curves: dict[int, EdgeCurve] = {}
+    for index, edge, number in edges:
+        if number not in curves:
+            curves[number] = on_wall(curve_of(index, BRepAdaptor_Curve(edge)), walls.get(number))
+    return [evolve(curves[number], face=index) for index, _, number in edges]
 
 
 def wall_carrier(face: SolidFace) -> Segment | None:

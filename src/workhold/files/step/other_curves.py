@@ -18,6 +18,8 @@ Other = tuple[int, NDArray[np.float64]]
 # How far beside a curve its two sides are looked at, in mm. All have to show that it is the border, because a
 # curve may cross the border near one of its points.
 BESIDE = (4e-4, 4e-5, 4e-6)
+# Of how many points along a curve one is looked at first.
+FEW = 10
 # What flat faces are called.
 FLAT = ("level plane", "wall", SLOPING)
 
@@ -51,10 +53,14 @@ def refuse_others(
         # The face that makes the curve rather than the flat one that it cuts.
         return faces[one[0]].kind in FLAT, -float(np.hypot(*(one[1] - middle).T).max())
 
-    for index, points in sorted(others, key=place):
-        away = np.hypot(*(points[1:-1] - middle).T)
-        if any(is_border(points, k + 1, inside) for k in np.argsort(-away, kind="stable").tolist()):
-            raise other_curve(faces[index])
+    ordered = sorted(others, key=place)
+    # A curve of the border is there along much of it: few points of every curve find it before all are asked.
+    for each in (FEW, 1):
+        for index, points in ordered:
+            away = np.hypot(*(points[1:-1] - middle).T)
+            looked = np.argsort(-away, kind="stable")[::each].tolist()
+            if any(is_border(points, k + 1, inside) for k in looked):
+                raise other_curve(faces[index])
 
 
 def is_border(points: NDArray[np.float64], k: int, inside: Callable[[Point], bool]) -> bool:

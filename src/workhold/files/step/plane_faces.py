@@ -1,27 +1,33 @@
-"""Flat faces that upright lines meet: all faces whose border, seen from above, goes around the line's point.
+"""Faces that upright lines meet once: those whose border, seen from above, goes around the line's point.
+
+They are flat, or cones about an upright axis on one side of their tip.
 
 A point is in a face when a ray from it crosses the face's border an odd number of times (M. Shimrat,
 *Algorithm 112: position of point relative to polygon*, Communications of the ACM 5 (1962)). All faces are
-asked at once, which is much faster than the library for faces with many holes.
+asked at once, which is much faster than the library for faces with many edges.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi, tau
+from math import pi, sin, tan, tau
 from typing import Any
 
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.conventions import SHORTEST
 from workhold.files.step.edge_curves import EdgeCurve
 from workhold.files.step.faces import SolidFace, surface_of
+from workhold.files.step.turned import is_upright
 from workhold.geometry.segment import Arc, Line, Point
 
 __all__ = ["PlaneFaces"]
 
 Array = NDArray[np.float64]
+# A plane or a cone as PlaneFaces holds it.
+Sheet = tuple[float, float, float, float, float, float]
 # How much wider than the library says, in mm, the boxes of faces are taken.
 ROUND = 1e-6
 # The direction of rays, and another: ones in which no line of a drawing is likely to run, nor two of its
@@ -31,11 +37,12 @@ RAY, OTHER_RAY = (0.7548776662, 0.6558656181), (-0.5698402910, 0.8217609881)
 
 @frozen(eq=False)
 class PlaneFaces:
-    """Flat faces that are not upright, bordered by lines and arcs as seen from above.
+    """Flat faces and upright cones, bordered by lines and arcs as seen from above.
 
     Parameters
     ----------
-    planes : (F, 3) of each face: z in mm at the origin, and how much it rises along x and y.
+    planes : (F, 6) of each face: z in mm at the origin, and how much it rises along x and y. Of cones how
+        much they rise away from the axis, and x and y of the axis in mm.
     lines : (L, 4) start and step of the straight edges, in mm.
     line_ends : (F + 1,) where the edges of each face begin, and those of the last end.
     arcs : (A, 5) centre, radius, middle angle and half the sweep of the round edges.
@@ -52,13 +59,15 @@ class PlaneFaces:
 
     @classmethod
     def of(cls, faces: Sequence[SolidFace], edges: Sequence[EdgeCurve]) -> tuple[PlaneFaces, list[int]]:
-        """The flat ones of some faces, and the indices of the others, upright ones left out.
+        """The flat ones and the cones of some faces, and the indices of others that are not upright.
 
         Parameters
         ----------
         edges : of all faces.
         """
-        planes = {k: plane for k, face in enumerate(faces) if (plane := plane_of(face)) is not None}
+        planes = {
+            k: plane for k, face in enumerate(faces) if (plane := plane_of(face) or cone_of(face)) is not None
+        }
         for edge in edges:
             if edge.is_other:
                 planes.pop(edge.face, None)
@@ -76,7 +85,7 @@ class PlaneFaces:
                 arcs[number[edge.face]].append((*one.center, one.radius, one.mid_angle, one.half_sweep))
         others = [k for k, face in enumerate(faces) if face.lie != "upright" and k not in number]
         made = cls(
-            np.array(list(planes.values())).reshape(-1, 3),
+            np.array(list(planes.values())).reshape(-1, 6),
             np.array([row for own in lines for row in own]).reshape(-1, 4),
             np.cumsum([0, *map(len, lines)]),
             np.array([row for own in arcs for row in own]).reshape(-1, 5),
@@ -99,8 +108,10 @@ class PlaneFaces:
         )
 
     def levels(self, point: Point) -> Array:
-        """The z (F,) in mm of each face's plane at a point."""
-        levels: Array = self.planes[:, 0] + self.planes[:, 1] * point[0] + self.planes[:, 2] * point[1]
+        """The z (F,) in mm of each face's plane or cone at a point."""
+        origin, rise_x, rise_y, outward, axis_x, axis_y = self.planes.T
+        away = np.hypot(point[0] - axis_x, point[1] - axis_y)
+        levels: Array = origin + rise_x * point[0] + rise_y * point[1] + outward * away
         return levels
 
     def near(self, point: Point) -> NDArray[np.bool_]:
@@ -135,18 +146,35 @@ class PlaneFaces:
         return met % 2 == 1
 
 
-def plane_of(face: SolidFace) -> tuple[float, float, float] | None:
-    """The z of a face's plane at the origin in mm, and how much it rises along x and y.
-
-    None for an upright face and for one that is not flat.
-    """
+def plane_of(face: SolidFace) -> Sheet | None:
+    """A face's plane, see :class:`PlaneFaces`; None for an upright face and for one that is not flat."""
     from OCP.GeomAbs import GeomAbs_SurfaceType as Type
 
     surface: Any = surface_of(face.shape)
     if face.lie == "upright" or surface.GetType() != Type.GeomAbs_Plane:
         return None
     if face.lie == "level":
-        return face.low, 0.0, 0.0
+        return face.low, 0.0, 0.0, 0.0, 0.0, 0.0
     normal, place = surface.Plane().Axis().Direction(), surface.Plane().Location()
     rise_x, rise_y = -normal.X() / normal.Z(), -normal.Y() / normal.Z()
-    return place.Z() - rise_x * place.X() - rise_y * place.Y(), rise_x, rise_y
+    return place.Z() - rise_x * place.X() - rise_y * place.Y(), rise_x, rise_y, 0.0, 0.0, 0.0
+
+
+def cone_of(face: SolidFace) -> Sheet | None:
+    """A face's cone, see :class:`PlaneFaces`; None for others and for both sides of a tip."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
+
+    surface = BRepAdaptor_Surface(face.shape)
+    if surface.GetType() != Type.GeomAbs_Cone or not is_upright(surface.Cone().Axis()):
+        return None
+    cone = surface.Cone()
+    ends = surface.FirstVParameter(), surface.LastVParameter()
+    radii = [cone.RefRadius() + v * sin(cone.SemiAngle()) for v in ends]
+    if min(radii) < -SHORTEST and max(radii) > SHORTEST:
+        return None
+    # Beyond the tip radii are below 0, and what rises outward falls.
+    side = 1.0 if sum(radii) > 0.0 else -1.0
+    rise = cone.Axis().Direction().Z() / tan(cone.SemiAngle())
+    place = cone.Location()
+    return place.Z() - rise * cone.RefRadius(), 0.0, 0.0, side * rise, place.X(), place.Y()
