@@ -44,7 +44,9 @@ def scripted(tmp_path: Path) -> Scripted:
     command = tmp_path / "workhold"
     run = shlex.join([sys.executable, "-m", "workhold"])
     path = os.pathsep.join(entry for entry in sys.path if entry)
-    command.write_text(f'#!/bin/sh\nPYTHONPATH={shlex.quote(path)} exec {run} "$@"\n')
+    # Its own home, where the kernels are kept that were compiled before.
+    own = f"HOME={shlex.quote(str(Path.home()))} PYTHONPATH={shlex.quote(path)}"
+    command.write_text(f'#!/bin/sh\n{own} exec {run} "$@"\n')
     command.chmod(0o755)
 
     def ran(code: str, program: tuple[str, ...] = ("freecadcmd",), **environment: str) -> dict[str, Any]:
