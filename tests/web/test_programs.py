@@ -60,6 +60,19 @@ def test_a_search_keeps_clear_of_it_and_names_the_nearest_move(server: RunningSe
     assert 'class="rapid"' in server.client.get(f"{url}/fixtures/1/picture.svg").text
 
 
+def test_a_preference_counts_the_forces_of_the_tools(server: RunningServer) -> None:
+    """As loads do: what presses least under them comes before what presses least without."""
+    tools = "\n".join(
+        f"[tool.{number}]\ndiameter = {size}\ncutting_force = 300"
+        for number, size in ((1, 10), (2, 8), (3, 9))
+    )
+    strong = {**SEARCH, "prefer": "strong"}
+    plain = server.client.get(f"{server.done(strong)}/result.json").json()
+    forced = {**PROGRAM, "tools": {"name": "tools.toml", "text": tools}}
+    ranked = server.client.get(f"{server.done({**strong, 'program': forced})}/result.json").json()
+    assert "load_reaction" in ranked["ranking"] and "load_reaction" not in plain["ranking"]
+
+
 def test_without_a_program_nothing_is_passed(server: RunningServer) -> None:
     """The place for it is empty."""
     url = server.done({key: value for key, value in SEARCH.items() if key != "program"})

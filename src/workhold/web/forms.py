@@ -263,13 +263,14 @@ class SearchForm(Form):
         loads = tuple(form.load() for form in self.loads)
         workpiece = self.workpiece.workpiece(most_segments)
         passed = None if self.program is None else self.program.passed(workpiece.solid)
+        is_loaded = bool(loads) or (passed is not None and passed.program.forces is not None)
         return Query(
             workpiece,
             toolkit,
             self.types,
             self.contact_margin,
             self.restrictions.restrictions(),
-            asked_ranking(self.ranking, self.prefer, loads, passed is not None),
+            asked_ranking(self.ranking, self.prefer, is_loaded, passed is not None),
             None if self.tolerance is None else self.tolerance.tolerance(),
             loads,
             jaw_force=self.jaw_force,
