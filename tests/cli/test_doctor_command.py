@@ -70,7 +70,7 @@ def test_the_report_is_read_by_people(installation: None) -> None:
 
 
 def test_nothing_is_to_add_where_all_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doctor_command, "extras", lambda: iter(()))
+    monkeypatch.setattr(doctor_command, "extras", lambda is_built: iter(()))
     monkeypatch.setattr(compiling, "LIBRARY", object())
     assert "To add" not in CliRunner().invoke(app, ["doctor"]).stdout
 

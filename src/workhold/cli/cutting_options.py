@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from math import isfinite, nan
 from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
 from workhold.cli.commands import option
-from workhold.cli.values import choice, number, optional_force, optional_positive_length, whole_number
-from workhold.errors import InputError
+from workhold.cli.values import choice, in_unit, optional_force, optional_positive_length, whole_number
 from workhold.units import Unit
 
 if TYPE_CHECKING:
@@ -113,8 +111,5 @@ def asked_power(text: str | None) -> float | None:
     """
     if text is None:
         return None
-    match = POWER_WORDS.fullmatch(text)
-    value = nan if match is None else number(match["number"]) * POWERS[(match["unit"] or "kw").lower()]
-    if not (isfinite(value) and value > 0):
-        raise InputError(f"--power {text!r} is not a power above 0: give it in kW, such as 2.2, or as 3hp.")
-    return value
+    remedy = "a power above 0: give it in kW, such as 2.2, or as 3hp."
+    return in_unit("--power", text, POWER_WORDS, POWERS, "kw", remedy)

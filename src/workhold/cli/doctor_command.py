@@ -72,7 +72,8 @@ def doctor(json_: JsonOption = False) -> None:
     """
     from workhold.cli.table import print_tables
 
-    findings = [kernels(), *extras()]
+    own = kernels()
+    findings = [own, *extras(own.state == BUILT)]
     machine = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
     if json_:
         print_json(
@@ -116,11 +117,16 @@ def kernels() -> InstallationRow:
     return InstallationRow("kernels", f"{state}, kept in {folder}", use)
 
 
-def extras() -> Iterator[InstallationRow]:
-    """Yields what was found of each extra, in the order of :data:`USES`."""
+def extras(is_built: bool) -> Iterator[InstallationRow]:
+    """Yields what was found of each extra, in the order of :data:`USES`.
+
+    Parameters
+    ----------
+    is_built : whether the package has compiled kernels for this machine, so that nothing is compiled here.
+    """
     asked = requirements()
     for extra, use in USES.items():
-        if extra == "numba" and is_built():
+        if extra == "numba" and is_built:
             yield InstallationRow(extra, "not needed here", use)
             continue
         found = [state_of(name, least) for name, least in asked.get(extra, [])]
@@ -131,11 +137,6 @@ def extras() -> Iterator[InstallationRow]:
         states = lacking or [state for state, _ in found]
         unknown = "not known: this copy was not installed as a package"
         yield InstallationRow(extra, ", ".join(states) or unknown, use, remedy)
-
-
-def is_built() -> bool:
-    """Whether the package has compiled kernels for this machine, so that nothing is compiled here."""
-    return kernels().state == BUILT
 
 
 def requirements() -> dict[str, list[tuple[str, str]]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import inf, isfinite, nan
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from workhold.units import MILLIMETRE, POUND, Unit, unit_named
 
 __all__ = [
     "choice",
+    "in_unit",
     "length",
     "length_unit",
     "number",
@@ -195,14 +196,32 @@ def optional_force(option: str, text: str | None) -> float | None:
     """
     if text is None:
         return None
-    match = FORCE.fullmatch(text)
-    value = nan if match is None else number(match["number"]) * FORCE_UNITS[(match["unit"] or "n").lower()]
-    if not (isfinite(value) and value > 0):
-        raise InputError(
-            f"{option} {text!r} is not a force above 0: give it in N, or with its unit, such as 3kN or "
-            "700lbf."
-        )
+    remedy = "a force above 0: give it in N, or with its unit, such as 3kN or 700lbf."
+    value = in_unit(option, text, FORCE, FORCE_UNITS, "n", remedy)
     refuse_strong(option, value)
+    return value
+
+
+def in_unit(
+    option: str, text: str, words: re.Pattern[str], units: Mapping[str, float], usual: str, remedy: str
+) -> float:
+    """A number above zero with a unit of its own, in what its units are counted in.
+
+    Parameters
+    ----------
+    words : what is typed, with the groups ``number`` and ``unit``.
+    units : by their names in small letters; ``usual`` is that of a number without one.
+    remedy : what the text is not, and what to give.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    match = words.fullmatch(text)
+    value = nan if match is None else number(match["number"]) * units[(match["unit"] or usual).lower()]
+    if not (isfinite(value) and value > 0):
+        raise InputError(f"{option} {text!r} is not {remedy}")
     return value
 
 

@@ -38,8 +38,9 @@ def beside_block(moves: Moves, tools: Mapping[int, Tool], part: Box) -> NDArray[
     Segments are clipped by the sides of the block, grown by the tool's radius (Y.-D. Liang and B. A. Barsky,
     *A new concept and method for line clipping*, 1984). Of an arc the box around its circle counts.
     """
-    radii = {number: tool.diameter / 2 for number, tool in tools.items()}
-    room = np.array([radii.get(number, 0.0) for number in moves.tool.tolist()]) + ALLOWANCE
+    room = np.full(len(moves), ALLOWANCE)
+    for number, tool in tools.items():
+        room[moves.tool == number] += tool.diameter / 2
     low = np.array([part.x0, part.y0]) - room[:, None]
     high = np.array([part.x1, part.y1]) + room[:, None]
     start, end = moves.start[:, :2], moves.end[:, :2]

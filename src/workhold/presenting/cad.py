@@ -6,19 +6,18 @@ the toolkit, or about the part where it lies in its own model.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import radians
 from typing import TYPE_CHECKING, Any
 
 from workhold.errors import InputError
 from workhold.files.part.data import wrapped_shapes
 from workhold.files.part.load import load
 from workhold.files.step.heights import foot_height
-from workhold.files.step.solids import along, bounding_box, sub_shapes, turn_along
+from workhold.files.step.part_shape import pose_move
+from workhold.files.step.solids import along, axis_named, bounding_box, sub_shapes, turn_along
 from workhold.files.step.writer import named_solids
-from workhold.model.bodies import BodyKind, BodySizes, FixtureBody, fixture_bodies
+from workhold.model.bodies import COLOURS
 from workhold.model.recounted import ChosenSupports
-from workhold.model.support_bodies import bodies_with_supports, supported_sizes
+from workhold.presenting.assembly import Assembly
 from workhold.presenting.data import library
 
 if TYPE_CHECKING:
@@ -88,7 +87,7 @@ def axis_name(up: Any) -> str:
         For a direction along no axis.
     """
     if isinstance(up, str):
-        return up.strip().lower().replace("+", "")
+        return axis_named(up)
     vector = getattr(up, "direction", getattr(up, "zDir", up))
     to_tuple = getattr(vector, "toTuple", None)
     try:
@@ -158,22 +157,15 @@ def bodies_of(
         As :meth:`workhold.Fixture.to_build123d`.
     """
     result = fixture.listing.result
-    bodies: Sequence[FixtureBody]
-    if supports is None:
-        placed, sizes = fixture, BodySizes.of(result.workpiece, thickness)
-        bodies = fixture_bodies(placed, result.workpiece, result.toolkit, sizes)
-    else:
-        chosen = ChosenSupports.of(supports, best)
-        placed = chosen.recounted.fixture
-        bodies = bodies_with_supports(chosen, supported_sizes(supports, thickness=thickness))
+    chosen = None if supports is None else ChosenSupports.of(supports, best)
+    assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen)
     if around is None:
-        return named_solids(bodies)
+        return named_solids(assembly.bodies)
     own = own_shape(around)
-    move = to_model(own, result.workpiece, placed)
-    rest = named_solids([body for body in bodies if body.kind is not BodyKind.PART])
-    part = next(body for body in bodies if body.kind is BodyKind.PART)
-    colour = named_solids([part])[0][2]
-    return [(part.name, own, colour), *((name, shape.Moved(move), hue) for name, shape, hue in rest)]
+    move = to_model(own, result.workpiece, assembly.fixture)
+    part, *others = assembly.bodies
+    moved = [(name, shape.Moved(move), colour) for name, shape, colour in named_solids(others)]
+    return [(part.name, own, COLOURS[part.kind]), *moved]
 
 
 def own_shape(part: Any) -> Any:
@@ -198,7 +190,7 @@ def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
     InputError
         For a part that was not read from a solid, and for a solid of another size.
     """
-    from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+    from OCP.gp import gp_Trsf, gp_Vec
     from OCP.TopLoc import TopLoc_Location
 
     solid = workpiece.solid
@@ -210,10 +202,7 @@ def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
     room = min(x0 - low[0], y0 - low[1], high[0] - x1, high[1] - y1)
     if room < -SAME_SIZE or abs(high[2] - low[2] - solid.height) > SAME_SIZE:
         raise InputError(f"around is another part than {workpiece.name}: give the one that was designed for.")
-    foot, turn, shift = gp_Trsf(), gp_Trsf(), gp_Trsf()
+    foot = gp_Trsf()
     foot.SetTranslation(gp_Vec(0.0, 0.0, -foot_height(turned)))
-    pose = fixture.pose
-    turn.SetRotation(gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), radians(pose.theta_deg))
-    shift.SetTranslation(gp_Vec(pose.x, pose.y, 0.0))
-    there = shift.Multiplied(turn).Multiplied(foot).Multiplied(turn_along(solid.axis))
+    there = pose_move(fixture.pose).Multiplied(foot).Multiplied(turn_along(solid.axis))
     return TopLoc_Location(there.Inverted())

@@ -27,7 +27,7 @@ from workhold.geometry.segment import Point
 from workhold.model.fixture import Pose
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["PartShape", "part_shape", "prepare"]
+__all__ = ["PartShape", "part_shape", "pose_move", "prepare"]
 
 Array = NDArray[np.float64]
 # How far chords and triangles may be from the shape, in mm and as a turn in radians.
@@ -57,16 +57,13 @@ class PartShape:
         from OCP.BRep import BRep_Builder
         from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
         from OCP.BRepTools import BRepTools
-        from OCP.gp import gp_Trsf
         from OCP.TopLoc import TopLoc_Location
         from OCP.TopoDS import TopoDS_Shape
 
         load_step_library()
         shape = TopoDS_Shape()
         BRepTools.Read_s(shape, BytesIO(self.kept.encode("ascii")), BRep_Builder())
-        (ux, uy), (vx, vy), (x, y) = frame(pose)
-        move = gp_Trsf()
-        move.SetValues(ux, vx, 0.0, x, uy, vy, 0.0, y, 0.0, 0.0, 1.0, 0.0)
+        move = pose_move(pose)
         # An assembly keeps no place that a solid has of its own: it becomes part of the surfaces.
         move.Multiply(shape.Location().Transformation())
         bare = shape.Located(TopLoc_Location())
@@ -77,6 +74,16 @@ class PartShape:
         (ux, uy), (vx, vy), (x, y) = frame(pose)
         turn = np.array([[ux, uy, 0.0], [vx, vy, 0.0], [0.0, 0.0, 1.0]])
         return self.positions @ turn + (x, y, 0.0), self.normals @ turn, self.triangles
+
+
+def pose_move(pose: Pose) -> Any:
+    """The move of Open CASCADE that carries a part into a pose."""
+    from OCP.gp import gp_Trsf
+
+    (ux, uy), (vx, vy), (x, y) = frame(pose)
+    move = gp_Trsf()
+    move.SetValues(ux, vx, 0.0, x, uy, vy, 0.0, y, 0.0, 0.0, 1.0, 0.0)
+    return move
 
 
 def frame(pose: Pose) -> tuple[Point, Point, Point]:
