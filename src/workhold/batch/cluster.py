@@ -147,7 +147,13 @@ class ClusterWorkers:
                 if is_killed(future) and not future.key.endswith(ALONE):
                     suspects.append(taken[1])
                     continue
-                outcome = self.outcome(future, taken[1])
+                try:
+                    outcome = self.outcome(future, taken[1])
+                except TimeoutError:
+                    # Its worker was lost before the record was fetched, so that it is made anew.
+                    pending[future.key] = taken
+                    remade.append(future)
+                    continue
                 if outcome is not None:
                     yield outcome
             if self.gone or self.client.status != "running":
@@ -189,9 +195,15 @@ class ClusterWorkers:
         return self.threads
 
     def outcome(self, future: Any, task: Task) -> Outcome | None:
-        """What came of a task; None where the scheduler has lost it."""
+        """What came of a task; None where the scheduler has lost it.
+
+        Raises
+        ------
+        TimeoutError
+            When the record does not come: waiting for ever would keep lost workers from being started again.
+        """
         if future.status == "finished":
-            outcome: Outcome = future.result()
+            outcome: Outcome = future.result(timeout=PATIENCE)
             return outcome
         if future.status == "error":
             error = future.exception()
