@@ -22,7 +22,7 @@ from workhold.model.diameter import outline_diameter, segments_diameter
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions, polygon_zone
 from workhold.model.workpiece import Workpiece
-from workhold.proof.interval_newton import contact_value
+from workhold.proof.narrowing import contact_value
 from workhold.statics.contact_matrix import outward_normals
 from workhold.verification.ball_geometry import BallOutline
 

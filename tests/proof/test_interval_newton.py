@@ -10,7 +10,8 @@ import ladders
 from exact_chords import exactly
 from workhold.kernels.base.given import Limits
 from workhold.proof import interval_newton as settling
-from workhold.proof.interval_newton import BoxOutcome, CandidateBox, solutions_in
+from workhold.proof.interval_newton import BoxOutcome, solutions_in
+from workhold.proof.narrowing import CandidateBox
 
 # The ladders' moving pegs stand among the standing ones: any gap will do here.
 LIMITS = Limits(-100.0, 0.0, 20.0, 9.0, 1.0, 0.0, 0.0)

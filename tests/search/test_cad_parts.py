@@ -68,7 +68,7 @@ def test_vises_agree_with_the_algebra(seed: int, pitch: float) -> None:
     """The other engine shares no solver, and lists the same."""
     part, vise = cad_part(seed), Vise(pitch, 1, 3)
     ours, theirs = design(part, vise), answer_by_algebra(Query(part, vise))
-    assert len(ours) > 10
+    assert len(ours) > 3
     assert_same(listed(ours), listed(theirs), Judge(part, vise))
 
 

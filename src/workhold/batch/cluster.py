@@ -149,11 +149,12 @@ class ClusterWorkers:
                     continue
                 try:
                     outcome = self.outcome(future, taken[1])
-                except TimeoutError:
-                    # Its worker was lost before the record was fetched, so that it is made anew.
+                except OSError:
+                    # Its worker or the scheduler was lost before the record was fetched; with another
+                    # worker it is made anew.
                     pending[future.key] = taken
                     remade.append(future)
-                    continue
+                    outcome = None
                 if outcome is not None:
                     yield outcome
             if self.gone or self.client.status != "running":
@@ -199,8 +200,9 @@ class ClusterWorkers:
 
         Raises
         ------
-        TimeoutError
-            When the record does not come: waiting for ever would keep lost workers from being started again.
+        OSError
+            When the record does not come in time, or its connection ends: waiting for ever would keep lost
+            workers from being started again.
         """
         if future.status == "finished":
             outcome: Outcome = future.result(timeout=PATIENCE)

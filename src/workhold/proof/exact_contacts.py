@@ -27,11 +27,11 @@ from workhold.model.clamps import LOCATORS
 from workhold.proof.interval_newton import (
     PRECISIONS,
     BoxContacts,
-    CandidateBox,
     SingularFrame,
     places,
     refined,
 )
+from workhold.proof.narrowing import CandidateBox
 
 __all__ = ["SharpReactions", "exact_rows", "rounded", "sharp_reactions"]
 

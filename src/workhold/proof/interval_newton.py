@@ -1,15 +1,15 @@
 """What double precision leaves open, decided in ball arithmetic (python-flint).
 
-A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
-there is one. At a nearly double solution three directions of the box are well determined and one is not, so
-the box is turned into the directions of the Jacobian's singular vectors. There, boxes in which some contact
-equation has no zero, or in which some rule is broken everywhere, are dropped. The interval Newton method
-(Hansen and Sengupta) makes the others smaller, and shows that there is none or exactly one solution, which
-then is judged at rising precision. What remains is cut in three. What is left after ``MOST_BOXES`` boxes
-stays undecided.
+A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact,
+if there is one; ``proof.narrowing`` makes it smaller by two rules of one or two unknowns. At a nearly
+double solution three directions of the box are well determined and one is not, so the box is turned into
+the directions of the Jacobian's singular vectors. There, boxes in which some contact equation has no zero,
+or in which some rule is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta)
+makes the others smaller, and shows that there is none or exactly one solution, which then is judged at
+rising precision. What remains is cut in three. What is left after ``MOST_BOXES`` boxes stays undecided.
 
-References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis", BIT
-21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
+References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis",
+BIT 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
 """
 
 from __future__ import annotations
@@ -39,8 +39,9 @@ from workhold.kernels.base.feature import (
 )
 from workhold.kernels.base.given import Limits
 from workhold.model.search_report import AT_AN_EDGE, NEARLY_DOUBLE
+from workhold.proof.narrowing import CandidateBox, contact_value, from_origin, narrowed
 
-__all__ = ["CandidateBox", "BoxOutcome", "contact_value", "solutions_in"]
+__all__ = ["BoxOutcome", "solutions_in"]
 
 PRECISIONS = (128, 256, 512)
 MOST_BOXES = 10000
@@ -50,26 +51,6 @@ RIM = 0.1
 SMALLER = 0.7
 # The middle one of three parts has this part of a side, and each part is so much larger than its share.
 MIDDLE, OVERLAP = 0.125, 1.0002
-
-
-@frozen
-class CandidateBox:
-    """A candidate: features touched, pegs' places, and where its solution may be.
-
-    Parameters
-    ----------
-    features : four rows of ``geometry.segment.segment_rows``, each with the slack of both ends.
-    offsets : four pegs' places in mm from the first peg, without the separation.
-    standing : how many of the pegs, the first ones, are on the carrier that stands still.
-    middle : psi in radians, tail x, tail y and separation in mm.
-    reach : how far each may be off.
-    """
-
-    features: Sequence[Sequence[float]]
-    offsets: Sequence[tuple[float, float]]
-    standing: int
-    middle: tuple[float, float, float, float]
-    reach: tuple[float, float, float, float]
 
 
 @frozen
@@ -94,19 +75,6 @@ class BoxContacts:
     values: list[arb]
     slopes: list[list[arb]]
     axis: tuple[arb, arb]
-
-
-def from_origin(row: Sequence[float], point: tuple[arb, arb]) -> tuple[arb, arb]:
-    """A point in mm from the middle of a line, or from the centre of an arc."""
-    return point[0] - row[X] - row[REST_X], point[1] - row[Y] - row[REST_Y]
-
-
-def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
-    """Contact equation in mm: distance from a line, or (distance² - R²) / 2R from an arc's centre."""
-    x, y = from_origin(row, center)
-    if row[IS_ARC] == 0.0:
-        return (row[AXIS_Y] * x - row[AXIS_X] * y) / (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
-    return (x * x + y * y - arb(row[RADIUS]) ** 2) / (2 * arb(row[RADIUS]))
 
 
 def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
@@ -311,6 +279,10 @@ def solutions_in(
 ) -> BoxOutcome | None:
     """Finds every fixture of a box, or says why it is undecided; None when the work was stopped before."""
     with ctx.workprec(PRECISIONS[0]):
+        smaller_box = narrowed(box, limits)
+        if smaller_box is None:
+            return BoxOutcome((), "")
+        box = smaller_box
         frame = SingularFrame.of(box, limits)
         waiting = [frame.start()]
         roots: list[list[arb]] = []
