@@ -18,7 +18,7 @@ from strategies import random_outline
 from workhold import InputError, Load, Plate, Result, Workpiece, design
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
-from workhold.model.query import PREFERENCES
+from workhold.model.ranking import PREFERENCES
 from workhold.search import lattice_shares
 
 

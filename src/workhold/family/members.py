@@ -24,7 +24,8 @@ from workhold.listing.canonical_form import changes
 from workhold.listing.ranking import measured
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import FIGURES, Figure, figure_number
-from workhold.model.query import DEFAULT_RANKING, PAIR_RANKING, Query
+from workhold.model.query import Query
+from workhold.model.ranking import DEFAULT_RANKING, PAIR_RANKING
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.result import Result
 from workhold.model.setup import PartZero, part_zero

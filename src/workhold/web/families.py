@@ -10,7 +10,8 @@ from attrs import evolve, frozen
 from pydantic import Field
 
 from workhold.errors import InputError
-from workhold.model.query import Query, asked_ranking
+from workhold.model.query import Query
+from workhold.model.ranking import asked_ranking
 from workhold.web.form import LARGEST, Form, Name
 from workhold.web.forms import HeldIn, ToleranceForm, WorkpieceForm
 from workhold.web.worker import Order
