@@ -35,7 +35,11 @@ class Case:
 
 def case(name: str) -> Case:
     """A case of the complete sets."""
-    truth = json.loads((TRUTH / f"{name}.json").read_text())
+    return case_of(name, json.loads((TRUTH / f"{name}.json").read_text()))
+
+
+def case_of(name: str, truth: dict[str, Any]) -> Case:
+    """The case that a file of a complete set describes."""
     vise = {**truth["vise"], "pitch": tuple(truth["vise"]["pitch"])}
     query = Query(Workpiece.from_loops(name, truth["workpiece"]["loops"]), Vise(**vise))
     table = measured(checked_table(collected([truth["fixture"]], TRUTH), query, TRUTH), query)
