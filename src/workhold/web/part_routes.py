@@ -74,7 +74,9 @@ FILE = {
     "parameters": [{"in": "header", "name": "X-Filename", "required": False, "schema": {"type": "string"}}],
 }
 UnitGiven = Literal["mm", "cm", "m", "inch"] | None
-PartGiven = Annotated[int | None, Query(ge=1, le=100_000)]
+PartGiven = Annotated[
+    str | None, Query(max_length=200, description="number of a part, or number or name of a solid")
+]
 LayersGiven = Annotated[list[Annotated[str, Query(max_length=300)]] | None, Query(max_length=500)]
 JoinGiven = Annotated[float | None, Query(ge=0, le=1e6, description="largest gap to close, in mm")]
 FitGiven = Annotated[
