@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from workhold.completeness import verify
     from workhold.errors import InputError, WorkholdError
     from workhold.files.part.load import load
+    from workhold.files.part.solids import solids_in
     from workhold.files.result.columns import answer_to_file
     from workhold.files.result.reader import read_result as open
     from workhold.files.result.save import save
@@ -67,6 +68,7 @@ __all__ = [
     "polygon_zone",
     "save",
     "seatings",
+    "solids_in",
     "verify",
 ]
 
@@ -100,6 +102,7 @@ HOMES = {
     "polygon_zone": "workhold.model.requirements",
     "save": "workhold.files.result.save",
     "seatings": "workhold.seating.solver",
+    "solids_in": "workhold.files.part.solids",
     "verify": "workhold.completeness",
 }
 

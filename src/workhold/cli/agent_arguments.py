@@ -46,8 +46,9 @@ class LoadArguments(ToolArguments):
     layers: list[str] | None = Field(
         default=None, description="DXF layers to read; all visible ones if not given"
     )
-    part_number: int | None = Field(
-        default=None, ge=1, description="which part of several, from 1 by decreasing area"
+    part_number: int | str | None = Field(
+        default=None,
+        description="which part of several, from 1 by decreasing area, or the name of a STEP file's solid",
     )
     join_tolerance: float = Field(
         default=1e-3, ge=0, description="largest gap between loose ends to close, in mm"

@@ -211,7 +211,11 @@ def features(
         None, "LENGTH", "Draw also where the centres of pegs of this radius can be."
     ),
     parts: Annotated[
-        bool, typer.Option("--parts", help="List, and draw, the parts of a file that holds several.")
+        bool,
+        typer.Option(
+            "--parts",
+            help="List, and draw, the parts of a file that holds several; of a STEP file its solids.",
+        ),
     ] = False,
     layers: Annotated[
         bool, typer.Option("--layers", help="List the layers of a DXF file with what is on them.")
@@ -230,6 +234,9 @@ def features(
     picture = asked_picture(draw, (part,), force)
     if layers:
         list_layers(part, reading, shown_unit, json_)
+        return
+    if parts and picture is None and Path(part).suffix.lower() in (".step", ".stp"):
+        list_solids(part, shown_unit, json_)
         return
     loaded = reading.load(part)
     workpiece = loaded.workpiece
@@ -297,6 +304,25 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
             f"{kinds} (hidden: read only when named)" if layer.hidden else kinds,
         )
     print_tables(table, "Read only some of them with --layer NAME, which may be repeated.")
+
+
+def list_solids(part: str, unit: Unit, as_json: bool) -> None:
+    """Prints the solids of a STEP file.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read.
+    """
+    from workhold.cli.solid_tables import solid_table
+    from workhold.cli.table import print_tables
+    from workhold.files.part.solids import solids_in
+
+    solids = solids_in(part)
+    if as_json:
+        print_json(solids=[asdict(solid) for solid in solids])
+        return
+    print_tables(solid_table(solids, unit), "Take one of them with --part and its number or its name.")
 
 
 def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) -> None:

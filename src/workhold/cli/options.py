@@ -19,7 +19,6 @@ from workhold.cli.values import (
     choice,
     length,
     length_unit,
-    optional_count,
     optional_length,
     optional_positive_length,
     whole_number,
@@ -124,7 +123,11 @@ class PartWords:
     )
     layer: list[str] | None = option(READING, "NAME", "Read only this layer; may be repeated.")
     part_number: str | None = option(
-        READING, "N", "Which part, when a drawing holds several; the largest if not given.", "--part"
+        READING,
+        "N|NAME",
+        "Which part, when a drawing holds several, or which solid of a STEP file, by its number or its name; "
+        "the largest if not given.",
+        "--part",
     )
     drawing_unit: str | None = option(
         READING,
@@ -174,12 +177,14 @@ class PartWords:
         InputError
             For words that mean nothing.
         """
+        from workhold.files.questions import number_or_name
+
         unit = length_unit(self.unit)
         return {
             "unit": self.drawing_unit,
             "usual_unit": self.unit,
             "layers": self.layer or None,
-            "part_number": optional_count(CALLED["part_number"], self.part_number),
+            "part_number": number_or_name(self.part_number),
             "join_tolerance": length(CALLED["join_tolerance"], self.join_tolerance, unit),
             "fit": optional_positive_length(CALLED["fit"], self.fit, unit),
             "axis": None if self.axis is None else choice(CALLED["axis"], self.axis, AXES),

@@ -5,11 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from workhold.cli.table import Table
-from workhold.model.solid import HeightRow
+from workhold.model.solid import FileSolid, HeightRow
 from workhold.model.workpiece import Workpiece
 from workhold.units import Unit
 
-__all__ = ["band_table", "height_table"]
+__all__ = ["band_table", "height_table", "solid_table"]
+
+
+def solid_table(solids: Sequence[FileSolid], unit: Unit) -> Table:
+    """Tabulates the solids of a file, with their names where it has any."""
+    short, named = unit.abbreviation, any(solid.name for solid in solids)
+    table = Table((">solid", *(("name",) if named else ()), f"size {short}", "lowest corner"))
+    for solid in solids:
+        size = " x ".join(unit.number(length) for length in solid.size)
+        corner = ", ".join(unit.number(value) for value in solid.low)
+        table.add_row(str(solid.number), *((solid.name,) if named else ()), size, f"({corner})")
+    return table
 
 
 def band_table(workpiece: Workpiece, unit: Unit) -> list[Table]:

@@ -28,6 +28,7 @@ __all__ = [
     "UNIT",
     "UnitAskedError",
     "by_height",
+    "number_or_name",
     "refuse_axis",
     "refuse_fit",
     "refuse_layers",
@@ -73,6 +74,18 @@ def worded(sentence: str, called: Mapping[str, str] | None) -> str:
         first, mark, rest = sentence.partition(LAYERS)
         sentence = first + mark + rest.replace(f" {LAYERS} ", ", ")
     return MARK.sub(lambda mark: names.get(mark[0][1:-1], mark[0][1:-1]), sentence)
+
+
+def number_or_name(part: int | str | None) -> int | str | None:
+    """A part's number where it is written in figures, else its name as it was given.
+
+    Examples
+    --------
+    >>> number_or_name("2"), number_or_name("base plate"), number_or_name(None)
+    (2, 'base plate', None)
+    """
+    text = part.strip() if isinstance(part, str) else ""
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 10 else part
 
 
 def refuse_layers(layers: Sequence[str] | None) -> None:

@@ -11,7 +11,7 @@ from attrs import evolve, field, frozen
 from workhold.errors import InputError
 from workhold.limits import real
 
-__all__ = ["AXES", "Band", "HeightRow", "SolidOutline"]
+__all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline"]
 
 # The directions of a file that can point up.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
@@ -168,6 +168,30 @@ class SolidOutline:
             bands=[self.bands[k] for k in order],
             faces=[self.faces[k] for k in order] if self.faces else (),
         )
+
+
+@frozen
+class FileSolid:
+    """One of the solids of a file.
+
+    Parameters
+    ----------
+    number : from 1, by decreasing volume.
+    name : as the file calls it; empty where it does not.
+    size : of its bounding box along x, y and z of the file, in mm.
+    low : lowest corner (x, y, z) of that box, in mm.
+    """
+
+    number: int
+    name: str
+    size: tuple[float, ...] = field(converter=reals_of)
+    low: tuple[float, ...] = field(converter=reals_of)
+
+    def __str__(self) -> str:
+        size = " x ".join(f"{length:.6g}" for length in self.size)
+        place = ", ".join(f"{round(value, 6) + 0.0:.6g}" for value in self.low)
+        name = f", {self.name}," if self.name else ""
+        return f"solid {self.number}{name} is {size} mm at ({place})"
 
 
 @frozen

@@ -20,6 +20,7 @@ from workhold.web.answers import contact_answer, rows_answer
 from workhold.web.fixture_tasks import (
     AT_ONCE,
     KINDS,
+    OF_BODIES,
     Before,
     ClosingForm,
     ClosingOrder,
@@ -269,6 +270,7 @@ async def paper(
         job.result_hash,
         chosen,
         before,
+        job.shape if kind in OF_BODIES else None,
     )
     content, result_hash = await at_desk(request, "paper", order)
     if result_hash is not None and job.result is result:

@@ -11,7 +11,7 @@ from hashlib import sha256
 from importlib.util import find_spec
 from math import inf
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from attrs import frozen
 from pydantic import Field
@@ -36,9 +36,13 @@ from workhold.web.support_forms import ChosenSupportsForm
 from workhold.web.support_tasks import SupportsOrder, chosen_supports
 from workhold.web.worker import Order
 
+if TYPE_CHECKING:
+    from workhold.files.step.part_shape import PartShape
+
 __all__ = [
     "AT_ONCE",
     "KINDS",
+    "OF_BODIES",
     "Before",
     "ClosingForm",
     "ClosingOrder",
@@ -64,6 +68,8 @@ KINDS = {
 Before = tuple[Query, Fixture]
 # What is made while a search goes on, too.
 AT_ONCE = ("picture.svg", "assembly.glb")
+# What shows the shape of the part.
+OF_BODIES = ("setup.step", "assembly.glb")
 
 
 @frozen(eq=False)
@@ -84,6 +90,7 @@ class PaperOrder:
     result_hash : of the result's file, or None where it is not known yet.
     supports : what supports and clamp on top are asked for, and which set of them; None for none.
     before : the set-up of the other side before; None for none.
+    shape : of the part, as its own file has it; None where a prism stands for it.
     """
 
     kind: str
@@ -97,6 +104,7 @@ class PaperOrder:
     result_hash: str | None
     supports: ChosenSupportsForm | None = None
     before: Before | None = None
+    shape: PartShape | None = None
 
     @classmethod
     def of(cls, kind: str, result: Result, rank: int, *options: Any) -> PaperOrder:
@@ -188,6 +196,7 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
     chosen = order.chosen_supports() if ending == ".step" else None
     if chosen is not None:
         settings |= {"supports": chosen, "thickness": None}
+    settings["shape"] = order.shape
     return model_bytes(order.fixture, order.result, ending, settings, order.wishes["clearance"]), None
 
 
@@ -211,7 +220,8 @@ def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
     chosen = order.chosen_supports()
     names = ("peg_length", "peg_height", *(("thickness",) if chosen is None else ()))
     lengths = {name: order.wishes[name] for name in names}
-    return Assembly.of(order.fixture, order.result, lengths, chosen).content(".glb"), None
+    assembly = Assembly.of(order.fixture, order.result, lengths, chosen, order.shape)
+    return assembly.content(".glb"), None
 
 
 MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {

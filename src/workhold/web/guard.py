@@ -105,7 +105,7 @@ HEADERS = {
     b"permissions-policy": b"camera=(), geolocation=(), microphone=()",
 }
 READING = ("GET", "HEAD", "OPTIONS")
-UPLOADS = ("/api/parts", "/api/parts/survey")
+UPLOADS = ("/api/parts", "/api/parts/survey", "/api/parts/shape")
 COOKIE = "workhold-token"
 
 

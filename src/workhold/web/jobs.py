@@ -12,7 +12,7 @@ import asyncio
 from collections.abc import Mapping
 from secrets import token_urlsafe
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from attrs import define, evolve, field
 
@@ -27,7 +27,11 @@ from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
 from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
 from workhold.web.selection import Selection
+from workhold.web.shapes import shape_size
 from workhold.web.tasks import Found, NamedQuery
+
+if TYPE_CHECKING:
+    from workhold.files.step.part_shape import PartShape
 
 __all__ = ["ServerJob", "Jobs", "TooManyError"]
 
@@ -54,6 +58,7 @@ class ServerJob:
     queries : the query, or those of a comparison and what their toolkits are called.
     address : who asked.
     kind : "design", "explore" for a comparison of toolkits, or "family" of several parts.
+    shape : of the part, where its file was sent for it.
     """
 
     name: str
@@ -81,6 +86,7 @@ class ServerJob:
     result_hash: str | None = None
     family: FamilyFound | None = None
     seatings: dict[tuple[int, int], Seating | ByHand] = field(factory=dict)
+    shape: PartShape | None = None
 
     @property
     def compares(self) -> bool:
@@ -95,10 +101,11 @@ class ServerJob:
     @property
     def size(self) -> int:
         """About how many bytes the job keeps."""
+        kept = shape_size(self.shape)
         if self.result is None:
-            return 0
+            return kept
         table = self.result.table
-        return sum(getattr(table, a.name).nbytes for a in table.__attrs_attrs__)
+        return kept + sum(int(getattr(table, a.name).nbytes) for a in table.__attrs_attrs__)
 
     def changed(self) -> None:
         """Wakes those who watch the job."""

@@ -12,7 +12,9 @@ from workhold.version import __version__
 from workhold.web.answers import figures_answer, toolkit_answer
 from workhold.web.fixture_tasks import has_step
 from workhold.web.forms import WorkpieceForm
+from workhold.web.job_routes import found_job
 from workhold.web.program_forms import ProgramQuestion
+from workhold.web.shapes import ShapeOrder
 from workhold.web.state import at_desk, state_of
 from workhold.web.tasks import Upload
 
@@ -72,7 +74,9 @@ FILE = {
     "parameters": [{"in": "header", "name": "X-Filename", "required": False, "schema": {"type": "string"}}],
 }
 UnitGiven = Literal["mm", "cm", "m", "inch"] | None
-PartGiven = Annotated[int | None, Query(ge=1, le=100_000)]
+PartGiven = Annotated[
+    str | None, Query(max_length=200, description="number of a part, or number or name of a solid")
+]
 LayersGiven = Annotated[list[Annotated[str, Query(max_length=300)]] | None, Query(max_length=500)]
 JoinGiven = Annotated[float | None, Query(ge=0, le=1e6, description="largest gap to close, in mm")]
 FitGiven = Annotated[
@@ -133,6 +137,24 @@ async def survey_part(request: Request, upload: Sent) -> dict[str, Any]:
     """
     answer: dict[str, Any] = await at_desk(request, "survey_part", upload)
     return answer
+
+
+@router.post("/parts/shape", summary="Show the shape of a job's part", openapi_extra=FILE)
+async def shape_part(
+    request: Request, job: Annotated[str, Query(max_length=100, description="its name")]
+) -> dict[str, int]:
+    """Makes bodies of a job show the part's own shape instead of a prism, from the STEP file that is sent.
+
+    The answer is how many triangles it is shown by. The job keeps the shape, not the file.
+    """
+    content, name = await request.body(), shown_name(request.headers.get("x-filename", ""))
+    held = found_job(request, job)
+    if held.kind != "design":
+        raise HTTPException(409, "Only a search for fixtures shows the shape of its part: begin one.")
+    part = held.queries[0][1].workpiece
+    held.shape = await at_desk(request, "shape", ShapeOrder(content, name, part))
+    state_of(request).jobs.make_room()
+    return {"triangles": len(held.shape.triangles)}
 
 
 def shown_name(header: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -14,22 +13,12 @@ if TYPE_CHECKING:
     from workhold.files.outline.chain import Chain
     from workhold.files.part.survey import Survey
 
-__all__ = ["solids_in", "survey_answer"]
+__all__ = ["survey_answer"]
 
 # Segments of a drawing or a layer, parts, gaps and layers of a file that are sent to be shown.
 MOST_STROKES, MOST_PARTS, MOST_GAPS, MOST_LAYERS = 20_000, 200, 500, 60
-# A solid in a remark, as ``files.step.solids.Solid`` writes it.
-SOLID = re.compile(r"solid (\d+) is ([\d.e+-]+) x ([\d.e+-]+) x ([\d.e+-]+) mm ")
-
-
-def solids_in(remarks: Iterable[str]) -> list[dict[str, Any]]:
-    """Finds the solids that a remark on several lists, with their sizes in mm.
-
-    >>> solids_in(["The file holds 2 solids: solid 1 is 9 x 8 x 7.5 mm at (0, 0, 0); solid 2 is ..."])
-    [{'number': 1, 'size': [9.0, 8.0, 7.5]}]
-    """
-    found = (match for remark in remarks for match in SOLID.finditer(remark))
-    return [{"number": int(one[1]), "size": [float(one[k]) for k in (2, 3, 4)]} for one in found]
+# Solids of a file that are sent to be shown.
+MOST_SOLIDS = 200
 
 
 def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
@@ -48,8 +37,8 @@ def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
 def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
     """Describes what a file holds and leaves open; strokes and outlines are chains of x, y in mm, bulge.
 
-    ``heights`` is what other heights of the pegs offer of a solid, and ``solids`` are those of a file with
-    several.
+    ``heights`` is what other heights of the pegs offer of a solid, and ``solids`` are those of the file with
+    their names.
     """
     return {
         "part": part,
@@ -73,5 +62,5 @@ def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> di
         ],
         "gaps": list(seen.gaps[:MOST_GAPS]),
         "heights": [] if seen.loaded is None else [asdict(row) for row in seen.loaded.heights],
-        "solids": [] if seen.loaded is None else solids_in(seen.loaded.remarks),
+        "solids": [asdict(solid) for solid in seen.solids[:MOST_SOLIDS]],
     }

@@ -26,6 +26,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
 from workhold.web.fixture_tasks import close, find_seating, make_paper
 from workhold.web.program_forms import ProgramQuestion, look_at_program
+from workhold.web.shapes import find_shape
 from workhold.web.support_tasks import find_supports
 from workhold.web.worker import Order, Tasks, worker_main
 
@@ -325,6 +326,7 @@ TASKS: Tasks = {
     "seating": find_seating,
     "closing": close,
     "supports": find_supports,
+    "shape": find_shape,
     "family": find_family,
     "family_paper": make_family_paper,
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -103,6 +104,26 @@ def test_it_is_said_how_it_stands(walk: Walk, several: str) -> None:
     page.press("#stands-head-room", "Tab")
     walk.until("state.part.solid.head_room === 0.1")
     assert page.locator("#drawing-part .never").count() == 0
+
+
+def test_solids_are_offered_by_their_names(walk: Walk, several: str, tmp_path: Path) -> None:
+    """Beside their numbers; where the one chosen is refused, the others are still there to be chosen."""
+    page, path = walk.page, tmp_path / "named.step"
+    given = iter(("base plate", "flange"))
+    text = Path(several).read_text(encoding="latin-1")
+    path.write_text(
+        re.sub(r"MANIFOLD_SOLID_BREP\(''", lambda _: f"MANIFOLD_SOLID_BREP('{next(given)}'", text)
+    )
+    stands(walk, str(path))
+    names = ["1 base plate: 80.0 × 60.0 × 20.0 mm", "2 flange: 50.0 × 40.0 × 16.0 mm"]
+    assert page.locator("[data-solid]").all_inner_texts() == names
+    page.fill("#stands-peg-height", "18")
+    page.press("#stands-peg-height", "Tab")
+    walk.until("state.part.solid?.peg_height === 18")
+    page.fill("#stands-least-band", "19")
+    page.press("#stands-least-band", "Tab")
+    walk.seen("#part-trouble:has-text('no upright face')")
+    assert page.locator("[data-solid]").all_inner_texts() == names
 
 
 def test_a_height_is_chosen_from_the_table(walk: Walk, several: str) -> None:

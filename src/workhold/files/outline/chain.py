@@ -23,6 +23,7 @@ from workhold.errors import InputError
 from workhold.geometry.rational import Pieces
 from workhold.geometry.segment import Point
 from workhold.limits import MOST_LENGTH
+from workhold.model.solid import FileSolid
 
 __all__ = ["Chain", "CurveReading", "Drawing", "Placement", "arc_bulges", "cleaned", "listed", "rebulged"]
 
@@ -151,12 +152,14 @@ class Drawing:
     remarks : what the user should know, one sentence each.
     curves : how the curves among them were read, by their labels.
     layers : the layers that segments are on, by their labels; nothing for files without layers.
+    solids : all of a STEP file, the largest first.
     """
 
     chains: tuple[Chain, ...]
     remarks: tuple[str, ...] = ()
     curves: Mapping[str, CurveReading] = field(factory=dict)
     layers: Mapping[str, str] = field(factory=dict)
+    solids: tuple[FileSolid, ...] = ()
 
 
 def arc_bulges(sweep: float) -> list[float]:

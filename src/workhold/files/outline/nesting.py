@@ -14,7 +14,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.errors import InputError
+from workhold.errors import InputError, plain, shortened
 from workhold.files.outline.joining import Loop
 from workhold.geometry.loop import (
     LoopShape,
@@ -151,16 +151,21 @@ def overlap(a: Sequence[float], b: Sequence[float]) -> bool:
     return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
-def chosen_part(parts: Sequence[DrawnPart], number: int | None) -> DrawnPart:
+def chosen_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
     """The part of a number, or the largest.
 
     Raises
     ------
     InputError
-        When there is no part of that number.
+        When there is no part of that number, and for a name.
     """
     if number is None:
         return parts[0]
+    if isinstance(number, str):
+        raise InputError(
+            f"There is no part {shortened(plain(number))!r}: only solids of a STEP file have names, so give "
+            "a number."
+        )
     if not 1 <= number <= len(parts):
         have = "only one part" if len(parts) == 1 else f"parts 1 to {len(parts)}"
         raise InputError(f"There is no part {number}: the file holds {have}, numbered by decreasing area.")

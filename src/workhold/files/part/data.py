@@ -117,7 +117,7 @@ class ObjectPart:
 
     drawing: Drawing | HeightDrawing
     name: str
-    part_number: int | None
+    part_number: int | str | None
     layered: bool = False
 
 
@@ -127,7 +127,7 @@ def drawing_of_object(
     unit: str | None,
     usual_unit: str | None,
     layers: Sequence[str] | None,
-    part_number: int | None,
+    part_number: int | str | None,
     fit: float | None,
     **view: Any,
 ) -> ObjectPart:

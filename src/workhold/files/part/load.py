@@ -25,6 +25,7 @@ from workhold.files.questions import (
     DRAWING_UNIT,
     UnitAskedError,
     by_height,
+    number_or_name,
     refuse_axis,
     refuse_fit,
     refuse_layers,
@@ -45,7 +46,7 @@ def load(
     name: str | None = None,
     unit: str | None = None,
     layers: Sequence[str] | None = None,
-    part_number: int | None = None,
+    part_number: int | str | None = None,
     join_tolerance: float = 1e-3,
     fit: float | None = None,
     axis: str | None = None,
@@ -66,7 +67,7 @@ def load(
         geometry of shapely is in mm if None.
     layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
     part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when
-        None.
+        None. Solids of a STEP file have numbers by decreasing volume, and may have names.
     join_tolerance : largest gap between loose ends to close, in mm.
     fit : how far lines and arcs may be from the curves that they replace, in mm; None refuses curves that
         are no lines or arcs. The workpiece's ``departure`` says how far
@@ -118,7 +119,7 @@ def read_workpiece(
     unit: str | None = None,
     usual_unit: str | None = None,
     layers: Sequence[str] | None = None,
-    part_number: int | None = None,
+    part_number: int | str | None = None,
     join_tolerance: float = 1e-3,
     fit: float | None = None,
     axis: str | None = None,
@@ -155,7 +156,7 @@ def read_workpiece(
         "unit": unit,
         "usual_unit": usual_unit,
         "layers": layers,
-        "part_number": part_number,
+        "part_number": number_or_name(part_number),
         "fit": fit,
     }
     options |= {"axis": axis, "section": section}
@@ -230,7 +231,7 @@ def from_json(
     content: bytes,
     unit: str | None,
     layers: Sequence[str] | None,
-    part_number: int | None,
+    part_number: int | str | None,
     own: bool,
 ) -> Loaded:
     """A workpiece from JSON bytes, of a file of the user's or of workhold's own.

@@ -27,7 +27,7 @@ from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.nesting import DrawnPart, as_one, chosen_part, nest, refuse_loops_across
 from workhold.files.questions import PART_NUMBER
 from workhold.model.own_outlines import own_name
-from workhold.model.solid import HeightRow, SolidOutline
+from workhold.model.solid import FileSolid, HeightRow, SolidOutline
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ class Loaded:
     parts : all parts the file holds, by decreasing area; ``workpiece`` is one of them.
     number : its number among them, from 1.
     heights : of a solid seen at the height of the pegs, what other heights offer.
+    solids : all of a STEP file, the largest first.
     """
 
     workpiece: Workpiece
@@ -58,6 +59,7 @@ class Loaded:
     parts: tuple[DrawnPart, ...]
     number: int = 1
     heights: tuple[HeightRow, ...] = ()
+    solids: tuple[FileSolid, ...] = ()
 
 
 def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
@@ -80,13 +82,13 @@ def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
     if own:
         workpiece = evolve(workpiece, outlines=tuple(own))
     remarks = (*drawing.remarks, *workpiece.remarks)
-    return Loaded(workpiece, remarks, (as_one(loops),), heights=drawing.heights)
+    return Loaded(workpiece, remarks, (as_one(loops),), heights=drawing.heights, solids=drawing.solids)
 
 
 def from_drawing(
     path: Path,
     drawing: Drawing,
-    part_number: int | None,
+    part_number: int | str | None,
     tolerance: float,
     fit: float | None,
     layered: bool = False,
@@ -109,7 +111,7 @@ def from_drawing(
 
 
 def is_usable(
-    path: Path, part_number: int | None, tolerance: float, fit: float | None, drawing: Drawing
+    path: Path, part_number: int | str | None, tolerance: float, fit: float | None, drawing: Drawing
 ) -> bool:
     """Whether a part can be read of a drawing."""
     try:
@@ -120,7 +122,12 @@ def is_usable(
 
 
 def outline_of(
-    path: Path, drawing: Drawing, part_number: int | None, tolerance: float, fit: float | None, layered: bool
+    path: Path,
+    drawing: Drawing,
+    part_number: int | str | None,
+    tolerance: float,
+    fit: float | None,
+    layered: bool,
 ) -> Loaded:
     """The workpiece, see :func:`from_drawing`.
 
@@ -151,7 +158,8 @@ def outline_of(
         raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
     remarks = (*drawing.remarks, *clean.remarks, *joined.remarks, *of_curves, *of_chords, *workpiece.remarks)
     remarks += (*departure_remark(departure), *stray_remarks(joined.strays))
-    return Loaded(workpiece, (*remarks, *part_remarks(parts, part, part_number)), parts, part.number)
+    remarks += tuple(part_remarks(parts, part, part_number))
+    return Loaded(workpiece, remarks, parts, part.number, solids=drawing.solids)
 
 
 def built(
@@ -184,7 +192,7 @@ def refuse_large(segments: int) -> None:
         )
 
 
-def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | None) -> list[str]:
+def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str | None) -> list[str]:
     """What to say about several parts in one file."""
     if len(parts) == 1:
         return []

@@ -30,6 +30,7 @@ from workhold.files.outline.nesting import DrawnPart, nest
 from workhold.files.part.finding import found, kind_of, read_bytes
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.questions import MARK, UNIT, worded
+from workhold.model.solid import FileSolid
 
 __all__ = ["DrawnLayer", "Survey", "drawn_layers", "survey"]
 
@@ -141,6 +142,7 @@ class Survey:
     parts : the parts that the closed outlines make, by decreasing area.
     gaps : between loose ends, each once, in increasing order.
     layers : of a DXF file those with lines, arcs or curves on them.
+    solids : of a STEP file, the largest first.
     """
 
     loaded: Loaded | None
@@ -151,6 +153,7 @@ class Survey:
     parts: tuple[DrawnPart, ...]
     gaps: tuple[float, ...]
     layers: tuple[DrawnLayer, ...] = ()
+    solids: tuple[FileSolid, ...] = ()
 
 
 def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> Survey:
@@ -183,9 +186,9 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
     size = size_of(chains)
     gaps, parts = gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
     layers = layers_of(path, unit or options.get("unit"))
-    return Survey(
-        loaded, worded(sentence, called), asked, size, chains, loaded.parts if loaded else parts, gaps, layers
-    )
+    parts = loaded.parts if loaded else parts
+    solids = loaded.solids if loaded else solids_of(path, content)
+    return Survey(loaded, worded(sentence, called), asked, size, chains, parts, gaps, layers, solids)
 
 
 MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
@@ -207,6 +210,18 @@ def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawin
     except InputError:
         pass
     return Drawing(())
+
+
+def solids_of(path: Path, content: bytes) -> tuple[FileSolid, ...]:
+    """The solids of a STEP file whose outline was refused; none of other files, and where it is damaged."""
+    try:
+        if kind_of(path, content) == "step":
+            from workhold.files.step.solid_list import listed_solids
+
+            return listed_solids(content)
+    except InputError:
+        pass
+    return ()
 
 
 def layers_of(path: Path, unit: str | None) -> tuple[DrawnLayer, ...]:

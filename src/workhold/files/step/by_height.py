@@ -35,7 +35,7 @@ from workhold.files.step.solids import (
     sub_shapes,
 )
 from workhold.files.step.which_height import advice, height_remarks, height_table
-from workhold.model.solid import HeightRow, SolidOutline
+from workhold.model.solid import FileSolid, HeightRow, SolidOutline
 
 __all__ = [
     "HeightDrawing",
@@ -63,14 +63,14 @@ class HeightView:
         None.
     head_room, least_band : in mm; the usual ones when None.
     heights : from which to which carriers with heights of their own reach, in mm, by their role.
-    part_number : which solid to take of several; the largest when None.
+    part_number : number or name of the solid to take of several; the largest when None.
     """
 
     axis: str | None = None
     peg_height: float | None = None
     head_room: float | None = None
     least_band: float | None = None
-    part_number: int | None = None
+    part_number: int | str | None = None
     heights: Mapping[str, Sequence[float]] = {}
 
     def __attrs_post_init__(self) -> None:
@@ -96,6 +96,7 @@ class HeightDrawing:
     remarks : sentences for the user.
     heights : what other heights of the pegs offer.
     own : what carriers with heights of their own meet.
+    solids : all of the file, the largest first.
     """
 
     loops: tuple[NDArray[np.float64], ...]
@@ -103,6 +104,7 @@ class HeightDrawing:
     remarks: tuple[str, ...]
     heights: tuple[HeightRow, ...]
     own: tuple[OwnDrawing, ...] = ()
+    solids: tuple[FileSolid, ...] = ()
 
 
 def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
@@ -131,13 +133,14 @@ def read_usual_apart(content: bytes, view: HeightView) -> HeightDrawing | Drawin
 
 def height_drawing_of(answered: Any) -> HeightDrawing:
     """The drawing of what :func:`plain_heights` makes."""
-    loops, solid, remarks, rows, own = answered
+    loops, solid, remarks, rows, own, solids = answered
     return HeightDrawing(
         tuple(np.array(loop) for loop in loops),
         SolidOutline(*solid),
         tuple(remarks),
         tuple(HeightRow(*row) for row in rows),
         tuple(OwnDrawing(name, tuple(map(np.array, lines)), SolidOutline(*of)) for name, lines, of in own),
+        tuple(FileSolid(*one) for one in solids),
     )
 
 
@@ -168,7 +171,8 @@ def read_usual(content: bytes, view: HeightView) -> HeightDrawing | Drawing:
     load_step_library()
     solids = read_solids(content)
     found = usual_drawing(solids, view)
-    return evolve(found, remarks=(*lost_remarks(content, solids), *found.remarks))
+    remarks = (*lost_remarks(content, solids), *found.remarks)
+    return evolve(found, remarks=remarks, solids=tuple(solid.listed for solid in solids))
 
 
 def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing | Drawing:
@@ -217,7 +221,8 @@ def plain_heights(drawing: HeightDrawing) -> Any:
     loops = [loop.tolist() for loop in drawing.loops]
     rows = [astuple(row) for row in drawing.heights]
     own = [(one.role, [loop.tolist() for loop in one.loops], astuple(one.solid)) for one in drawing.own]
-    return loops, astuple(drawing.solid), drawing.remarks, rows, own
+    solids = [astuple(one) for one in drawing.solids]
+    return loops, astuple(drawing.solid), drawing.remarks, rows, own, solids
 
 
 def read_by_height(content: bytes, view: HeightView) -> HeightDrawing:
@@ -233,7 +238,8 @@ def read_by_height(content: bytes, view: HeightView) -> HeightDrawing:
     chosen = chosen_solid(solids, view.part_number)
     drawing = drawn(chosen.shape, turned_up(chosen, view), view)
     remarks = (*lost_remarks(content, solids), *solid_remarks(solids, chosen, view.part_number))
-    return evolve(drawing, remarks=(*remarks, *drawing.remarks))
+    listed = tuple(solid.listed for solid in solids)
+    return evolve(drawing, remarks=(*remarks, *drawing.remarks), solids=listed)
 
 
 def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:

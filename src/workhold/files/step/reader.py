@@ -15,7 +15,7 @@ from math import inf
 from typing import Any, TypeVar
 
 import numpy as np
-from attrs import evolve
+from attrs import astuple, evolve
 
 from workhold.conventions import ALIGNED, EDGE_GAP, FREE_VOLUME, SAME_HEIGHT, SAME_VOLUME
 from workhold.errors import InputError
@@ -41,6 +41,7 @@ from workhold.files.step.solids import (
 )
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.model.solid import FileSolid
 
 __all__ = [
     "border_remarks",
@@ -78,7 +79,8 @@ def drawing_of(answered: Any) -> Drawing:
         label: CurveReading((x, y), departure, is_disguise, np.array(pieces), arcs)
         for label, (x, y), departure, is_disguise, pieces, arcs in answered[2]
     }
-    return Drawing(tuple(chains), tuple(answered[1]), curves)
+    solids = tuple(FileSolid(*one) for one in answered[3])
+    return Drawing(tuple(chains), tuple(answered[1]), curves, solids=solids)
 
 
 def prepare() -> None:
@@ -128,7 +130,7 @@ def plain_drawing(drawing: Drawing) -> Any:
         [label, one.place, one.departure, one.is_disguise, one.pieces.tolist(), one.arcs]
         for label, one in drawing.curves.items()
     ]
-    return chains, drawing.remarks, curves
+    return chains, drawing.remarks, curves, [astuple(one) for one in drawing.solids]
 
 
 def read_step(
@@ -136,7 +138,7 @@ def read_step(
     *,
     axis: str | None = None,
     section_height: float | None = None,
-    part_number: int | None = None,
+    part_number: int | str | None = None,
     fit: float | None = None,
 ) -> Drawing:
     """Reads the outline of a solid in a STEP file.
@@ -149,7 +151,8 @@ def read_step(
         for "y". With a minus before it the part lies on its other side, turned over like a page.
     section_height : take the section at this height in mm above the part's lowest point, instead of the
         silhouette.
-    part_number : which solid to take of several, from 1 by decreasing volume; the largest when None.
+    part_number : which solid to take of several, its number from 1 by decreasing volume, or its name; the
+        largest when None.
     fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
         ``Drawing``.
 
@@ -161,14 +164,15 @@ def read_step(
     load_step_library()
     solids = read_solids(content)
     drawing = read_solid(solids, axis, section_height, part_number, fit)
-    return evolve(drawing, remarks=(*lost_remarks(content, solids), *drawing.remarks))
+    remarks = (*lost_remarks(content, solids), *drawing.remarks)
+    return evolve(drawing, remarks=remarks, solids=tuple(solid.listed for solid in solids))
 
 
 def read_solid(
     solids: tuple[Solid, ...],
     axis: str | None,
     section_height: float | None,
-    part_number: int | None,
+    part_number: int | str | None,
     fit: float | None,
 ) -> Drawing:
     """The outline of one of some solids, see :func:`read_step`.
@@ -305,9 +309,9 @@ def read_shapes(
     *,
     axis: str | None = None,
     section_height: float | None = None,
-    part_number: int | None = None,
+    part_number: int | str | None = None,
     fit: float | None = None,
-) -> tuple[Drawing, int | None]:
+) -> tuple[Drawing, int | str | None]:
     """The drawing of some shapes, and the number of the part that is still to be taken of it.
 
     Parameters

@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
+from difflib import get_close_matches
 from math import isfinite
 from typing import Any
 
-from attrs import frozen
+from attrs import evolve, frozen
 
-from workhold.errors import InputError
+from workhold.errors import InputError, plain, shortened
 from workhold.files.questions import PART_NUMBER
+from workhold.files.step.body_names import named_shapes
+from workhold.files.step.shape_parts import bounding_box, sub_shapes
 from workhold.limits import MOST_LENGTH
+from workhold.model.solid import FileSolid
 
 __all__ = [
     "AXES",
     "Solid",
     "along",
     "axis_named",
+    "bounding_box",
     "chosen_solid",
     "lost_remarks",
     "numbered",
     "read_solids",
     "solid_remarks",
+    "sub_shapes",
 ]
 
 # What becomes x, y and up for each axis: the part is seen from the axis's far end, right-handed.
@@ -40,6 +46,7 @@ class Solid:
     shape : Open CASCADE's solid, in mm.
     volume : in mm³.
     low, high : corners (x, y, z) of its bounding box in mm.
+    name : as the file calls it; empty where it does not.
     """
 
     number: int
@@ -47,11 +54,13 @@ class Solid:
     volume: float
     low: tuple[float, float, float]
     high: tuple[float, float, float]
+    name: str = ""
 
-    def __str__(self) -> str:
-        size = " x ".join(f"{b - a:.6g}" for a, b in zip(self.low, self.high, strict=True))
-        place = ", ".join(f"{round(a, 6) + 0.0:.6g}" for a in self.low)
-        return f"solid {self.number} is {size} mm at ({place})"
+    @property
+    def listed(self) -> FileSolid:
+        """The solid as it is listed."""
+        size = tuple(b - a for a, b in zip(self.low, self.high, strict=True))
+        return FileSolid(self.number, self.name, size, self.low)
 
 
 def read_solids(content: bytes) -> tuple[Solid, ...]:
@@ -63,8 +72,11 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
         For files that are no STEP, damaged, without a unit of length, or without a solid.
     """
     refuse_other_formats(content)
-    shape = transferred(content)
-    solids = numbered(sub_shapes(shape, "SOLID"))
+    reader = read_through(content)
+    shape = reader.OneShape()
+    found = sub_shapes(shape, "SOLID")
+    named = named_shapes(reader) if len(found) > 1 else None
+    solids = numbered(found) if named is None else numbered(*zip(*named, strict=True))
     if not solids:
         if counted_in_text(content):
             raise InputError(
@@ -76,16 +88,18 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
     return solids
 
 
-def numbered(shapes: Iterable[Any]) -> tuple[Solid, ...]:
-    """Solids of Open CASCADE by decreasing volume.
+def numbered(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, ...]:
+    """Solids of Open CASCADE by decreasing volume, with their names where these are known.
 
     Raises
     ------
     InputError
         As :func:`measured`.
     """
-    solids = sorted(map(measured, shapes), key=lambda solid: (-solid.volume, solid.low, solid.high))
-    return tuple(Solid(k, s.shape, s.volume, s.low, s.high) for k, s in enumerate(solids, start=1))
+    called = names or [""] * len(shapes)
+    found = [evolve(measured(shape), name=name) for shape, name in zip(shapes, called, strict=True)]
+    solids = sorted(found, key=lambda solid: (-solid.volume, solid.low, solid.high))
+    return tuple(evolve(solid, number=number) for number, solid in enumerate(solids, start=1))
 
 
 def counted_in_text(content: bytes) -> int:
@@ -125,8 +139,8 @@ def refuse_other_formats(content: bytes) -> None:
         raise InputError("the STEP file does not give its unit of length: export it again, with units.")
 
 
-def transferred(content: bytes) -> Any:
-    """The shape that holds everything in the file.
+def read_through(content: bytes) -> Any:
+    """A reader of the library that has read the file, and has one shape of everything in it.
 
     Raises
     ------
@@ -141,30 +155,14 @@ def transferred(content: bytes) -> Any:
     reader = STEPControl_Reader()
     try:
         status = reader.ReadStream("part", BytesIO(content))
-        if status == IFSelect_ReturnStatus.IFSelect_RetDone and reader.TransferRoots():
-            shape = reader.OneShape()
-            if not shape.IsNull():
-                return shape
+        is_read = status == IFSelect_ReturnStatus.IFSelect_RetDone and reader.TransferRoots()
+        if is_read and not reader.OneShape().IsNull():
+            return reader
     except Exception as error:  # a damaged file may fail anywhere inside the library
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
     if status != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.")
     raise InputError("the STEP file holds no solid: export the part as a closed solid.")
-
-
-def sub_shapes(shape: Any, kind: str) -> list[Any]:
-    """The "SOLID", "FACE", "WIRE", "EDGE" or "VERTEX" parts of a shape, each as often as it is used."""
-    from OCP import TopAbs
-    from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
-
-    cast = getattr(TopoDS, kind.capitalize())
-    explorer = TopExp_Explorer(shape, getattr(TopAbs.TopAbs_ShapeEnum, f"TopAbs_{kind}"))
-    found = []
-    while explorer.More():
-        found.append(cast(explorer.Current()))
-        explorer.Next()
-    return found
 
 
 def measured(shape: Any) -> Solid:
@@ -189,40 +187,66 @@ def measured(shape: Any) -> Solid:
     return Solid(0, shape, volume, low, high)
 
 
-def bounding_box(shape: Any) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """Both corners of a shape's bounding box in mm, to rounding."""
-    from OCP.Bnd import Bnd_Box
-    from OCP.BRepBndLib import BRepBndLib
-
-    box = Bnd_Box()
-    BRepBndLib.AddOptimal_s(shape, box, False, False)
-    low, high = box.CornerMin(), box.CornerMax()
-    return (low.X(), low.Y(), low.Z()), (high.X(), high.Y(), high.Z())
-
-
-def chosen_solid(solids: tuple[Solid, ...], number: int | None) -> Solid:
-    """The solid of a number, or the largest.
+def chosen_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
+    """The solid of a number or a name, or the largest.
 
     Raises
     ------
     InputError
-        When there is no solid of that number.
+        When there is no solid of that number or name, and when there are several of that name.
     """
     if number is None:
         return solids[0]
+    if isinstance(number, str):
+        return solid_called(solids, number)
     if not 1 <= number <= len(solids):
         have = "only one solid" if len(solids) == 1 else f"solids 1 to {len(solids)}"
         raise InputError(f"There is no part {number}: the file holds {have}, numbered by decreasing volume.")
     return solids[number - 1]
 
 
-def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | None) -> list[str]:
+def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
+    """The only solid of a name, as it is written, or else in any mixture of capitals.
+
+    Raises
+    ------
+    InputError
+        When there is none, naming those that are close, and when there are several, with their numbers.
+    """
+    if len(solids) == 1:
+        raise InputError(f"the STEP file holds only one solid: leave {PART_NUMBER} out.")
+    asked = " ".join(name.split())
+    found = [solid for solid in solids if solid.name == asked]
+    found = found or [solid for solid in solids if solid.name.casefold() == asked.casefold()]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        numbers = ", ".join(str(solid.number) for solid in found[:SOLID_LIST])
+        more = f" and {len(found) - SOLID_LIST} more" if len(found) > SOLID_LIST else ""
+        raise InputError(
+            f"{len(found)} solids of the file are called {found[0].name!r}: give the number of one of them, "
+            f"{numbers}{more}."
+        )
+    names = {solid.name.casefold(): solid.name for solid in solids if solid.name}
+    if not names:
+        raise InputError(
+            f"The solids of the file have no names: give a number from 1 to {len(solids)} instead of "
+            f"{shortened(plain(asked))!r}."
+        )
+    close = get_close_matches(asked.casefold(), list(names), SOLID_LIST, 0.5) or list(names)[:SOLID_LIST]
+    raise InputError(
+        f"No solid of the file is called {shortened(plain(asked))!r}: give a number, or a name such as "
+        f"{', '.join(names[one] for one in close)}."
+    )
+
+
+def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | None) -> list[str]:
     """What to say about several solids in one file."""
     if len(solids) == 1:
         return []
     more = f"; and {len(solids) - SOLID_LIST} smaller ones" if len(solids) > SOLID_LIST else ""
     because = "" if asked is not None else f", the largest (choose another with {PART_NUMBER})"
-    listing = "; ".join(str(solid) for solid in solids[:SOLID_LIST])
+    listing = "; ".join(str(solid.listed) for solid in solids[:SOLID_LIST])
     return [f"The file holds {len(solids)} solids: {listing}{more}. Solid {chosen.number} is used{because}."]
 
 

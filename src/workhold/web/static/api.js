@@ -81,12 +81,22 @@ export function send(path, body, options = {}) {
  * @param {Object<string, any>} how unit, part, layer (several), join, axis, heights; those that are undefined are not sent
  */
 export function surveyPart(file, how = {}) {
+  return sendFile("parts/survey", file, how);
+}
+
+/**
+ * Send a file as it is.
+ * @param {string} path after /api/
+ * @param {File} file
+ * @param {Object<string, any>} [how] values of the address; those that are undefined are not sent
+ */
+export function sendFile(path, file, how = {}) {
   const query = new URLSearchParams();
   for (const [name, value] of Object.entries(how)) {
     for (const each of Array.isArray(value) ? value : [value]) if (each !== undefined) query.append(name, String(each));
   }
   const headers = { "X-Filename": encodeURIComponent(file.name), "Content-Type": "application/octet-stream" };
-  return ask(`parts/survey${query.size ? `?${query}` : ""}`, { method: "POST", headers, body: file });
+  return ask(`${path}${query.size ? `?${query}` : ""}`, { method: "POST", headers, body: file });
 }
 
 /**

@@ -165,6 +165,11 @@ export function setUps() {
   return all.flatMap((side, number) => (side?.job && side.rank ? [{ number, job: side.job, rank: side.rank, part: side.part, known: side.known }] : []));
 }
 
+/** The file of a side's part, how it was read and what was told of it; null where it is not at hand. @param {number} number of the side */
+export function fileOf(number) {
+  return !state.sides || state.sides.shown === number ? fileRead() : files[number];
+}
+
 /** As a value of an address: the first side's set-up, for the sheet of the second; nothing for that of the first. @param {number} number of the side */
 export function firstSideQuery(number) {
   const first = number ? setUps().find((one) => one.number === 0) : undefined;

@@ -3,8 +3,10 @@
  */
 import { ApiError, downloadPath, fetched } from "./api.js";
 import { byId, make, show } from "./dom.js";
+import { hasShape, isSent, sendShape } from "./part-shape.js";
 import { SIDES, setUps } from "./set-ups.js";
 import { sheetQuery } from "./sheet-fields.js";
+import { playing, stopPlaying } from "./space/playing.js";
 import { bodiesOf } from "./space/glb-reading.js";
 import { on, state } from "./state.js";
 import { supportsQuery } from "./supports.js";
@@ -26,13 +28,18 @@ export function spaceDialog() {
   const dialog = /** @type {HTMLDialogElement} */ (byId("space"));
   const slider = /** @type {HTMLInputElement} */ (byId("space-opening"));
   byId("in-space").addEventListener("click", openSpace);
-  slider.addEventListener("input", () => opened(Number(slider.value)));
+  slider.addEventListener("input", () => {
+    stopPlaying();
+    opened(Number(slider.value));
+  });
+  byId("space-play").addEventListener("click", play);
   byId("space-first").addEventListener("click", () => view?.fit());
   byId("space-above").addEventListener("click", () => view?.look(0, Math.PI / 2));
   byId("space-front").addEventListener("click", () => view?.look(0, 0));
-  for (const number of SIDES.keys()) byId(`space-side-${number}`).addEventListener("click", () => showSide(number));
+  for (const number of SIDES.keys()) byId(`space-side-${number}`).addEventListener("click", () => chooseSide(number));
   dialog.addEventListener("close", () => {
     latest += 1;
+    stopPlaying();
     view?.clear();
   });
   on(["selected"], () => byId("in-space").toggleAttribute("disabled", !state.selected));
@@ -47,15 +54,17 @@ function made() {
     make("h2", { id: "space-title" }),
     make("div.segmented", { id: "space-sides", role: "group", "aria-label": "Side of the part", hidden: true }, ...SIDES.map((words, number) => button(`space-side-${number}`, words))),
     make("p", { id: "space-words", role: "status" }),
+    make("p.small", { id: "space-shape", role: "status", hidden: true }),
     make("div.trouble-box", { id: "space-trouble", role: "alert", hidden: true }),
     make("div", { id: "space-turn" },
       make("canvas", { id: "space-canvas", tabindex: "0", role: "application", "aria-label": label, "aria-describedby": "space-hint" }),
+      make("output.small", { id: "space-name", for: "space-canvas" }),
       make("p.small.faint", { id: "space-hint" }, hint),
       make("label.inline", { id: "space-slider" }, "Opened by ",
         make("input", { type: "range", id: "space-opening", min: "0", max: "1", value: "0" }), " ",
         make("output", { id: "space-opened", for: "space-opening" }, "closed")),
       make("div.row-of-buttons", {},
-        button("space-first", "Show all"), button("space-above", "From above"), button("space-front", "From the front"))),
+        button("space-play", "Play"), button("space-first", "Show all"), button("space-above", "From above"), button("space-front", "From the front"))),
     make("ul.kinds.small", { id: "space-kinds", "aria-label": "Bodies by kind" }),
     make("div.row-of-buttons", {}, make("a.button", { id: "space-save", download: true }, "Save as GLB")),
     make("form", { method: "dialog" }, make("button.primary", {}, "Close")));
@@ -76,7 +85,9 @@ async function showSide(number) {
   const mine = ++latest;
   const trouble = byId("space-trouble");
   show(trouble, false);
+  byId("space").setAttribute("aria-busy", "true");
   byId("space-words").textContent = "";
+  sayOfShape("");
   byId("space-kinds").replaceChildren();
   show(byId("space-sides"), all.length > 1);
   for (const other of SIDES.keys()) byId(`space-side-${other}`).setAttribute("aria-pressed", String(other === number));
@@ -86,15 +97,12 @@ async function showSide(number) {
   const path = downloadPath(shown.job, shown.rank, "assembly.glb", { ...Object.fromEntries(sizes), ...supported });
   byId("space-save").setAttribute("href", path);
   try {
-    const { content } = await fetched(path);
-    const bodies = bodiesOf(await content.arrayBuffer());
-    const shownBy = await viewOf();
-    if (mine !== latest) return;
-    tell(bodies);
+    const bodies = await shownFrom(path, mine);
+    if (!bodies) return;
     if (isPlain) byId("space-words").textContent = NO_WEBGL;
-    shownBy.show(bodies);
     byId("space-canvas").focus();
     setSlider(bodies);
+    await withShape(shown, path, mine);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     if (mine !== latest) return;
@@ -102,7 +110,61 @@ async function showSide(number) {
     trouble.textContent = error.status === 404 && all.length > 1 && number !== state.sides?.shown
       ? `The search for the ${SIDES[number].toLowerCase()} has been forgotten: show that side once, and it is searched again.` : error.message;
     show(trouble, true);
+  } finally {
+    if (mine === latest) byId("space").setAttribute("aria-busy", "false");
   }
+}
+
+/**
+ * Fetch bodies and show them.
+ * @param {string} path
+ * @param {number} mine what they are fetched for, which may have been overtaken meanwhile
+ * @param {boolean} [still] whether they are seen as those before are
+ * @returns {Promise<import("./space/glb-reading.js").Body[]|null>} null where something else is shown by now
+ */
+async function shownFrom(path, mine, still = false) {
+  const { content } = await fetched(path);
+  const bodies = bodiesOf(await content.arrayBuffer());
+  const shownBy = await viewOf();
+  if (mine !== latest) return null;
+  tell(bodies);
+  shownBy.show(bodies, still);
+  return bodies;
+}
+
+/** Show the part as its file has it; where that cannot be, it stays a prism, and why is told. */
+async function withShape(shown, path, mine) {
+  if (isSent(shown)) return;
+  if (hasShape(shown)) sayOfShape("Reading the shape of the part …");
+  const why = await sendShape(shown);
+  if (mine !== latest) return;
+  sayOfShape(why);
+  if (isSent(shown)) await shownFrom(path, mine, true);
+}
+
+/** Say something about the shape of the part. @param {string} words */
+function sayOfShape(words) {
+  byId("space-shape").textContent = words;
+  show(byId("space-shape"), words !== "");
+}
+
+/** Show a side that was asked for by hand. @param {number} number */
+function chooseSide(number) {
+  stopPlaying();
+  return showSide(number);
+}
+
+/** Play the closing, of one side after the other where there are two. */
+async function play() {
+  const slider = /** @type {HTMLInputElement} */ (byId("space-opening"));
+  const sides = setUps().map(({ number }) => number);
+  await playing(sides, {
+    show: (number) => (sides.length > 1 ? showSide(number) : Promise.resolve()),
+    open: (share) => {
+      slider.value = String(share * Number(slider.max));
+      opened(Number(slider.value));
+    },
+  });
 }
 
 /** Whether the view does without WebGL. */
@@ -133,6 +195,9 @@ async function viewOf() {
     view ??= new PlainView(canvas, /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d")));
     isPlain = true;
   }
+  view.onPoint = (number) => {
+    byId("space-name").textContent = number === null ? "" : (names[number] ?? "");
+  };
   return view;
 }
 
@@ -153,8 +218,12 @@ function opened(by) {
   byId("space-opened").textContent = by ? length(by, 1) : "closed";
 }
 
+/** Names of the bodies shown. @type {string[]} */
+let names = [];
+
 /** Say what there is of each kind. */
 function tell(bodies) {
+  names = bodies.map((body) => (body.name.startsWith(body.kind) ? body.name : `${body.kind}: ${body.name}`));
   const kinds = [...new Set(bodies.map((body) => body.kind))];
   byId("space-kinds").replaceChildren(
     ...kinds.map((kind) => {

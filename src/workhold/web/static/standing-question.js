@@ -12,8 +12,10 @@ const NEAR = 1e-6;
 /** Heights that a file is read with where nobody says, in mm. */
 const HEAD_ROOM = 0.5;
 const LEAST_BAND = 1;
+/** So many solids have a button each; of more one is chosen from a list. */
+const MOST_BUTTONS = 12;
 
-/** Solids that the file held when it was last read as a part. @type {{number: number, size: number[]}[]} */
+/** The solids of the file. @type {{number: number, name: string, size: number[]}[]} */
 let solids = [];
 
 /** Forget the solids of the file before. */
@@ -49,9 +51,15 @@ export function standingQuestion({ solid, part, heights = [], solids: listed = [
 function which(how, answer) {
   if (solids.length < 2) return [];
   const used = how.part ?? 1;
-  const button = ({ number: own, size }) => make("button", {
-    type: "button", "data-solid": own, "aria-pressed": String(own === used), click: () => answer({ part: own }),
-  }, `${own}: ${size.map((one) => bareLength(one, 1)).join(" × ")} ${unitWord()}`);
+  const words = ({ number: own, name, size }) => `${own}${name && ` ${name}`}: ${size.map((one) => bareLength(one, 1)).join(" × ")} ${unitWord()}`;
+  if (solids.length > MOST_BUTTONS) {
+    const options = solids.map((each) => make("option", { value: each.number, selected: each.number === used }, words(each)));
+    const list = /** @type {HTMLSelectElement} */ (make("select", { id: "which-solid", change: () => answer({ part: Number(list.value) }) }, ...options));
+    return [make("label", {}, `Of its ${solids.length} solids`, list)];
+  }
+  const button = (each) => make("button", {
+    type: "button", "data-solid": each.number, "aria-pressed": String(each.number === used), click: () => answer({ part: each.number }),
+  }, words(each));
   return [make("div.row-of-buttons", {}, make("span", {}, "Of its solids:"), ...solids.map(button))];
 }
 

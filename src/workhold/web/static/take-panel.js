@@ -4,6 +4,7 @@
 import { ApiError, downloadPath, fetched } from "./api.js";
 import { byId, make, show } from "./dom.js";
 import { keep } from "./link.js";
+import { sendShape } from "./part-shape.js";
 import { searching } from "./search.js";
 import { sheetFields, sheetQuery } from "./sheet-fields.js";
 import { firstSideQuery, SIDES, setUps } from "./set-ups.js";
@@ -71,6 +72,7 @@ async function save(event) {
   if (!path || link.getAttribute("aria-busy") === "true") return;
   link.setAttribute("aria-busy", "true");
   try {
+    if (link.id === "take-step") await withShape();
     const { content, name } = await fetched(path);
     const address = URL.createObjectURL(content);
     make("a", { href: address, download: name }).click();
@@ -82,6 +84,13 @@ async function save(event) {
   } finally {
     link.removeAttribute("aria-busy");
   }
+}
+
+/** See to it that the set-up shows the shape of the part, or say that it is a prism. */
+async function withShape() {
+  const shown = setUps().find(({ number }) => number === (state.sides?.shown ?? 0));
+  const why = shown ? await sendShape(shown) : "";
+  if (why) toast(why);
 }
 
 /** Copy the page's address, which holds the whole state. */

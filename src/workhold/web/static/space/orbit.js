@@ -32,12 +32,24 @@ export class Orbit {
     this.waiting = false;
     /** @type {Map<number, number[]>} */
     this.pointers = new Map();
+    /** Told the number of the body that is pointed at, null for none. @type {((number: number|null) => void)|null} */
+    this.onPoint = null;
     this.listen();
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
   /** Draw now; by what is made of this. */
   render() {}
+
+  /**
+   * The number of the body at a place of the canvas, null for none; by what is made of this.
+   * @param {number} _x in pixels of the page
+   * @param {number} _y
+   * @returns {number|null}
+   */
+  bodyAt(_x, _y) {
+    return null;
+  }
 
   /** Unit vectors to the right, upward, and from what is seen to the eye. */
   axes() {
@@ -47,14 +59,16 @@ export class Orbit {
   }
 
   /**
-   * See all of some boxes.
-   * @param {number[]} low corner of all bodies
-   * @param {number[]} high
+   * See all of some bodies.
+   * @param {import("./glb-reading.js").Body[]} bodies
+   * @param {boolean} still whether they are looked at as those before
    */
-  frame(low, high) {
+  frame(bodies, still) {
+    const [low, high] = boxAbout(bodies);
     this.middle = low.map((value, k) => (value + high[k]) / 2);
     this.size = Math.hypot(...low.map((value, k) => high[k] - value)) || 1;
-    this.fit();
+    if (still) this.draw();
+    else this.fit();
   }
 
   /** See everything from where it is seen first. */
@@ -108,6 +122,7 @@ export class Orbit {
     for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
       canvas.addEventListener(name, (event) => pointers.delete(/** @type {PointerEvent} */ (event).pointerId));
     }
+    canvas.addEventListener("pointerleave", () => this.onPoint?.(null));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
@@ -119,7 +134,10 @@ export class Orbit {
   /** One finger or the mouse turns; two fingers, the right button or Shift move, and two fingers zoom. */
   moved(event) {
     const before = this.pointers.get(event.pointerId);
-    if (!before) return;
+    if (!before) {
+      this.onPoint?.(this.bodyAt(event.offsetX, event.offsetY));
+      return;
+    }
     const [dx, dy] = [event.clientX - before[0], event.clientY - before[1]];
     const spread = () => {
       const [[ax, ay], [bx, by]] = [...this.pointers.values()];

@@ -3,7 +3,7 @@
  *
  * Where WebGL is drawn by the processor, this is some times as fast as it (benchmarks/in_space.py).
  */
-import { boxAbout, HALF_FIELD, Orbit } from "./orbit.js";
+import { HALF_FIELD, Orbit } from "./orbit.js";
 
 /** Pixels that are filled at most while it is turned, and once it rests; a larger canvas is drawn coarser. */
 const MOST_PIXELS = 420_000;
@@ -31,17 +31,19 @@ export class PlainView extends Orbit {
     this.shown = [];
     this.opened = 0;
     this.resting = 0;
+    /** What was drawn last. @type {Pixels|null} */
+    this.seen = null;
   }
 
   /**
    * Show other bodies, seen whole.
    * @param {import("./glb-reading.js").Body[]} bodies
+   * @param {boolean} [still] whether they are opened and looked at as those before
    */
-  show(bodies) {
+  show(bodies, still = false) {
     this.shown = bodies;
-    this.opened = 0;
-    const [low, high] = boxAbout(bodies);
-    this.frame(low, high);
+    if (!still) this.opened = 0;
+    this.frame(bodies, still);
   }
 
   /** Take away all bodies. */
@@ -73,6 +75,16 @@ export class PlainView extends Orbit {
     const seen = new Pixels(width, height);
     for (const body of this.shown) this.fill(seen, body);
     this.context.putImageData(seen.picture(), 0, 0);
+    this.seen = seen;
+  }
+
+  /** The number of the body at a place of the canvas, see Orbit. */
+  bodyAt(x, y) {
+    const { seen } = this;
+    if (!seen) return null;
+    const [column, row] = [(x * seen.width) / this.canvas.clientWidth, (y * seen.height) / this.canvas.clientHeight].map(Math.floor);
+    const number = seen.which[row * seen.width + column] ?? -1;
+    return number < 0 ? null : seen.triangles[number].body - 1;
   }
 
   /** Fill the triangles of a body that look this way. */

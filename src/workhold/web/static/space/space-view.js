@@ -2,7 +2,7 @@
  * Bodies in three dimensions on a canvas, drawn by the graphics card, or by what stands in for one.
  */
 import { edgesOf } from "./edges.js";
-import { boxAbout, FIELD, Orbit } from "./orbit.js";
+import { FIELD, Orbit } from "./orbit.js";
 import * as THREE from "./three.module.min.js";
 
 /** A view of bodies with WebGL. */
@@ -24,13 +24,16 @@ export class SpaceView extends Orbit {
     this.scene.add(this.group);
     /** @type {{mesh: any, opens: number[]|null}[]} */
     this.shown = [];
+    this.opened = 0;
   }
 
   /**
    * Show other bodies, seen whole.
    * @param {import("./glb-reading.js").Body[]} bodies
+   * @param {boolean} [still] whether they are opened and looked at as those before
    */
-  show(bodies) {
+  show(bodies, still = false) {
+    const by = still ? this.opened : 0;
     this.clear();
     for (const body of bodies) {
       const geometry = new THREE.BufferGeometry();
@@ -48,8 +51,8 @@ export class SpaceView extends Orbit {
       this.group.add(mesh);
       this.shown.push({ mesh, opens: body.opens });
     }
-    const [low, high] = boxAbout(bodies);
-    this.frame(low, high);
+    this.open(by);
+    this.frame(bodies, still);
   }
 
   /** Take away all bodies and what the graphics card holds of them. */
@@ -67,10 +70,20 @@ export class SpaceView extends Orbit {
 
   /** Open what moves by a length in metres. */
   open(by) {
+    this.opened = by;
     for (const { mesh, opens } of this.shown) {
       if (opens) mesh.position.set(opens[0] * by, opens[1] * by, opens[2] * by);
     }
     this.draw();
+  }
+
+  /** The number of the body at a place of the canvas, see Orbit. */
+  bodyAt(x, y) {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
+    const [hit] = caster.intersectObjects(this.shown.map(({ mesh }) => mesh), false);
+    return hit ? this.shown.findIndex(({ mesh }) => mesh === hit.object) : null;
   }
 
   /** Draw now. */

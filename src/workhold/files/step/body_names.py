@@ -1,0 +1,151 @@
+"""The solids of a STEP file that has several, with what the file calls them.
+
+A solid may be named itself, by its product, and by the places in which assemblies use the product. The
+nearest of these names that says something is taken. That is its own where a product has several solids, else
+that of the product, else that of what the product is in.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+from attrs import frozen
+
+from workhold.errors import plain, shortened
+from workhold.files.step.shape_parts import sub_shapes
+
+__all__ = ["named_shapes"]
+
+LONGEST_NAME = 80
+# What programs write where nobody has given a name.
+NO_NAME = re.compile(
+    r"(?:none|unnamed|no_?name|solid|compound|shell|shape|body|\d+|nauo\d*|=>\[[\d:]*\]|open cascade .*)?",
+    re.IGNORECASE,
+)
+
+
+@frozen
+class ProductPlace:
+    """A product where it is used: its shape there, and names from the outermost assembly inward."""
+
+    shape: Any
+    names: tuple[str, ...]
+
+
+def named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
+    """Every solid of what a reader of STEP files has read, with its name; empty where it has none.
+
+    Returns
+    -------
+    None where the library does not know: the solids are those of the reader then, without names.
+    """
+    from OCP.STEPCAFControl import STEPCAFControl_Reader
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDocStd import TDocStd_Document
+    from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+    # Whatever fails over names, the solids are there without them.
+    with suppress(Exception):
+        naming = STEPCAFControl_Reader(reader.WS(), False)
+        for other in (naming.SetColorMode, naming.SetLayerMode, naming.SetPropsMode, naming.SetGDTMode):
+            other(False)
+        document = TDocStd_Document(TCollection_ExtendedString("names"))
+        if not naming.Transfer(document):
+            return None
+        process = naming.ChangeReader().WS().TransferReader()
+        found = []
+        for label in children(XCAFDoc_DocumentTool.ShapesLabel_s(document.Main())):
+            for place in places(label):
+                solids = sub_shapes(place.shape, "SOLID")
+                found += [(solid, name_of(solid, place, len(solids), process)) for solid in solids]
+        wanted = Counter(map(position, sub_shapes(reader.OneShape(), "SOLID")))
+        return found if Counter(position(solid) for solid, _ in found) == wanted else None
+    return None
+
+
+def position(shape: Any) -> tuple[float, ...]:
+    """Where a solid is placed, rounded so that two readings of a file agree."""
+    move = shape.Location().Transformation()
+    return tuple(round(move.Value(row, column), 6) for row in (1, 2, 3) for column in (1, 2, 3, 4))
+
+
+def children(label: Any) -> Iterator[Any]:
+    """The labels directly under a label."""
+    from OCP.TDF import TDF_ChildIterator
+
+    at = TDF_ChildIterator(label, False)
+    while at.More():
+        yield at.Value()
+        at.Next()
+
+
+def places(label: Any) -> Iterator[ProductPlace]:
+    """Every place in which a product without others in it is used, of a label that nothing else uses."""
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+    if XCAFDoc_ShapeTool.IsFree_s(label):
+        yield from places_under(label, TopLoc_Location(), ())
+
+
+def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[ProductPlace]:
+    """The places of a label and all below it.
+
+    Parameters
+    ----------
+    moved : where the assemblies around it place it.
+    names : of these assemblies.
+    """
+    from OCP.TDF import TDF_Label
+    from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+    product = label
+    if XCAFDoc_ShapeTool.IsReference_s(label):
+        product = TDF_Label()
+        XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
+        moved = moved.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label))
+    names = (*names, called(label), called(product))
+    if not XCAFDoc_ShapeTool.IsAssembly_s(product):
+        yield ProductPlace(XCAFDoc_ShapeTool.GetShape_s(product).Moved(moved), names)
+        return
+    for below in children(product):
+        if XCAFDoc_ShapeTool.IsComponent_s(below):
+            yield from places_under(below, moved, names)
+
+
+def called(label: Any) -> str:
+    """The name at a label; empty where it says nothing."""
+    from OCP.TDataStd import TDataStd_Name
+
+    name = TDataStd_Name()
+    return shown_name(name.Get().ToExtString()) if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
+
+
+def shown_name(name: str) -> str:
+    """A name fit to be shown; empty where it says nothing.
+
+    >>> shown_name(" base  plate "), shown_name("=>[0:1:1:3]"), shown_name("NONE"), shown_name("12")
+    ('base plate', '', '', '')
+    """
+    words = shortened(plain(" ".join(name.split())), LONGEST_NAME)
+    return "" if NO_NAME.fullmatch(words) else words
+
+
+def name_of(solid: Any, place: ProductPlace, count: int, process: Any) -> str:
+    """The name of a solid of a product that has so many solids."""
+    from OCP.TopLoc import TopLoc_Location
+
+    own = ""
+    with suppress(Exception):
+        # Solids are known to the reader without the place that assemblies give them.
+        own = shown_name(
+            process.EntityFromShapeResult(solid.Located(TopLoc_Location()), 1).Name().ToCString()
+        )
+    # The assembly of all says nothing about one of its solids.
+    nearest = place.names[2:] or place.names
+    of_product = next((name for name in reversed(nearest) if name), "")
+    return own or of_product if count > 1 or not of_product else of_product
