@@ -162,6 +162,32 @@ class Result:
         picture: str = delegate("result_picture")(self, path, unit=unit)
         return picture
 
+    def widget(
+        self,
+        rank: int = 1,
+        *,
+        usual: float = 200.0,
+        jaw_force: float | None = None,
+        jaw: str | float = "screw",
+    ) -> Any:
+        """A widget for notebooks that steps through the fixtures, lets a force push the part, and closes.
+
+        Without the extra ``widget`` it is a picture of the fixture.
+
+        Parameters
+        ----------
+        rank : of the fixture shown first.
+        usual : size in N of a force whose arrow has the usual length.
+        jaw_force : with which what moves presses, in N; as much as is needed if None.
+        jaw : "screw", "constant", or how many times as stiff as one contact it is.
+
+        Raises
+        ------
+        InputError
+            For a result without a fixture, and values that cannot be.
+        """
+        return delegate("result_widget")(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw)
+
     def why_none(self) -> Any:
         """Why there is no fixture: what each rule takes away, the nearest miss, and what would help.
 
