@@ -78,12 +78,12 @@ class TriedForce:
 
     @property
     def numbers(self) -> list[float]:
-        """Its four numbers."""
+        """The four numbers, in the order of its fields."""
         return [self.x, self.y, self.size, self.direction]
 
     @property
     def load(self) -> Load:
-        """The same force as a load."""
+        """The load that it is."""
         ways = (self.direction, self.direction)
         return Load(points=[(self.x, self.y)], force=self.size, directions=ways, name="pushed")
 
