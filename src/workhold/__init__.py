@@ -110,20 +110,26 @@ HOMES = {
 # The functions that methods of the model's classes call, see ``delegates``.
 DELEGATES = {
     "clamp_with_friction": "workhold.supports.friction",
+    "fixture_html": "workhold.presenting.notebook",
     "fixture_picture": "workhold.presenting.papers",
     "fixture_supports": "workhold.supports.asking",
     "preset_fields": "workhold.files.toolkit_file",
     "preset_names_of": "workhold.files.toolkit_file",
     "preset_tolerance": "workhold.files.toolkit_file",
     "read_program": "workhold.files.program.reader",
+    "result_html": "workhold.presenting.notebook",
     "result_picture": "workhold.presenting.papers",
     "result_supports": "workhold.supports.asking",
+    "result_widget": "workhold.presenting.stepping",
     "save_glb": "workhold.presenting.assembly",
     "save_sheet": "workhold.presenting.papers",
+    "seating_html": "workhold.presenting.further_html",
+    "supports_html": "workhold.presenting.further_html",
     "to_arrow": "workhold.presenting.data",
     "to_build123d": "workhold.presenting.cad",
     "to_cadquery": "workhold.presenting.cad",
     "to_pandas": "workhold.presenting.data",
+    "why_none": "workhold.presenting.why_none",
     "workpiece_picture": "workhold.presenting.papers",
 }
 

@@ -135,9 +135,9 @@ FIGURES_KEPT = 3
 def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
     """Prints the table and says which toolkit is best."""
     from workhold.cli.table import Table, print_tables
-    from workhold.cli.tables import figure_text, heading
     from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
+    from workhold.presenting.figure_words import figure_text, heading
 
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
     figures = [figure for key in keys for figure in (*FIGURES, PROGRAM_FIGURE) if figure.key == key]

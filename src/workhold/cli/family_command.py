@@ -81,8 +81,8 @@ def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
 
 def curve_table(found: Family, unit: Unit) -> Table:
     """Tabulates the curve: set-ups, the worst loss and on which part, and how many pegs are moved."""
-    from workhold.cli.tables import figure_text, heading
     from workhold.family.members import loss_text
+    from workhold.presenting.figure_words import figure_text, heading
 
     table = Table((">set-ups", ">worst loss", ">pegs moved", f">{heading(found.figure, unit)}", "worst part"))
     for plan in found.plans:
@@ -101,9 +101,9 @@ def curve_table(found: Family, unit: Unit) -> Table:
 
 def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
     """Tabulates the parts of a set-up and how each lies."""
-    from workhold.cli.tables import figure_text, heading
     from workhold.family.members import loss_text
     from workhold.model.setup import settings_of
+    from workhold.presenting.figure_words import figure_text, heading
 
     settings = settings_of(setup.standing.fixture, found.toolkit)
     names = [f">{setting.short} {unit.abbreviation}" for setting in settings]

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from math import degrees, hypot, isfinite, isnan, nan, pi
+from math import degrees, hypot, nan, pi
 from typing import TYPE_CHECKING
 
 from workhold.cli.table import Table
-from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN
+from workhold.fixels.contacts import FLAT_PIN
+from workhold.presenting.figure_words import (
+    counted_text,
+    figure_text,
+    figures_shown,
+    peg_groups,
+    place_of,
+    rounded,
+    short_heading,
+)
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.geometry.loop import Face
     from workhold.listing.identity import Entries
-    from workhold.model.fixture import Fixture, Peg
-    from workhold.model.quality import Figure
+    from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.model.search_report import Proof, Undecided
     from workhold.model.setup import LengthSetting
@@ -24,15 +32,12 @@ __all__ = [
     "Table",
     "counts_sentence",
     "face_table",
-    "figure_text",
     "fixture_tables",
-    "heading",
     "jumps_sentence",
     "plural",
     "proof_sentences",
     "quality_table",
     "result_table",
-    "rounded",
     "unfit_sentence",
 ]
 
@@ -40,9 +45,6 @@ __all__ = [
 MOST_FURTHER = 8
 # Undecided candidates that are named on the terminal.
 MOST_NAMED = 3
-# Columns of which the figure's name is too wide: how far open the part is caught, by what a wrong seat reads
-# otherwise.
-SHORT = {"capture_opening": "caught", "reading": "reads"}
 UNDECIDED = (
     "  Every fixture listed holds; one more may exist at such a place. Nearly equal sizes are the cause: "
     "another peg radius or pitch decides it."
@@ -141,31 +143,11 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
     table looks as sorted as it is.
     """
-    from workhold.model.quality import (
-        FIGURES,
-        JAW_FORCE_NEEDED,
-        LOCATION_ERROR,
-        PROGRAM_FIGURE,
-        RANKED,
-        SEATING_FIGURES,
-    )
     from workhold.model.setup import settings_of
     from workhold.statics.judging import unfit
 
-    ranked = [figure for key in result.query.ranking for figure in RANKED if figure.key == key]
-    others = [] if FIGURES[LOCATION_ERROR] in ranked else [FIGURES[LOCATION_ERROR]]
-    others += [] if PROGRAM_FIGURE in ranked else [PROGRAM_FIGURE]
-    program, needed = result.query.program, FIGURES[JAW_FORCE_NEEDED]
-    if program is not None and program.forces is not None and needed not in ranked:
-        others.insert(0, needed)
-    figures = [f for f in [*ranked, *others] if len(result) and f.key in result[0].figures]
-    if result.seating:
-        # First what it is ranked by, then how wide open the part is caught, and what a reading must show.
-        others = [f for f in SEATING_FIGURES if f.key in ("capture_opening", "reading") and f not in figures]
-        figures[1:1] = others
-    headings = [
-        f">{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip() for figure in figures
-    ]
+    figures, ranked = figures_shown(result)
+    headings = [f">{short_heading(figure, unit)}" for figure in figures]
     toolkit = result.toolkit
     groups, opening = peg_groups(toolkit), f">{toolkit.moving.measure} {unit.abbreviation}"
     pairs = [">best of"] if result.query.listing == "best" else []
@@ -197,76 +179,6 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
             toolkit.arrangement(fixture.type, fixture.direction).title,
         )
     return table
-
-
-def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
-    """The names of the carriers whose pegs stand in one column of a table, by its heading: all clamps in one.
-
-    >>> from workhold import Plate, Vise
-    >>> peg_groups(Vise(pitch=10, columns=2, peg_radius=3))
-    {'left holes': ['left'], 'right holes': ['right']}
-    >>> peg_groups(Plate(pitch=20, peg_radius=5, columns=8, rows=6))
-    {'locators': ['plate'], 'clamp': ['clamp -x', 'clamp -y']}
-    """
-    groups: dict[str, list[str]] = {}
-    for carrier in toolkit.carriers:
-        is_alone = carrier.contact is CLAMP_TIP and toolkit.closes_at_once
-        pegs = carrier.peg if is_alone else f"{carrier.peg}s"
-        if carrier.contact.is_placed:
-            groups.setdefault(f"{carrier.name} holes" if len(toolkit.plates) > 1 else pegs, []).append(
-                carrier.name
-            )
-    return groups
-
-
-def place_of(peg: Peg, toolkit: Toolkit) -> str:
-    """The name of a peg's hole or line, without the noun of a clamp."""
-    carrier = toolkit.carrier(peg.carrier)
-    return peg.hole.removeprefix(f"{carrier.noun} ") if carrier.contact is CLAMP_TIP else peg.hole
-
-
-def heading(figure: Figure, unit: Unit) -> str:
-    """A figure's name and unit."""
-    return f"{figure.words} {unit_of(figure, unit)}".rstrip()
-
-
-def unit_of(figure: Figure, unit: Unit) -> str:
-    """The unit in which a figure is shown."""
-    return unit.abbreviation if figure.unit == "mm" else figure.unit
-
-
-def rounded(value: float, decimals: int) -> str:
-    """Formats a number with so many decimals, and zero without a sign.
-
-    >>> rounded(-1e-15, 3), rounded(-0.5, 1)
-    ('0.000', '-0.5')
-    """
-    text = f"{value:.{decimals}f}"
-    return text.removeprefix("-") if float(text) == 0 else text
-
-
-def figure_text(figure: Figure, value: float, unit: Unit) -> str:
-    """Formats a figure's value as a number of its unit; in words where it is infinite or not known."""
-    if not isfinite(value):
-        return "-" if isnan(value) else "none" if figure.key == "reading" else "any"
-    # A caliper reads hundredths of a millimetre.
-    decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
-    return unit.number(value, decimals) if figure.unit == "mm" else rounded(value, figure.decimals)
-
-
-def counted_text(figure: Figure, value: float, unit: Unit) -> str:
-    """Formats a figure's value, rounded as the ranking rounds it in mm, in a unit."""
-    from math import floor, log10
-
-    if not isfinite(value):
-        return figure_text(figure, value, unit)
-    counts = float(f"{round(value, 9):.1e}")
-    shown = counts / unit.millimetres if figure.unit == "mm" else counts
-    if figure.decimals == 0 or shown == 0:
-        return rounded(shown, 0)
-    # In mm two digits are all there is to show; in another unit one more keeps what differs apart.
-    digits = 2 if figure.unit != "mm" or unit.millimetres == 1 else 3
-    return rounded(shown, max(digits - 1 - floor(log10(abs(shown))), 0))
 
 
 def quality_table(fixture: Fixture, mover: str, unit: Unit = MILLIMETRE) -> Table:

@@ -36,6 +36,8 @@ __all__ = [
     "contact_of",
     "draw_bench",
     "draw_inset",
+    "draw_part",
+    "draw_pegs",
     "draw_zero",
     "face_of",
     "force_arrow",

@@ -219,8 +219,9 @@ class Fixture:
             f"degrees{caught}>"
         )
 
-    def _repr_svg_(self) -> str | None:
-        return None if self.listed is None else str(self.draw())
+    def _repr_html_(self) -> str | None:
+        shown: str | None = delegate("fixture_html")(self)
+        return shown
 
     @property
     def travels(self) -> tuple[float, ...]:

@@ -128,17 +128,23 @@ class Result:
         """Where the fixture of an index stands."""
         return Listed(self, index, index + 1, len(self))
 
-    def __repr__(self) -> str:
+    @property
+    def words(self) -> str:
+        """What is listed, of which part and in what, in a few words."""
         kinds = ", ".join(f"{count:,} of type {kind}" for kind, count in self.counts.items())
         whole = "" if self.complete else ", interrupted"
         only = "the best " if len(self) < sum(self.found.values()) or self.query.best is not None else ""
         count = f"{only}{len(self):,} fixture{'s' * (len(self) != 1)}"
         where = f"{self.toolkit.wording.inside.partition(' ')[0]} a {self.toolkit.noun}"
         seated = f", with the seating of the first {len(self.seating):,}" if self.seating else ""
-        return f"<Result: {count} of {self.workpiece.name} {where} ({kinds}){seated}{whole}>"
+        return f"{count} of {self.workpiece.name} {where} ({kinds}){seated}{whole}"
 
-    def _repr_svg_(self) -> str | None:
-        return str(self.draw()) if len(self) else None
+    def __repr__(self) -> str:
+        return f"<Result: {self.words}>"
+
+    def _repr_html_(self) -> str:
+        shown: str = delegate("result_html")(self)
+        return shown
 
     def draw(self, path: str | Path | None = None, *, unit: str = "mm") -> str:
         """The best twelve at a glance, near duplicates once: SVG text, which a notebook shows as a picture.
@@ -155,6 +161,44 @@ class Result:
         """
         picture: str = delegate("result_picture")(self, path, unit=unit)
         return picture
+
+    def widget(
+        self,
+        rank: int = 1,
+        *,
+        usual: float = 200.0,
+        jaw_force: float | None = None,
+        jaw: str | float = "screw",
+    ) -> Any:
+        """A widget for notebooks that steps through the fixtures, lets a force push the part, and closes.
+
+        Without the extra ``widget`` it is a picture of the fixture.
+
+        Parameters
+        ----------
+        rank : of the fixture shown first.
+        usual : size in N of a force whose arrow has the usual length.
+        jaw_force : with which what moves presses, in N; as much as is needed if None.
+        jaw : "screw", "constant", or how many times as stiff as one contact it is.
+
+        Raises
+        ------
+        InputError
+            For a result without a fixture, and values that cannot be.
+        """
+        return delegate("result_widget")(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw)
+
+    def why_none(self) -> Any:
+        """Why there is no fixture: what each rule takes away, the nearest miss, and what would help.
+
+        A notebook shows it as tables; it takes longer than the search did.
+
+        Raises
+        ------
+        InputError
+            For a result that has fixtures, or whose search was stopped.
+        """
+        return delegate("why_none")(self)
 
     def to_pandas(self) -> Any:
         """All fixtures as a DataFrame, best first, with the columns of the CSV form, in mm and degrees.

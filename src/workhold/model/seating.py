@@ -8,6 +8,7 @@ from typing import Any
 
 from attrs import evolve, frozen
 
+from workhold.delegates import delegate
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Pose
 
@@ -179,7 +180,7 @@ class Cage:
     y: tuple[float, float]
 
 
-@frozen
+@frozen(repr=False)
 class Seating:
     """The seats of a fixture's pegs and part, and from where closing leads into the fixture's own.
 
@@ -216,6 +217,23 @@ class Seating:
     most: float | None = None
     clamping: int = 1
     opened: str = JAWS[1]
+
+    @property
+    def words(self) -> str:
+        """How wide open the jaws may be, and in how many other places the part can rest, in a few words."""
+        caught = (
+            "never lost" if self.capture_opening is None else f"caught below {self.capture_opening:.3f} mm"
+        )
+        caught = "from where on it is caught is not known" if self.is_untold else caught
+        wrong = len(self.wrong_within())
+        return f"{caught}, {wrong:,} wrong seat{'s' * (wrong != 1)}"
+
+    def __repr__(self) -> str:
+        return f"<Seating: {self.words}>"
+
+    def _repr_html_(self) -> str:
+        shown: str = delegate("seating_html")(self)
+        return shown
 
     def in_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
         """A copy with what follows from a toolkit, and an opening up to which seats count."""

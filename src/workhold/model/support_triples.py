@@ -103,7 +103,7 @@ class Triple:
         return self.given or self.best
 
 
-@frozen
+@frozen(repr=False)
 class Supports:
     """The supports of one planar fixture.
 
@@ -129,6 +129,20 @@ class Supports:
     count: int | None
     triples: tuple[Triple, ...]
     stopped: bool = False
+
+    @property
+    def words(self) -> str:
+        """What is listed, of which part, in a few words."""
+        whole = "" if self.count is None else f" of {self.count:,}"
+        sets = f"the best {len(self.triples):,}{whole} sets of three" if self.triples else "no set of three"
+        return f"{sets} under {self.query.workpiece.name}"
+
+    def __repr__(self) -> str:
+        return f"<Supports: {self.words}>"
+
+    def _repr_html_(self) -> str:
+        shown: str = delegate("supports_html")(self)
+        return shown
 
     @property
     def complete(self) -> bool:

@@ -1,10 +1,10 @@
-"""What a user of Python asks of a workpiece, a fixture or a result: pictures, papers, tables, and toolkits by
-name.
+"""What a user of Python asks of a workpiece, a fixture or a result: pictures, papers and tables.
 
 Methods of the model's classes lead here, see ``delegates``; the command line writes its papers here too.
 
-- ``papers``: pictures that show themselves in a notebook, the setup sheet of a fixture, its set-up for a CAM system and
-  its list of pins.
+- ``papers``: pictures, the setup sheet of a fixture, its set-up for a CAM system and its list of pins.
+- ``assembly``, ``cad``: the bodies of a set-up in files, and in build123d and CadQuery.
 - ``data``: plain data for JSON, and all fixtures as a table of pandas or Arrow.
-- ``presets``: toolkits that people own, by name.
+- ``figure_words``: figures, holes and counts as tables write them.
+- ``notebook``, ``further_html``, ``why_none``: what objects show of themselves in a notebook.
 """

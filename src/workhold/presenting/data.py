@@ -284,12 +284,14 @@ def verification_data(outcome: Verification) -> dict[str, Any]:
     }
 
 
-# What the extras ``tables`` and ``build123d`` ask for. None asks for CadQuery, whose Open CASCADE is older.
+# What the extras ``tables``, ``build123d`` and ``widget`` ask for. None asks for CadQuery, whose Open CASCADE
+# is older.
 REQUIREMENTS = {
     "pandas": "pandas>=2.2",
     "pyarrow": "pyarrow>=17",
     "build123d": "build123d>=0.10",
     "cadquery": "cadquery>=2.5",
+    "anywidget": "anywidget>=0.9.13",
 }
 
 

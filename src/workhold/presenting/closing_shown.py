@@ -1,0 +1,91 @@
+"""A closing of a fixture as it is shown: the part is let go a little off its place, and comes home.
+
+How far off depends on the cage (``model.seating``). Where the seating cannot be computed, or the part is
+caught from next to nothing, the part waits in its place and only what moves is shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+from typing import Any
+
+from workhold.drawing.scene import LengthUnit
+from workhold.drawing.seating_words import SeatingSentences
+from workhold.errors import InputError
+from workhold.model.clamps import order_words
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.seating import Seating
+from workhold.presenting.live_picture import LivePicture
+from workhold.seating.closing_simulation import simulate_closing
+from workhold.seating.solver import Solver
+
+__all__ = ["closing_shown"]
+
+# Of the capture opening, how far what moves is opened, and of the cage, how far the part is turned and
+# shifted: the first with which it comes home is shown.
+OF_CAPTURE, SHARES = 0.9, (0.7, 0.4, 0.2)
+# Where the part is never lost: how far it is turned in degrees.
+ANY_TURN = 12.0
+# mm. Caught from less, no motion would be seen.
+VISIBLE = 0.2
+# Steps that are kept of a closing.
+MOST_STEPS = 120
+
+
+def closing_shown(picture: LivePicture) -> dict[str, Any]:
+    """What is shown of the closing of a fixture, with what is read in the end."""
+    fixture, toolkit = picture.fixture, picture.result.toolkit
+    if not toolkit.closes_at_once:
+        return picture.closing(words=order_words(fixture))
+    try:
+        solver = Solver(picture.result.workpiece, toolkit)
+        seating = fixture.seating or solver.of(fixture)
+        return closed(picture, solver, seating)
+    except InputError as error:
+        return picture.closing(words=f"The part is held in its place meanwhile: {error}")
+
+
+def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, Any]:
+    """The closing of a fixture of a known seating.
+
+    Raises
+    ------
+    InputError
+        As :func:`simulate_closing`, where there is no room for the part.
+    """
+    fixture, toolkit = picture.fixture, picture.result.toolkit
+    sentences = SeatingSentences(seating, fixture, toolkit, LengthUnit.mm())
+    most = picture.opened if seating.capture_opening is None else OF_CAPTURE * seating.capture_opening
+    opening = min(picture.opened, most)
+    if opening < VISIBLE:
+        caught = f"The part is caught only while {seating.opened} by less than {opening / OF_CAPTURE:.3f} mm"
+        return picture.closing(words=f"{caught}: hold it in its place meanwhile.")
+    for pose in starts(picture, fixture, seating):
+        try:
+            way = simulate_closing(solver, fixture, seating.seats, pose, opening)
+        except InputError:
+            continue
+        if way.ending in ("right", "same place"):
+            sign = toolkit.clamping
+            every = -(-len(way.poses) // MOST_STEPS)
+            steps = [
+                picture.step(one, max(sign * (travelled - fixture.jaw_separation), 0.0))
+                for one, travelled in zip(way.poses[::-1][::every], way.travels[::-1][::every], strict=True)
+            ]
+            return picture.closing(steps[::-1], sentences.ended(way.ending, way.seat, way.travels[-1]))
+    return picture.closing(words="The part is held in its place meanwhile.")
+
+
+def starts(picture: LivePicture, fixture: Fixture, seating: Seating) -> Iterator[Pose]:
+    """Poses to let the part go in: off its place within the cage, ever nearer, and last its place itself."""
+    middle, cage = picture.result.workpiece.center, seating.cage
+    turns, shifts = (-ANY_TURN, ANY_TURN), (0.0, 0.0)
+    if cage is not None:
+        turns, shifts = cage.theta_deg, cage.y
+    x, y = fixture.pose.apply(*middle)
+    for share, turn, shift in product(SHARES, sorted(turns, key=abs, reverse=True), shifts):
+        turned = Pose(fixture.pose.theta_deg + share * turn, 0.0, 0.0)
+        dx, dy = turned.apply(*middle)
+        yield Pose(turned.theta_deg, float(x - dx), float(y - dy + share * shift / 2))
+    yield fixture.pose

@@ -1,0 +1,135 @@
+"""Figures, holes and counts as tables write them: the command's, and those that a notebook shows."""
+
+from __future__ import annotations
+
+from math import isfinite, isnan
+from typing import TYPE_CHECKING
+
+from workhold.fixels.contacts import CLAMP_TIP
+from workhold.units import Unit
+
+if TYPE_CHECKING:
+    from workhold.fixels.toolkit import Toolkit
+    from workhold.model.fixture import Peg
+    from workhold.model.quality import Figure
+    from workhold.model.result import Result
+
+__all__ = [
+    "counted_text",
+    "figure_text",
+    "figures_shown",
+    "heading",
+    "peg_groups",
+    "place_of",
+    "rounded",
+    "short_heading",
+    "unit_of",
+]
+
+# Columns of which the figure's name is too wide: how far open the part is caught, by what a wrong seat reads
+# otherwise.
+SHORT = {"capture_opening": "caught", "reading": "reads"}
+
+
+def figures_shown(result: Result) -> tuple[list[Figure], list[Figure]]:
+    """The figures that a table of a result has columns for, and those of them that fixtures are ranked by.
+
+    The location error and the program's clearance are shown in any case where they are known. Of seating
+    there are how wide open the part is caught and what a reading must show.
+    """
+    from workhold.model.quality import (
+        FIGURES,
+        JAW_FORCE_NEEDED,
+        LOCATION_ERROR,
+        PROGRAM_FIGURE,
+        RANKED,
+        SEATING_FIGURES,
+    )
+
+    ranked = [figure for key in result.query.ranking for figure in RANKED if figure.key == key]
+    others = [] if FIGURES[LOCATION_ERROR] in ranked else [FIGURES[LOCATION_ERROR]]
+    others += [] if PROGRAM_FIGURE in ranked else [PROGRAM_FIGURE]
+    program, needed = result.query.program, FIGURES[JAW_FORCE_NEEDED]
+    if program is not None and program.forces is not None and needed not in ranked:
+        others.insert(0, needed)
+    figures = [f for f in [*ranked, *others] if len(result) and f.key in result[0].figures]
+    if result.seating:
+        # First what it is ranked by, then how wide open the part is caught, and what a reading must show.
+        others = [f for f in SEATING_FIGURES if f.key in ("capture_opening", "reading") and f not in figures]
+        figures[1:1] = others
+    return figures, ranked
+
+
+def short_heading(figure: Figure, unit: Unit) -> str:
+    """A figure's name, or what it is called where that is too wide, and its unit."""
+    return f"{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip()
+
+
+def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
+    """The names of the carriers whose pegs stand in one column of a table, by its heading: all clamps in one.
+
+    >>> from workhold import Plate, Vise
+    >>> peg_groups(Vise(pitch=10, columns=2, peg_radius=3))
+    {'left holes': ['left'], 'right holes': ['right']}
+    >>> peg_groups(Plate(pitch=20, peg_radius=5, columns=8, rows=6))
+    {'locators': ['plate'], 'clamp': ['clamp -x', 'clamp -y']}
+    """
+    groups: dict[str, list[str]] = {}
+    for carrier in toolkit.carriers:
+        is_alone = carrier.contact is CLAMP_TIP and toolkit.closes_at_once
+        pegs = carrier.peg if is_alone else f"{carrier.peg}s"
+        if carrier.contact.is_placed:
+            groups.setdefault(f"{carrier.name} holes" if len(toolkit.plates) > 1 else pegs, []).append(
+                carrier.name
+            )
+    return groups
+
+
+def place_of(peg: Peg, toolkit: Toolkit) -> str:
+    """The name of a peg's hole or line, without the noun of a clamp."""
+    carrier = toolkit.carrier(peg.carrier)
+    return peg.hole.removeprefix(f"{carrier.noun} ") if carrier.contact is CLAMP_TIP else peg.hole
+
+
+def heading(figure: Figure, unit: Unit) -> str:
+    """A figure's name and unit."""
+    return f"{figure.words} {unit_of(figure, unit)}".rstrip()
+
+
+def unit_of(figure: Figure, unit: Unit) -> str:
+    """The unit in which a figure is shown."""
+    return unit.abbreviation if figure.unit == "mm" else figure.unit
+
+
+def rounded(value: float, decimals: int) -> str:
+    """Formats a number with so many decimals, and zero without a sign.
+
+    >>> rounded(-1e-15, 3), rounded(-0.5, 1)
+    ('0.000', '-0.5')
+    """
+    text = f"{value:.{decimals}f}"
+    return text.removeprefix("-") if float(text) == 0 else text
+
+
+def figure_text(figure: Figure, value: float, unit: Unit) -> str:
+    """Formats a figure's value as a number of its unit; in words where it is infinite or not known."""
+    if not isfinite(value):
+        return "-" if isnan(value) else "none" if figure.key == "reading" else "any"
+    # A caliper reads hundredths of a millimetre.
+    decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
+    return unit.number(value, decimals) if figure.unit == "mm" else rounded(value, figure.decimals)
+
+
+def counted_text(figure: Figure, value: float, unit: Unit) -> str:
+    """Formats a figure's value, rounded as the ranking rounds it in mm, in a unit."""
+    from math import floor, log10
+
+    if not isfinite(value):
+        return figure_text(figure, value, unit)
+    counts = float(f"{round(value, 9):.1e}")
+    shown = counts / unit.millimetres if figure.unit == "mm" else counts
+    if figure.decimals == 0 or shown == 0:
+        return rounded(shown, 0)
+    # In mm two digits are all there is to show; in another unit one more keeps what differs apart.
+    digits = 2 if figure.unit != "mm" or unit.millimetres == 1 else 3
+    return rounded(shown, max(digits - 1 - floor(log10(abs(shown))), 0))

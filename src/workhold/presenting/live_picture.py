@@ -1,0 +1,295 @@
+"""One fixture as a picture that can be pushed and closed: what moves stands in groups of its own.
+
+Glossary
+--------
+push : a force on the part that is tried out, at a point of the part.
+step : one moment of closing: how far the part is turned, in degrees, and shifted, in page units, and by how
+    many mm what moves is open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, ceil, cos, degrees, hypot, isfinite, radians, sin
+from typing import Any
+
+from attrs import evolve, frozen
+
+from workhold.drawing.bench import Bench, bench_of, draw_part, draw_pegs
+from workhold.drawing.carriers import draw_clamp, draw_holes, draw_plate, draw_push, draw_wall, most_holes
+from workhold.drawing.panel import fixture_words
+from workhold.drawing.scene import Box, Scene, View, text_width
+from workhold.errors import InputError
+from workhold.geometry.segment import Point
+from workhold.model.fixture import Fixture, Pose
+from workhold.model.requirements import Load
+from workhold.model.result import Result
+from workhold.presenting.figure_words import figure_text, figures_shown, unit_of
+from workhold.presenting.notebook import fixture_title
+from workhold.statics.loads import jaw_words, load_cases
+from workhold.units import MILLIMETRE
+
+__all__ = ["LivePicture", "TriedForce"]
+
+# Size of the page and the room at its rim for names and arrows, page units.
+PAGE, RIM = (640.0, 480.0), 44.0
+# Of the names of pegs, and how far they stand off them, page units.
+NAME, OFF = 13.0, 14.0
+# How long the arrow of the usual push is, page units, and shorter than what a push is none.
+USUAL, SHORTEST = 100.0, 6.0
+# Of the pitch, and of the width of what shows, how far jaws stand open before they close.
+OPEN_PITCHES, OPEN_SHARE = 1.5, 0.16
+# A peg lets go when its force is negative and larger than this part of the largest.
+NOTHING = 1e-6
+
+
+@frozen
+class TriedForce:
+    """A force on the part that is tried out.
+
+    Parameters
+    ----------
+    x, y : where it acts, in mm in the part's coordinates.
+    size : in N.
+    direction : in degrees in the part's frame, counter-clockwise from its x axis.
+    """
+
+    x: float
+    y: float
+    size: float
+    direction: float
+
+    @classmethod
+    def of(cls, numbers: Sequence[float]) -> TriedForce:
+        """Makes a push of four numbers, in the order of its fields.
+
+        Raises
+        ------
+        InputError
+            When they are not four finite numbers.
+        """
+        try:
+            x, y, size, direction = map(float, numbers)
+        except (TypeError, ValueError) as error:
+            raise InputError("a force is four numbers: x and y in mm, its size in N, degrees.") from error
+        if not all(map(isfinite, (x, y, size, direction))):
+            raise InputError("a force is four finite numbers: x and y in mm, its size in N, degrees.")
+        return cls(x, y, size, direction)
+
+    @property
+    def numbers(self) -> list[float]:
+        """The four numbers, in the order of its fields."""
+        return [self.x, self.y, self.size, self.direction]
+
+    @property
+    def load(self) -> Load:
+        """The load that it is."""
+        ways = (self.direction, self.direction)
+        return Load(points=[(self.x, self.y)], force=self.size, directions=ways, name="pushed")
+
+
+@frozen(eq=False)
+class LivePicture:
+    """A fixture of a result, ready to be pushed and closed.
+
+    Parameters
+    ----------
+    result, fixture : of which it is one.
+    bench, view : what shows of it, and the map from mm to the page.
+    usual : size in N of the push whose arrow is :data:`USUAL` page units long.
+    """
+
+    result: Result
+    fixture: Fixture
+    bench: Bench
+    view: View
+    usual: float
+
+    @classmethod
+    def of(cls, result: Result, index: int, usual: float) -> LivePicture:
+        """The picture of the fixture of an index."""
+        fixture = result[index]
+        bench = bench_of(fixture, result.workpiece, result.toolkit)
+        width, height = PAGE
+        view = View.fitting(bench.extent, Box(RIM, RIM, width - RIM, height - RIM))
+        return cls(result, fixture, bench, view, usual)
+
+    @property
+    def title(self) -> str:
+        """What the fixture is called, how it holds, and what to set."""
+        from workhold.model.setup import settings_of
+
+        toolkit = self.result.toolkit
+        set_to = ", ".join(
+            f"{one.sign} = {MILLIMETRE.text(one.length)}" for one in settings_of(self.fixture, toolkit)
+        )
+        return f"{fixture_title(self.fixture)}. {fixture_words(self.fixture, toolkit)}; {set_to}."
+
+    @property
+    def figures(self) -> list[list[str]]:
+        """Names of the figures that count, with their values and units."""
+        known, unit = self.fixture.figures, MILLIMETRE
+        return [
+            [one.words, f"{figure_text(one, known[one.key], unit)} {unit_of(one, unit)}".rstrip()]
+            for one in figures_shown(self.result)[0]
+            if one.key in known
+        ]
+
+    @property
+    def center(self) -> Point:
+        """The middle of the part on the page."""
+        x, y = self.view(self.fixture.pose.apply(*self.result.workpiece.center))
+        return float(x), float(y)
+
+    def svg(self) -> str:
+        """The picture; the group of the class ``part`` is the part.
+
+        Groups of the class ``moves`` say in which direction of the page they clamp, in page units per mm.
+        """
+        bench, view = self.bench, self.view
+        scene = Scene.page(PAGE, fixture_title(self.fixture))
+        for carrier in bench.shown.carriers:
+            group = self.group_for(scene, carrier.clamping)
+            draw_plate(group, carrier, view, 5.0)
+            draw_holes(group, carrier, view, most_holes(view, bench.shown))
+        for wall in bench.shown.walls:
+            draw_wall(scene.group("wall"), wall.bar, view)
+        for clamp in bench.shown.clamps:
+            draw_clamp(self.group_for(scene, clamp.clamping), clamp, bench.shown.carriers[0], view, 1.0)
+        draw_part(scene, bench, view, 1.0)
+        for clamp in bench.shown.clamps:
+            draw_push(self.group_for(scene, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0)
+        ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
+        ways |= {one.carrier.name: one.clamping for one in bench.shown.clamps}
+        for number in bench.placed:
+            peg = self.fixture.pegs[number]
+            group = self.group_for(scene, ways.get(peg.carrier))
+            draw_pegs(group, evolve(bench, fixture=evolve(self.fixture, pegs=(peg,))), view, 1.0)
+            self.write_name(group, number)
+        return scene.svg()
+
+    def group_for(self, scene: Scene, clamping: tuple[float, float] | None) -> Scene:
+        """A group for what stands still, or for what clamps in a direction of the plan."""
+        if clamping is None:
+            return scene.group("stands")
+        (x, y), scale = clamping, self.view.scale
+        return scene.group("moves", data_way=f"{x * scale:.9g} {-y * scale:.9g}")
+
+    def write_name(self, scene: Scene, number: int) -> None:
+        """Writes the hole of a peg beside it, away from the part and within the page."""
+        peg, (_, (nx, ny)) = self.fixture.pegs[number], self.bench.contacts[number]
+        (x, y), radius = self.view((peg.x, peg.y)), self.bench.radius(self.view, number)
+        half = text_width(peg.hole, NAME, bold=True) / 2
+        aside = radius + OFF + abs(nx) * (half - NAME / 2)
+        at = min(max(x + aside * nx, half), PAGE[0] - half), y - aside * ny
+        scene.text(at, peg.hole, NAME, "middle", bold=True, halo=3.0)
+
+    def arrow(self, push: TriedForce) -> list[float]:
+        """The arrow of a push on the page: x and y of the point it acts at, and of its tip."""
+        (x, y), length = self.view(self.fixture.pose.apply(push.x, push.y)), push.size * USUAL / self.usual
+        angle = radians(push.direction + self.fixture.pose.theta_deg)
+        return [float(x), float(y), float(x + length * cos(angle)), float(y - length * sin(angle))]
+
+    def push(self, arrow: Sequence[float]) -> TriedForce:
+        """The push of an arrow on the page, in whole newtons; of size 0 for one that is too short.
+
+        Raises
+        ------
+        InputError
+            When the arrow is not four finite numbers.
+        """
+        x, y, to_x, to_y = TriedForce.of(arrow).numbers
+        view, pose = self.view, self.fixture.pose
+        at = pose.inverse.apply((x - view.left) / view.scale, (view.top - y) / view.scale)
+        length = hypot(to_x - x, to_y - y)
+        size = 0.0 if length < SHORTEST else float(round(length * self.usual / USUAL))
+        turn = degrees(atan2(y - to_y, to_x - x)) - pose.theta_deg
+        return TriedForce(float(at[0]), float(at[1]), size, turn % 360.0)
+
+    def answer(self, push: TriedForce, jaw_force: float | None, jaw: str | float) -> dict[str, Any]:
+        """What a push does: the contact forces as arrows and bars, and whether the fixture holds, in words.
+
+        Parameters
+        ----------
+        jaw_force : in N, with which what moves presses; None for as much as is needed.
+        jaw : as in :func:`workhold.statics.loads.load_cases`.
+
+        Raises
+        ------
+        InputError
+            As that function.
+        """
+        mover = self.result.toolkit.moving.noun
+        if push.size <= 0:
+            return {
+                "arrow": None,
+                "forces": [],
+                "holds": None,
+                "words": "Press on the part and drag: a force pushes there.",
+            }
+        (case,) = load_cases(
+            self.fixture, self.result.workpiece, self.result.toolkit, [push.load], jaw_force, None, jaw
+        )
+        needed, loose = case.needed.value, self.fixture.pegs[case.needed.peg].hole
+        most = max(*map(abs, case.largest), 1e-9)
+        # A whole number of newtons that is enough.
+        enough = f"{ceil(needed):,} N so that no peg lets go; below that {loose} does."
+        words = [
+            f"No peg lets go, however little the {mover} presses."
+            if needed <= 0
+            else f"The {mover} must press with {enough}"
+        ]
+        if case.keeps_contact:
+            given = f"that {mover} force" if jaw_force is None and needed > 0 else f"{case.jaw_force:,.0f} N"
+            words.append(f"Forces are for {given} of {jaw_words(case.jaw_stiffness, self.result.toolkit)}.")
+        else:
+            words.append(f"With {case.jaw_force:,.0f} N it lets go.")
+        return {
+            "arrow": self.arrow(push),
+            "size": f"{push.size:,.0f} N",
+            "forces": [
+                {
+                    "hole": peg.hole,
+                    "words": "lets go" if force < -NOTHING * most else f"{max(force, 0.0):,.0f} N",
+                    "share": abs(force) / most,
+                    "pulls": force < -NOTHING * most,
+                    "arrow": self.force_arrow(number, force),
+                }
+                for number, (peg, force) in enumerate(zip(self.fixture.pegs, case.largest, strict=True))
+            ],
+            "holds": case.keeps_contact,
+            "words": " ".join(words),
+        }
+
+    def force_arrow(self, number: int, force: float) -> list[float]:
+        """The arrow of a contact force on the part, from the contact; no longer than the page is high."""
+        contact, (nx, ny) = self.bench.contacts[number]
+        length = max(min(force * USUAL / self.usual, PAGE[1] / 2), -PAGE[1] / 2)
+        x, y = self.view(contact)
+        return [float(x), float(y), float(x - length * nx), float(y + length * ny)]
+
+    @property
+    def opened(self) -> float:
+        """How far in mm what moves is opened before it closes before the user's eyes."""
+        extent = self.bench.extent
+        far = max(OPEN_PITCHES * self.bench.shown.pitch, OPEN_SHARE * extent.width)
+        for clamp in self.bench.shown.clamps:
+            travel = clamp.carrier.travel
+            if clamp.hole is not None and travel is not None and travel.most is not None:
+                (x, y), (dx, dy) = clamp.hole, clamp.clamping
+                # A clamp is drawn back no farther than to its least stroke.
+                stroke = (clamp.tip.x - x) * dx + (clamp.tip.y - y) * dy
+                far = min(far, stroke + travel.most)
+        return max(far, 0.0)
+
+    def closing(self, steps: Sequence[Sequence[float]] = (), words: str = "") -> dict[str, Any]:
+        """What is shown of a closing; without steps what moves comes, and the part waits in its place."""
+        plain = [[0.0, 0.0, 0.0, self.opened], [0.0, 0.0, 0.0, 0.0]]
+        return {"center": list(self.center), "steps": list(steps) or plain, "words": words}
+
+    def step(self, pose: Pose, opened: float) -> list[float]:
+        """The step in which the part lies in a pose and what moves is open by so many mm."""
+        x, y = self.view(pose.apply(*self.result.workpiece.center))
+        turned = (pose.theta_deg - self.fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
+        numbers = turned, x - self.center[0], y - self.center[1], opened
+        return [round(float(value), 3) for value in numbers]

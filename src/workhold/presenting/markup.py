@@ -1,0 +1,117 @@
+"""Tables and pictures as HTML that a notebook shows, also one that is not trusted.
+
+A picture is an image whose address holds its SVG: its ids meet no others, and nothing in it runs. Its own
+white ground serves a dark page as well as a light one. Sanitizers that take SVG out of HTML leave it alone.
+There are no styles and no scripts, so the page's own colours hold for all that is written.
+"""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from base64 import b64encode
+from collections.abc import Sequence
+from html import escape
+from io import StringIO
+
+from workhold.drawing.render import svg_to_png
+from workhold.drawing.scene import SVG_NAMESPACE
+from workhold.errors import plain
+
+__all__ = ["MOST_SVG", "Markup", "compact", "image", "paragraph", "safe", "table"]
+
+# Bytes of SVG above which a picture is one of pixels, so many wide for each that it is shown wide.
+MOST_SVG, SHARP = 40_000, 2
+# Decimals of page coordinates; a page unit is a pixel or less.
+DECIMALS = 1
+# What children of a group inherit from it.
+INHERITED = ("fill", "stroke", "stroke-width", "fill-rule", "fill-opacity", "stroke-linecap")
+FRACTION = re.compile(r"-?\d+\.\d+")
+# Attributes of shapes whose numbers are coordinates; a matrix keeps its own.
+COORDINATES = ("d", "x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "width", "height", "stroke-width")
+
+
+class Markup(str):
+    """Text that is HTML already, which :func:`safe` leaves as it is."""
+
+    __slots__ = ()
+
+
+def safe(words: str) -> Markup:
+    """Text as HTML that shows it; what is HTML already stays.
+
+    >>> safe("<b> & co"), safe(Markup("<b>"))
+    ('&lt;b&gt; &amp; co', '<b>')
+    """
+    return words if isinstance(words, Markup) else Markup(escape(plain(words)))
+
+
+def paragraph(*pieces: str) -> Markup:
+    """Pieces of text in a paragraph."""
+    return Markup(f"<p>{' '.join(map(safe, pieces))}</p>")
+
+
+def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
+    """A table; a column whose heading begins with ``>`` is flush right, all others are flush left.
+
+    >>> table((">x mm",), [("A<1",)])
+    '<table><thead><tr><th align="right" nowrap>x mm</th></tr></thead>\\n<tbody><tr><td align="right" \
+nowrap>A&lt;1</td></tr></tbody></table>'
+    """
+    ways = ["right" if heading.startswith(">") else "left" for heading in headings]
+
+    def row(cells: Sequence[str], tag: str) -> str:
+        made = (
+            f'<{tag} align="{way}" nowrap>{safe(cell)}</{tag}>' for cell, way in zip(cells, ways, strict=True)
+        )
+        return f"<tr>{''.join(made)}</tr>"
+
+    head = row([safe(heading.removeprefix(">")) for heading in headings], "th")
+    body = "\n".join(row(cells, "td") for cells in rows)
+    return Markup(f"<table><thead>{head}</thead>\n<tbody>{body}</tbody></table>")
+
+
+def image(svg: str, words: str, width: int) -> Markup:
+    """A picture, ``width`` pixels wide, as an image; ``words`` stand where it cannot be shown.
+
+    A picture of more than :data:`MOST_SVG` bytes becomes one of pixels.
+    """
+    drawn, kind = compact(svg).encode("utf-8"), "svg+xml"
+    if len(drawn) > MOST_SVG:
+        drawn, kind = svg_to_png(svg, SHARP * width), "png"
+    held = b64encode(drawn).decode("ascii")
+    return Markup(f'<img src="data:image/{kind};base64,{held}" width="{width}" alt="{escape(plain(words))}">')
+
+
+def compact(svg: str) -> str:
+    """A picture in fewer bytes: no space between elements, few decimals, what is alike written once."""
+    ET.register_namespace("", SVG_NAMESPACE)
+    root = ET.parse(StringIO(svg)).getroot()
+    for element in root.iter():
+        element.tail = None
+        if len(element) and not (element.text or "").strip():
+            element.text = None
+        for name in COORDINATES:
+            if name in element.attrib:
+                element.set(name, FRACTION.sub(rounded, element.get(name, "")))
+    for group in root.iter(f"{{{SVG_NAMESPACE}}}g"):
+        hoist(group)
+    return ET.tostring(root, encoding="unicode")
+
+
+def rounded(match: re.Match[str]) -> str:
+    """A number with few decimals."""
+    text = f"{float(match[0]):.{DECIMALS}f}".removesuffix(".0")
+    return "0" if text == "-0" else text
+
+
+def hoist(group: ET.Element) -> None:
+    """Gives a group what all of its children say of themselves, where they inherit it."""
+    if len(group) < 2:
+        return
+    for name in INHERITED:
+        values = {child.get(name) for child in group}
+        if len(values) == 1 and None not in values and name not in group.attrib:
+            group.set(name, str(values.pop()))
+            for child in group:
+                del child.attrib[name]

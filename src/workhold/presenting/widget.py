@@ -1,0 +1,147 @@
+"""The fixtures of a result to step through, push and close in a notebook; needs the extra ``widget``.
+
+The browser draws and takes hold; every force is computed here. What is shown last is stored with the
+notebook, and shows without Python. Where widgets are not known, the fixture's HTML stands instead.
+"""
+
+from __future__ import annotations
+
+from importlib import resources
+from typing import Any
+
+import anywidget
+import traitlets
+
+from workhold.errors import InputError
+from workhold.model.result import Result
+from workhold.presenting.closing_shown import closing_shown
+from workhold.presenting.live_picture import LivePicture, TriedForce
+from workhold.presenting.notebook import fixture_html
+from workhold.statics.loads import jaw_stiffness
+
+__all__ = ["FixtureWidget"]
+
+
+def text_of(name: str) -> str:
+    """A file that goes to the browser."""
+    return resources.files("workhold.presenting").joinpath("static", name).read_text(encoding="utf-8")
+
+
+class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
+    """The fixtures of a result, one at a time.
+
+    Traits that may be set are ``rank`` from 1, ``force`` and ``jaw_force`` in N, 0 for as much as is needed.
+    A force is x, y, size and direction, in mm, N and degrees of the part's coordinates. Traits to read are
+    ``answer`` and ``closing``.
+
+    Parameters
+    ----------
+    result : with a fixture at least.
+    rank : of the first one shown.
+    usual : size in N of a force whose arrow has the usual length.
+    jaw_force : in N; None for as much as is needed.
+    jaw : "screw", "constant", or how many times as stiff as one contact it is.
+
+    Raises
+    ------
+    InputError
+        For a result without a fixture, and values that cannot be.
+    """
+
+    _esm = text_of("widget.js")
+    _css = text_of("widget.css")
+
+    rank = traitlets.Int(1).tag(sync=True)
+    count = traitlets.Int(1).tag(sync=True)
+    jaw_force = traitlets.Float(0.0, min=0.0).tag(sync=True)
+    force = traitlets.List(trait=traitlets.Float(), default_value=[]).tag(sync=True)
+    # Drawn for the browser: a picture with its words, what the force does, and how it closes.
+    picture = traitlets.Dict().tag(sync=True)
+    answer = traitlets.Dict().tag(sync=True)
+    closing = traitlets.Dict().tag(sync=True)
+    # Asked by the browser: an arrow on the page, and a closing; each with a number that the answer repeats.
+    dragged = traitlets.List(default_value=[]).tag(sync=True)
+    asked_closing = traitlets.Int(0).tag(sync=True)
+
+    def __init__(
+        self,
+        result: Result,
+        rank: int = 1,
+        usual: float = 200.0,
+        jaw_force: float | None = None,
+        jaw: str | float = "screw",
+    ) -> None:
+        if not len(result):
+            raise InputError("there is no fixture to show: result.why_none() says why.")
+        if not 1 <= rank <= len(result):
+            raise InputError(f"there is no fixture {rank}: {len(result)} are listed.")
+        if not 0 < usual < float("inf"):
+            raise InputError(f"a usual force of {usual:g} N cannot be used: give one above 0.")
+        self.result, self.usual, self.jaw = result, usual, jaw
+        jaw_stiffness(jaw)
+        super().__init__(rank=rank, count=len(result), jaw_force=jaw_force or 0.0)
+        self.show()
+        self.observe(self.show, "rank")
+        self.observe(self.take, "dragged")
+        self.observe(self.push, ["force", "jaw_force"])
+        self.observe(self.close_jaws, "asked_closing")
+
+    @traitlets.validate("rank")  # type: ignore[untyped-decorator]
+    def within(self, proposal: Any) -> int:
+        """Keeps the rank among those that there are."""
+        return min(max(int(proposal["value"]), 1), len(self.result))
+
+    def show(self, _: Any = None) -> None:
+        """Draws the fixture of the rank, with the force that is tried out."""
+        self.live = LivePicture.of(self.result, self.rank - 1, self.usual)
+        with self.hold_sync():
+            self.picture = {
+                "svg": self.live.svg(),
+                "title": self.live.title,
+                "figures": self.live.figures,
+                "mover": self.result.toolkit.moving.noun,
+            }
+            self.closing = {**self.live.closing(), "number": self.asked_closing}
+            self.push()
+
+    def take(self, change: Any) -> None:
+        """Takes the arrow that was dragged in the browser for the force."""
+        *arrow, number = change["new"]
+        try:
+            pushed = self.live.push(arrow)
+        except InputError as error:
+            self.answer = {**self.nothing, "words": str(error), "number": number}
+            return
+        with self.hold_trait_notifications():
+            self.force = pushed.numbers
+        self.push(number=number)
+
+    def push(self, _: Any = None, number: int = 0) -> None:
+        """Computes what the force does to the fixture."""
+        try:
+            pushed = TriedForce.of(self.force) if self.force else TriedForce(0.0, 0.0, 0.0, 0.0)
+            found = self.live.answer(pushed, self.jaw_force or None, self.jaw)
+        except InputError as error:
+            found = {**self.nothing, "words": str(error)}
+        self.answer = {**found, "number": number}
+
+    @property
+    def nothing(self) -> dict[str, Any]:
+        """An answer without arrows."""
+        return self.live.answer(TriedForce(0.0, 0.0, 0.0, 0.0), None, self.jaw)
+
+    def close_jaws(self, _: Any = None) -> None:
+        """Computes how the fixture closes."""
+        self.closing = {**closing_shown(self.live), "number": self.asked_closing}
+
+    def _repr_mimebundle_(self, **wanted: Any) -> Any:
+        bundle = super()._repr_mimebundle_(**wanted)
+        if bundle is not None:
+            bundle[0]["text/html"] = self._repr_html_()
+        return bundle
+
+    def _repr_html_(self) -> str:
+        return fixture_html(self.result[self.rank - 1]) or ""
+
+    def __repr__(self) -> str:
+        return f"<FixtureWidget: fixture {self.rank} of {self.count} of {self.result.workpiece.name}>"

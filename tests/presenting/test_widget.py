@@ -1,0 +1,123 @@
+"""The widget's traits: what the browser asks is answered, and what a user sets is shown."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+import workhold
+from workhold.errors import InputError
+from workhold.presenting import stepping
+
+WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
+RESULT = workhold.design(WEDGE, workhold.Vise(pitch=15, columns=1, peg_radius=2))
+
+
+@pytest.fixture
+def widget() -> Any:
+    """A widget of the wedge."""
+    pytest.importorskip("anywidget", reason="the extra 'widget' is not installed")
+    return RESULT.widget()
+
+
+def test_stepping_shows_another_fixture_under_the_same_force(widget: Any) -> None:
+    """The force keeps its place on the part; a rank that there is none of becomes the nearest."""
+    widget.force = [12.0, 9.0, 150.0, 240.0]
+    first, arrow = widget.picture["svg"], widget.answer["arrow"]
+    widget.rank = 2
+    assert widget.picture["svg"] != first and "Fixture 2 of" in widget.picture["title"]
+    assert widget.answer["arrow"] != arrow and widget.force == [12.0, 9.0, 150.0, 240.0]
+    widget.rank = 10**6
+    assert widget.rank == widget.count == len(RESULT)
+    widget.rank = -3
+    assert widget.rank == 1 and widget.picture["svg"] == first
+
+
+def test_a_dragged_arrow_becomes_the_force_and_is_answered(widget: Any) -> None:
+    """With the number that it was asked under, so that the browser knows which it is."""
+    widget.dragged = [320.0, 240.0, 320.0, 340.0, 7]
+    assert widget.answer["number"] == 7 and widget.answer["size"] == "200 N"
+    assert widget.answer["arrow"] == pytest.approx([320.0, 240.0, 320.0, 340.0])
+    assert widget.force[2] == 200.0
+    widget.dragged = [0, 0, 0, 0, 8]
+    assert widget.answer["number"] == 8 and widget.answer["arrow"] is None
+
+
+def test_the_force_of_the_jaw_decides_whether_it_holds(widget: Any) -> None:
+    widget.force = [12.0, 9.0, 150.0, 240.0]
+    assert widget.answer["holds"] is True
+    widget.jaw_force = 1.0
+    assert widget.answer["holds"] is False
+    widget.jaw_force = 1e5
+    assert widget.answer["holds"] is True
+
+
+def test_what_cannot_be_is_said_in_the_widget(widget: Any) -> None:
+    """No error reaches the browser, and the next force is answered."""
+    widget.dragged = [0, 0, "x", 0, 3]
+    assert "four" in widget.answer["words"] and widget.answer["number"] == 3
+    widget.force = [1.0, 2.0, -5.0, 0.0]
+    assert widget.answer["arrow"] is None
+    widget.force = [1.0, 2.0, 1e300, 0.0]
+    assert widget.answer["forces"] == [] and widget.answer["words"]
+    widget.force = [12.0, 9.0, 150.0, 240.0]
+    assert widget.answer["holds"] is True
+
+
+def test_a_closing_is_answered(widget: Any) -> None:
+    widget.asked_closing = 1
+    assert widget.closing["number"] == 1 and len(widget.closing["steps"]) > 2 and widget.closing["words"]
+    widget.rank = 2
+    assert len(widget.closing["steps"]) == 2
+
+
+def test_the_state_is_plain_and_small(widget: Any) -> None:
+    """It is stored in the notebook as JSON."""
+    widget.force = [12.0, 9.0, 150.0, 240.0]
+    widget.asked_closing = 1
+    state = {name: value for name, value in widget.get_state().items() if name != "layout"}
+    assert len(json.dumps(state)) < 60_000
+
+
+def test_a_picture_stands_where_widgets_are_not_known(widget: Any) -> None:
+    """The bundle has the widget, the fixture as HTML, and short text."""
+    widget.rank = 2
+    bundle, _ = widget._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in bundle
+    assert bundle["text/html"] == widget._repr_html_() == RESULT[1]._repr_html_()
+    assert bundle["text/plain"] == f"<FixtureWidget: fixture 2 of {len(RESULT)} of wedge>"
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({"rank": 0}, "there is no fixture 0"),
+        ({"rank": 10**6}, "there is no fixture 1000000"),
+        ({"usual": 0.0}, "give one above 0"),
+        ({"usual": float("nan")}, "give one above 0"),
+        ({"jaw": "soft"}, "soft"),
+    ],
+)
+def test_values_that_cannot_be_are_refused(asked: dict[str, Any], words: str) -> None:
+    pytest.importorskip("anywidget", reason="the extra 'widget' is not installed")
+    with pytest.raises(InputError, match=words):
+        RESULT.widget(**asked)
+
+
+def test_without_the_library_there_is_a_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It shows the fixture and how to get one that moves; a rank of none is refused as well."""
+    monkeypatch.setattr(stepping, "find_spec", lambda name: None)
+    still = RESULT.widget(2)
+    html = still._repr_html_()
+    assert html.startswith(str(RESULT[1]._repr_html_())) and "anywidget" in html
+    assert repr(still) == f"<StillPicture: fixture 2 of {len(RESULT)} of wedge>"
+    with pytest.raises(InputError, match="there is no fixture 0"):
+        RESULT.widget(0)
+
+
+def test_a_result_without_fixtures_has_no_widget() -> None:
+    none = RESULT.part(slice(0, 0))
+    with pytest.raises(InputError, match="no fixture"):
+        none.widget()
