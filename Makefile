@@ -1,4 +1,4 @@
-# make demo | wheel | test | check | wheel-test | docs | bench | prove | clean -- the first use makes a Python environment in .venv
+# make demo | wheel | test | check | wheel-test | docs | bench | paper | prove | clean -- the first use makes a Python environment in .venv
 
 PYTHON ?= python3
 VENV := .venv
@@ -13,7 +13,7 @@ BUILD := PIP_CONSTRAINT=constraints.txt $(BIN)/python -m pip --disable-pip-versi
 # What the installed program is made of.
 SOURCES := $(shell find src building -name '*.py' -o -path 'src/workhold/data/*' -type f -o -path 'src/workhold/web/static/*' -type f)
 
-.PHONY: demo wheel test check wheel-test docs bench prove clean
+.PHONY: demo wheel test check wheel-test docs bench paper prove clean
 
 # Designs for the example bracket, draws the best fixtures and writes the setup sheet of the best.
 demo: $(INSTALLED)
@@ -57,6 +57,12 @@ bench: $(INSTALLED)
 	$(INSTALL) numba
 	$(BIN)/python benchmarks/bench.py $(BENCH)
 
+# The report of the paper's figures and ours, from measurements of this run: paper/report.html and paper/report.pdf, in half an
+# hour on two cores; PAPER=--quick makes a small one, PAPER=--keep measures only what this program has not measured yet.
+paper: $(INSTALLED)
+	-$(INSTALL) distributed fsspec
+	$(BIN)/python benchmarks/make_paper.py $(PAPER)
+
 # Thousands of planted fixtures, ten thousand random SVG drawings against resvg, signals at every stage, the paper's Table 2, then
 # both engines on the complete sets, the paper's parts and random parts.
 prove: $(INSTALLED_DEV)
@@ -65,7 +71,7 @@ prove: $(INSTALLED_DEV)
 
 # Everything made by the above but the environment.
 clean:
-	rm -rf demo site build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf demo site paper build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -path ./$(VENV) -prune -o -name __pycache__ -type d -exec rm -rf {} +
 
 $(BIN)/python:

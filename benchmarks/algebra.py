@@ -6,7 +6,7 @@ what that engine spends on resultants and their roots alone: no choice of faces 
 
 from __future__ import annotations
 
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 from designs import ROWS, loaded, timed
@@ -30,25 +30,38 @@ COLUMNS = (
 
 def algebra_seconds(part: str, pitch: float, columns: int, peg_radius: float) -> dict[str, Any]:
     """Task: counts and seconds of a design by algebra, and the seconds of its polynomial step."""
+    return algebra_result(part, pitch, columns, peg_radius)[1]
+
+
+def algebra_result(part: str, pitch: float, columns: int, peg_radius: float) -> tuple[Any, dict[str, Any]]:
+    """A design by algebra, with what :func:`algebra_seconds` tells of it."""
     from workhold import Query
     from workhold.algebra import engine
 
-    solve, spent = vars(engine)["orientations"], [0.0]
+    solve, spent = vars(engine)["orientations"], [0.0, 0.0]
 
     def orientations(*arguments: Any) -> Any:
         """Orientations of systems, with the time they take."""
-        begun = perf_counter()
+        begun, before = perf_counter(), process_time()
         outcome = solve(*arguments)
         spent[0] += perf_counter() - begun
+        spent[1] += process_time() - before
         return outcome
 
     vars(engine)["orientations"] = orientations
     workpiece, vise = loaded(part, pitch, columns, peg_radius)
-    start = perf_counter()
+    start, before = perf_counter(), process_time()
     result = engine.answer_by_algebra(Query(workpiece, vise))
-    seconds = perf_counter() - start
-    found, systems = dict(result.found), result.statistics["systems"]
-    return {"found": found, "systems": systems, "seconds": seconds, "polynomials": spent[0]}
+    seconds, processor = perf_counter() - start, process_time() - before
+    vars(engine)["orientations"] = solve
+    return result, {
+        "found": dict(result.found),
+        "systems": result.statistics["systems"],
+        "seconds": seconds,
+        "polynomials": spent[0],
+        "processor": processor,
+        "polynomials_processor": spent[1],
+    }
 
 
 def run(quick: bool, budget: float | None = None) -> Section:

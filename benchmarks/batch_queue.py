@@ -12,6 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Event
 from time import process_time
+from typing import Any
 
 from attrs import frozen
 
@@ -48,28 +49,45 @@ class Empty(Task):
 def run(quick: bool) -> Section:
     """Measure each queue there is."""
     section = Section("batch-queue", "What the queue costs a task", COLUMNS).begin()
-    queues: dict[str, partial[object]] = {"processes": partial(LocalWorkers, WORKERS, Nobody())}
-    if find_spec("distributed") is None:
+    there = queues()
+    if "Dask" not in there:
         section.remark("Dask is not installed here, so its queue is not measured.")
-    else:
-        from workhold.batch.cluster import ClusterWorkers
-
-        queues["Dask"] = partial(ClusterWorkers, Nobody(), count=WORKERS)
     count = QUICK_TASKS if quick else TASKS
-    for name, queue in queues.items():
-        with TemporaryDirectory() as folder, queue() as ready:  # type: ignore[attr-defined]
-            store, measured = FolderStore(Path(folder)), Measured(Path(folder) / "measured.csv")
-            for _ in ready.run(iter(tasks("warm", 4 * WORKERS)), Event()):
-                pass
-            start = process_time()
-            for outcome in ready.run(iter(tasks("task", count)), Event()):
-                measured.add(outcome)
-                store.write(outcome.name, outcome.record)
-            spent = process_time() - start
-            assert len(measured.known) == count
+    for name in there:
+        spent = seconds_of(name, count)
         section.row(name, f"{count:,}", f"{spent:.2f}", f"{1e3 * spent / count:.2f}")
         section.data[name] = spent / count
     return section
+
+
+def costs(count: int) -> dict[str, float]:
+    """Task: seconds that each queue there is takes for a task."""
+    return {name: seconds_of(name, count) / count for name in queues()}
+
+
+def queues() -> dict[str, partial[Any]]:
+    """The queues that are installed, by name."""
+    found: dict[str, partial[Any]] = {"processes": partial(LocalWorkers, WORKERS, Nobody())}
+    if find_spec("distributed") is not None:
+        from workhold.batch.cluster import ClusterWorkers
+
+        found["Dask"] = partial(ClusterWorkers, Nobody(), count=WORKERS)
+    return found
+
+
+def seconds_of(name: str, count: int) -> float:
+    """Seconds of the processor for so many tasks."""
+    with TemporaryDirectory() as folder, queues()[name]() as ready:
+        store, measured = FolderStore(Path(folder)), Measured(Path(folder) / "measured.csv")
+        for _ in ready.run(iter(tasks("warm", 4 * WORKERS)), Event()):
+            pass
+        start = process_time()
+        for outcome in ready.run(iter(tasks("task", count)), Event()):
+            measured.add(outcome)
+            store.write(outcome.name, outcome.record)
+        spent = process_time() - start
+        assert len(measured.known) == count
+    return spent
 
 
 def tasks(name: str, count: int) -> list[Task]:

@@ -29,6 +29,7 @@ __all__ = ["Column", "Section", "Target", "kept_figures", "machine", "measured",
 ROOT = Path(__file__).resolve().parent.parent
 FIGURES = ROOT / "docs" / "figures" / "benchmarks.json"
 MIB = 1024.0
+INTERRUPTED = 130
 
 
 @frozen
@@ -221,4 +222,8 @@ def run_alone(description: str | None, run: Callable[..., Section], **numbers: s
 
 
 if __name__ == "__main__":
-    perform(*sys.argv[1:])
+    try:
+        perform(*sys.argv[1:])
+    except (BrokenPipeError, KeyboardInterrupt):
+        # Nobody waits for the outcome any more.
+        os._exit(INTERRUPTED)
