@@ -1,12 +1,12 @@
 """What double precision leaves open, decided in ball arithmetic (python-flint).
 
-A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact,
-if there is one; ``proof.narrowing`` makes it smaller by two rules of one or two unknowns. At a nearly
-double solution three directions of the box are well determined and one is not, so the box is turned into
-the directions of the Jacobian's singular vectors. There, boxes in which some contact equation has no zero,
-or in which some rule is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta)
-makes the others smaller, and shows that there is none or exactly one solution, which then is judged at
-rising precision. What remains is cut in three. What is left after ``MOST_BOXES`` boxes stays undecided.
+A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
+there is one. ``proof.narrowing`` makes it smaller by two rules of one or two unknowns. At a nearly double
+solution three directions of the box are well determined and one is not, so the box is turned into the
+directions of the Jacobian's singular vectors. There, boxes in which some contact equation has no zero, or in
+which some rule is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the
+others smaller. It shows that there is none or exactly one solution, which then is judged at rising precision.
+What remains is cut in three. What is left after ``MOST_BOXES`` boxes stays undecided.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis",
 BIT 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.

@@ -1,9 +1,9 @@
 """Makes a candidate's box smaller before it is cut: by the gap rule, and by contacts with parallel lines.
 
 The gap rule bounds the separation alone. Two contacts with parallel lines make an equation of psi and the
-separation alone, because the part's place leaves their difference. Where both lines are one and two pegs are
-in one row, every separation meets all equations; the box is as long as the jaws open, and no turned box of
-the interval Newton method sees that psi is one angle there.
+separation, because the part's place is not in their difference. It is needed where both lines are one and two
+pegs are in one row. Every separation meets all equations there, so the box is as long as the jaws open. No
+turned box of the interval Newton method shows that psi is one angle there.
 """
 
 from __future__ import annotations
@@ -107,9 +107,9 @@ def parallel_lines(box: CandidateBox) -> Iterator[tuple[int, int]]:
 def turned_onto(box: CandidateBox, one: int, other: int, psi: arb, separation: arb) -> arb | None:
     """The part of psi at which two contacts with parallel lines may both touch; None where none is.
 
-    Their difference is n R(psi) a - c, with the arm a from one peg to the other and the distance c of their
-    lines along the normal n = (cos phi, sin phi). Divided by a_x it is cos u - (a_y / a_x) sin u - c / a_x
-    with u = psi - phi, so that the separation in a_x does not count where a_y and c are 0. A step of the
+    Their difference is n R(psi) a - c. The arm a leads from one peg to the other, and c is the distance of
+    their lines along the normal n = (cos phi, sin phi). Divided by a_x it is cos u - (a_y / a_x) sin u -
+    c / a_x with u = psi - phi. So the separation in a_x does not count where a_y and c are 0. A step of the
     interval Newton method in u makes psi smaller.
     """
     first, second = box.features[one], box.features[other]
