@@ -8,7 +8,7 @@ where these are read (``files.part.loaded``, ``web.guard``).
 from __future__ import annotations
 
 import os
-from math import inf, nan
+from math import ceil, inf, nan
 from typing import Any
 
 from workhold.errors import InputError
@@ -22,11 +22,13 @@ __all__ = [
     "MOST_PEG_PAIRS",
     "MOST_RADIUS",
     "MOST_STEPS",
+    "MOST_WAYS",
     "counting_number",
     "real",
     "refuse_little_space",
     "refuse_long",
     "refuse_many_steps",
+    "refuse_much_work",
     "refuse_strong",
     "thread_count",
 ]
@@ -89,6 +91,9 @@ MOST_BLOCKED = 20_000
 # has 650,000, and takes under 1 GiB.
 MOST_STEPS = 250_000
 MOST_CHORDS = 5_000_000
+# Ways in which two pairs of contacts go together, of which one in six to one in fifty is a contact of three
+# locators and a clamp: to list all fixtures of so many takes some minutes, and gigabytes.
+MOST_WAYS = 1e8
 # Peg pairs of the paper's algebra, each with 360 sectors of orientation for each piece of a feature: some
 # 6,000 bytes.
 MOST_PEG_PAIRS = 500_000
@@ -189,3 +194,27 @@ def thread_count(threads: int | None) -> int:
             )
         return threads
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def refuse_much_work(ways: float, extent: tuple[float, float], pitch: tuple[float, float]) -> None:
+    """Refuses a search for two clamps on a lattice that would take hours, and more memory than there is.
+
+    Parameters
+    ----------
+    ways : in which two pairs of contacts may go together, see ``MOST_WAYS``.
+    extent : width and height of the part in mm.
+    pitch : of the lattice in mm.
+
+    Raises
+    ------
+    InputError
+        With a pitch that would do.
+    """
+    if ways > MOST_WAYS:
+        # As many holes less lie along the part as the pitch is larger, and four contacts stand in them.
+        enough = ceil(max(pitch) * (ways / MOST_WAYS) ** 0.25 / 5) * 5
+        raise InputError(
+            f"the part is {extent[0]:.6g} x {extent[1]:.6g} mm large, too large for two clamps on holes "
+            f"{pitch[0]:g} x {pitch[1]:g} mm apart, which leave {ways:.1g} ways to look at: use a pitch of "
+            f"{enough} mm or more, fewer columns and rows, or a small range of angles."
+        )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import nullcontext
 from itertools import combinations, product
 from math import atan, atan2, comb, cos, degrees, hypot, inf, pi, sin, tau
 from pathlib import Path
@@ -20,6 +21,7 @@ from workhold import InputError, Plate, Query, Result, Workpiece, answer, design
 from workhold.kernels.contact import clamp_pairs
 from workhold.model.clamps import ratios, working_forces
 from workhold.model.requirements import Restrictions
+from workhold.search import lattice_shares
 from workhold.statics.quality import quality_of
 
 COMPLETE = sorted((Path(__file__).parent.parent / "data" / "toolkits").glob("clamp2_*.json"))
@@ -421,14 +423,31 @@ def test_the_best_are_those_of_the_whole_list_and_threads_change_nothing(tmp_pat
     assert texts[0] == texts[1]
 
 
-def test_ranges_of_orientation_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("limit", [{"BLOCKS_TOGETHER": 3}, {"WAYS_TOGETHER": 2e4}], ids=str)
+def test_ranges_of_orientation_do_not_show(limit: dict[str, float], monkeypatch: pytest.MonkeyPatch) -> None:
     """However many ranges are worked through one after the other, the list is the same."""
     query = Query(part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2))
     whole = answer(query, threads=1)
-    monkeypatch.setattr("workhold.search.lattice_shares.BLOCKS_TOGETHER", 3)
+    for name, value in limit.items():
+        monkeypatch.setattr(lattice_shares, name, value)
+    with lattice_shares.LatticeShares.of(query, 1, None) as ranges:
+        assert ranges.shares > 3
     again = answer(query, threads=1)
     assert again.table == whole.table and again.distinct == whole.distinct
     assert (again.pairs, again.seats) == (whole.pairs, whole.seats)
+
+
+def test_a_part_far_too_large_for_the_pitch_is_refused_with_one_that_does() -> None:
+    """The refusal comes before the search; one pitch is named, and it is not refused."""
+    large = rectangle(1500, 1400)
+    with pytest.raises(InputError, match=r"1500 x 1400 mm large, .* use a pitch of (\d+) mm or more") as told:
+        design(large, Plate(20, 3, clamps=2))
+    pitch = float(str(told.value).split("pitch of ")[1].split(" mm")[0])
+    for apart, is_refused in ((pitch, False), (pitch / 2, True)):
+        refusal = pytest.raises(InputError, match="too large for two clamps") if is_refused else nullcontext()
+        query = Query(large, Plate(apart, 3, clamps=2))
+        with refusal, lattice_shares.LatticeShares.of(query, 1, None) as ranges:
+            assert ranges.shares >= 1
 
 
 def test_restrictions_leave_what_filtering_the_whole_list_leaves() -> None:

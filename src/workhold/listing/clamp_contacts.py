@@ -144,8 +144,9 @@ def contacts_of_candidates(c: Candidates, problem: Problem, direction: str) -> C
     across = 1 if frame.quarters % 2 == 0 else 0
     line = np.stack(frame.step_back(np.zeros(len(along), np.int64), c.row[:, TIP]), axis=1)[:, across]
     holes = np.stack(frame.step_back(hole, c.row[index, TIP]), axis=1) - lowest[index]
-    kept = is_one_of_two(taken, push)
-    kept[np.setdiff1d(np.arange(len(kept)), index)] = False
+    is_bolted = np.zeros(len(push), np.bool_)
+    is_bolted[index] = True
+    kept = is_one_of_two(taken, push) & is_bolted
     number = np.cumsum(kept) - 1
     order = np.lexsort((row, column), axis=1)
     feature, column, row = (

@@ -131,7 +131,7 @@ class ClampPlacement:
             chosen = waiting[near]
             good = self.is_clear(chosen, stroke[near], problem)
             found.append(np.stack([chosen[good], number[near][good]]))
-            waiting = waiting if every else np.setdiff1d(waiting, chosen[good], assume_unique=True)
+            waiting = waiting if every else np.delete(waiting, near[good])
         index, numbers = np.concatenate(found, axis=1)
         order = np.argsort(index, kind="stable")
         return index[order], numbers[order]

@@ -7,7 +7,7 @@ than the seats of one of them in memory.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from itertools import pairwise
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_POSE
 from workhold.kernels.curves.block_work import CANDIDATES
+from workhold.limits import refuse_much_work
 from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
 from workhold.listing.collector import blocks_of
@@ -43,6 +44,8 @@ Array = NDArray[np.float64]
 # Blocks of one direction's search that are worked on before seats are made of what they found, and most such
 # ranges.
 BLOCKS_TOGETHER, MOST_RANGES = 48, 256
+# Ways to look at in one range, see ``limits.MOST_WAYS``: its contacts take some gigabytes.
+WAYS_TOGETHER = 1e7
 # Of a range few cells are searched, which the threads are to share.
 BLOCKS_PER_HALF_TURN = 2 * LEAST_BLOCKS
 # So many contacts are looked at whole, and all is counted, even where only the best are asked for.
@@ -81,13 +84,16 @@ class LatticeShares:
         problems = [Problem.of(one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
         searches = [ToolkitSearch.of(problem, threads=threads, cancel=cancel) for problem in problems]
         blocks = [search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN) for search in searches]
+        x0, y0, x1, y1 = query.workpiece.bounds
+        refuse_much_work(ways_in(blocks), (x1 - x0, y1 - y0), query.toolkit.carriers[0].pitch)
         with ThreadPoolExecutor(max_workers=threads) as pool:
             yield cls(searches, ClampedSeats(query, searches[0].problem), blocks, pool, threads, cancel)
 
     @property
     def shares(self) -> int:
         """How many ranges there are."""
-        return min(max(max(map(len, self.whole_turn)) // BLOCKS_TOGETHER, 1), MOST_RANGES)
+        large, many = int(ways_in(self.whole_turn) / WAYS_TOGETHER), max(map(len, self.whole_turn))
+        return min(max(many // BLOCKS_TOGETHER, large, 1), MOST_RANGES)
 
     def look(self, share: int, progress: Progress | None) -> tuple[Iterator[Seats], bool]:
         """The seats of a range, some at a time where only the best are asked for."""
@@ -177,3 +183,8 @@ class LatticeShares:
 def counting(progress: Progress | None, found: int) -> Progress | None:
     """A progress that reports so many fixtures."""
     return None if progress is None else lambda fraction, _: progress(fraction, found)
+
+
+def ways_in(blocks: Iterable[Iterable[Block]]) -> float:
+    """In how many ways two pairs of contacts may go together in the blocks of some searches."""
+    return sum(block.cost for every in blocks for block in every)
