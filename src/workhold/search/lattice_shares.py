@@ -186,5 +186,5 @@ def counting(progress: Progress | None, found: int) -> Progress | None:
 
 
 def ways_in(blocks: Iterable[Iterable[Block]]) -> float:
-    """In how many ways two pairs of contacts may go together in the blocks of some searches."""
+    """The ways in which two pairs of contacts may go together in the blocks of some searches."""
     return sum(block.cost for every in blocks for block in every)
