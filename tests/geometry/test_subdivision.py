@@ -104,3 +104,19 @@ def test_border_that_does_not_close() -> None:
     pieces = border_pieces(subdivide(open_sides), lambda p: 0 < p[0] < 4 and 0 < p[1] < 4)
     with pytest.raises(InputError, match=r"the outline does not close at \("):
         border_loops(pieces)
+
+
+@pytest.mark.parametrize("apart", [2e-5, 6e-5])
+@pytest.mark.parametrize("side", range(4))
+def test_cuts_beside_a_corner_leave_one_loop(side: int, apart: float) -> None:
+    """Pieces shorter than the gaps that are closed are no loops, wherever they come first."""
+    square = sides((0, 0, 4, 4))
+    cut = square[side]
+    points = [cut.at(sign * (cut.half_extent - apart)) for sign in (-1.0, 1.0)]
+    carriers = subdivide(square, [(cut, point) for point in points])
+    pieces = border_pieces(carriers, lambda p: 0 < p[0] < 4 and 0 < p[1] < 4)
+    assert len(pieces) == 6
+    for first in range(6):
+        loops = border_loops([*pieces[first:], *pieces[:first]])
+        assert len(loops) == 1
+        assert area(loops) == pytest.approx(16, abs=1e-3)

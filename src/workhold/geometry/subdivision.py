@@ -256,6 +256,12 @@ class BorderPiece:
         """Last point of the run."""
         return self.carrier.at(self.high if self.forward else self.low)
 
+    @property
+    def length(self) -> float:
+        """Its length in mm."""
+        own = self.carrier.segment
+        return (self.high - self.low) * (1.0 if isinstance(own, Line) else own.radius)
+
     def heading(self, *, at_end: bool) -> float:
         """Direction of the run in radians, at its first point or its last."""
         nx, ny = self.carrier.left(self.high if at_end == self.forward else self.low)
@@ -296,7 +302,7 @@ def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[lis
     """Pieces of a border joined to closed loops, each run with the region on the left.
 
     Where several runs leave a point, the one that turns farthest to the left is taken. So two corners of a
-    region that touch stay corners of one loop each.
+    region that touch stay corners of one loop each. Pieces shorter than a gap may be left out, and are no loop.
 
     Parameters
     ----------
@@ -309,9 +315,11 @@ def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[lis
     """
     left = set(range(len(pieces)))
     starts = np.array([piece.start for piece in pieces]).reshape(-1, 2)
+    long = [k for k, piece in enumerate(pieces) if piece.length > reach]
     loops = []
-    while left:
-        first = min(left)
+    for first in long:
+        if first not in left:
+            continue
         left.discard(first)
         loop = [first]
         while True:
