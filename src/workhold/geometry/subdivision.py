@@ -258,7 +258,7 @@ class BorderPiece:
 
     @property
     def length(self) -> float:
-        """Its length in mm."""
+        """Length of the run in mm."""
         own = self.carrier.segment
         return (self.high - self.low) * (1.0 if isinstance(own, Line) else own.radius)
 
@@ -302,7 +302,8 @@ def border_loops(pieces: Sequence[BorderPiece], reach: float = 1e-4) -> list[lis
     """Pieces of a border joined to closed loops, each run with the region on the left.
 
     Where several runs leave a point, the one that turns farthest to the left is taken. So two corners of a
-    region that touch stay corners of one loop each. Pieces shorter than a gap may be left out, and are no loop.
+    region that touch stay corners of one loop each. Pieces shorter than a gap are no loop, and may be left
+    out.
 
     Parameters
     ----------
