@@ -83,7 +83,13 @@ def test_only_plain_html_is_shown(thing: Any) -> None:
     """No script, style or address elsewhere; pictures are SVG that is well formed; plain text stays short."""
     page = Page(thing._repr_html_())
     assert page.elements <= {"p", "b", "code", "table", "thead", "tbody", "tr", "th", "td", "img"}
-    assert page.attributes <= {"align", "nowrap", "src", "width", "alt"}
+    assert page.attributes <= {"align", "style", "nowrap", "src", "width", "alt"}
+    assert set(re.findall(r'style="([^"]*)"', thing._repr_html_())) <= {
+        "text-align:left",
+        "text-align:right",
+        "min-width:200px",
+        "min-width:240px",
+    }
     assert page.open == []
     for picture in page.pictures:
         root = ET.fromstring(picture)
@@ -207,7 +213,11 @@ def test_a_picture_is_the_same_picture_in_fewer_bytes() -> None:
 
 def test_a_table_escapes_what_is_not_markup() -> None:
     made = table((">a<b",), [("<i>",), (Markup("<b>x</b>"),)])
-    assert '<th align="right" nowrap>a&lt;b</th>' in made and "&lt;i&gt;" in made and "<b>x</b>" in made
+    assert (
+        '<th align="right" style="text-align:right" nowrap>a&lt;b</th>' in made
+        and "&lt;i&gt;" in made
+        and "<b>x</b>" in made
+    )
 
 
 def test_a_large_picture_is_one_of_pixels() -> None:

@@ -133,7 +133,7 @@ def thumbnail(fixture: Fixture) -> Markup:
     """The small picture of a fixture of a result."""
     result = fixture.listing.result
     drawn = draw_thumbnail(fixture, result.workpiece, result.toolkit)
-    return image(drawn, f"{fixture_title(fixture)}: {fixture_words(fixture, result.toolkit)}", SMALL)
+    return image(drawn, f"{fixture_title(fixture)}: {fixture_words(fixture, result.toolkit)}", SMALL, False)
 
 
 def fixture_title(fixture: Fixture) -> str:
