@@ -20,7 +20,6 @@ def shown(notebook: dict[str, Any]) -> list[str]:
         for output in cell.get("outputs", ()):
             data = output.get("data", {})
             texts.append("".join(output.get("text", data.get("text/plain", ()))))
-            texts += ["a picture"] if "<svg" in "".join(data.get("image/svg+xml", ())) else []
             # Of tables all words, and where there is a picture.
             html = re.sub(r"<img [^>]*>", "a picture", "".join(data.get("text/html", ())))
             texts += [re.sub(r"(\s*<[^>]*>\s*)+", " | ", html)] if html else []

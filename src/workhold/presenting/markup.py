@@ -18,10 +18,13 @@ from workhold.drawing.render import svg_to_png
 from workhold.drawing.scene import SVG_NAMESPACE
 from workhold.errors import plain
 
-__all__ = ["MOST_SVG", "Markup", "compact", "image", "paragraph", "safe", "table"]
+__all__ = ["LARGE", "MOST_SVG", "Markup", "compact", "image", "paragraph", "safe", "table"]
 
-# Bytes of SVG above which a picture is one of pixels, so many wide for each that it is shown wide.
-MOST_SVG, SHARP = 40_000, 2
+# Width of a page that is shown by itself, in pixels.
+LARGE = 900
+# Bytes of SVG above which a small picture, and a page, is one of pixels; so many pixels for each that it is
+# shown wide.
+MOST_SVG, MOST_PAGE, SHARP = 40_000, 150_000, 2
 # Decimals of page coordinates; a page unit is a pixel or less.
 DECIMALS = 1
 # What children of a group inherit from it.
@@ -73,14 +76,14 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
 def image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup:
     """A picture, ``width`` pixels wide, as an image; ``words`` stand where it cannot be shown.
 
-    A picture of more than :data:`MOST_SVG` bytes becomes one of pixels.
+    A picture of more than :data:`MOST_SVG` bytes, or :data:`MOST_PAGE` of a page, becomes one of pixels.
 
     Parameters
     ----------
     shrinks : whether it gets narrower in a narrow page; in a table it should not, as its column would.
     """
     drawn, kind = compact(svg).encode("utf-8"), "svg+xml"
-    if len(drawn) > MOST_SVG:
+    if len(drawn) > (MOST_PAGE if width >= LARGE else MOST_SVG):
         drawn, kind = svg_to_png(svg, SHARP * width), "png"
     wide = "" if shrinks else f' style="min-width:{width}px"'
     held = b64encode(drawn).decode("ascii")
