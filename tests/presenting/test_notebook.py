@@ -6,6 +6,7 @@ import base64
 import re
 import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
+from math import inf, nan
 from typing import Any
 
 import attrs
@@ -16,9 +17,13 @@ from fakes import fake_result
 from workhold.cli.tables import result_table
 from workhold.errors import InputError
 from workhold.listing.identity import entries
+from workhold.model.quality import RANKED
 from workhold.model.requirements import Restrictions
+from workhold.presenting.figure_words import figure_text
+from workhold.presenting.further_html import MOST_SEATS
 from workhold.presenting.markup import MOST_SVG, Markup, compact, image, table
 from workhold.presenting.notebook import MOST_ROWS
+from workhold.units import MILLIMETRE
 
 RECTANGLE = [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]]
 WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
@@ -165,6 +170,33 @@ def test_why_there_is_none_is_asked_of_none_only() -> None:
     with pytest.raises(InputError, match="was not found out"):
         attrs.evolve(NONE, complete=False).why_none()
     assert "why_none" not in attrs.evolve(NONE, complete=False)._repr_html_()
+
+
+def test_seats_are_bounded_and_counted() -> None:
+    """The widget has more seats than there is room for."""
+    vise = workhold.Vise(pitch=8, columns=2, peg_radius=2)
+    (seating,) = workhold.seatings(workhold.design(workhold.load("widget"), vise, best=1))
+    page = Page(seating._repr_html_())
+    seats = [row for row in page.rows if len(row) == 6][1:]
+    assert len(seats) == MOST_SEATS < len(seating.seats)
+    assert f"{MOST_SEATS} of {len(seating.seats)} seats shown" in page.words
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("closure_margin", nan, "-"),
+        ("capture_opening", inf, "any"),
+        ("reading", inf, "none"),
+        ("capture_opening", 1.2345, "1.23"),
+        ("location_error", 0.12345, "0.1235"),
+        ("tilt", -1e-9, "0.000"),
+    ],
+)
+def test_figures_are_written_with_their_decimals(key: str, value: float, words: str) -> None:
+    """What is not known is a dash, and what has no end is said in a word."""
+    figure = next(one for one in RANKED if one.key == key)
+    assert figure_text(figure, value, MILLIMETRE) == words
 
 
 def test_a_part_shows_its_faces() -> None:

@@ -370,6 +370,7 @@ class View {
       return;
     }
     this.over.setAttribute("visibility", "hidden");
+    this.place(keyframes[0]);
     const takes = Math.min(Math.max(SHORTEST, 25 * keyframes.length), LONGEST);
     const begun = performance.now();
     const frame = (now) => {
