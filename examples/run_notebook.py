@@ -1,7 +1,7 @@
 """Run the cells of the notebooks beside this file, or of those named, and keep what they show.
 
 Needs nothing of Jupyter: a cell is run as Python, what it prints is kept, and what its last line is worth, as text and as
-the HTML or picture that it shows of itself. An error ends the run and leaves the notebook as it was.
+the HTML that it shows of itself. An error ends the run and leaves the notebook as it was.
 """
 
 from __future__ import annotations
@@ -17,9 +17,7 @@ from typing import Any
 
 __all__ = ["executed"]
 
-TEXT = "text/plain"
-# What a value may show of itself besides its text, by the method that Jupyter asks for it.
-SHOWN = {"text/html": "_repr_html_", "image/svg+xml": "_repr_svg_"}
+HTML, TEXT = "text/html", "text/plain"
 
 
 def executed(path: Path) -> dict[str, Any]:
@@ -48,10 +46,9 @@ def outputs(source: str, names: dict[str, Any], number: int) -> list[dict[str, A
         )
     if value is not None:
         data = {TEXT: repr(value).splitlines(keepends=True)}
-        for kind, method in SHOWN.items():
-            picture = getattr(value, method)() if hasattr(value, method) else None
-            if picture is not None:
-                data = {kind: picture.splitlines(keepends=True), **data}
+        html = value._repr_html_() if hasattr(value, "_repr_html_") else None
+        if html is not None:
+            data = {HTML: html.splitlines(keepends=True), **data}
         shown.append(
             {"data": data, "execution_count": number, "metadata": {}, "output_type": "execute_result"}
         )

@@ -130,6 +130,7 @@ DELEGATES = {
     "to_cadquery": "workhold.presenting.cad",
     "to_pandas": "workhold.presenting.data",
     "why_none": "workhold.presenting.why_none",
+    "workpiece_html": "workhold.presenting.notebook",
     "workpiece_picture": "workhold.presenting.papers",
 }
 

@@ -109,22 +109,22 @@ def test_a_closing_comes_home() -> None:
     for index in range(8):
         picture = live(VISE, index)
         closing = closing_shown(picture)
-        assert closing["steps"][-1] == pytest.approx([0.0] * 4, abs=2e-3)
-        assert closing["steps"][0][3] > 0 and len(closing["steps"]) <= 121
-        if len(closing["steps"]) > 2:
+        assert closing["keyframes"][-1] == pytest.approx([0.0] * 4, abs=2e-3)
+        assert closing["keyframes"][0][3] > 0 and len(closing["keyframes"]) <= 121
+        if len(closing["keyframes"]) > 2:
             shown += 1
             assert f"S = {picture.fixture.jaw_separation:.3f} mm" in closing["words"]
-            assert any(abs(value) > 0.1 for value in closing["steps"][0][:3])
-            opened = [step[3] for step in closing["steps"]]
+            assert any(abs(value) > 0.1 for value in closing["keyframes"][0][:3])
+            opened = [one[3] for one in closing["keyframes"]]
             assert opened == sorted(opened, reverse=True)
     assert shown > 0
 
 
-def test_a_step_is_where_the_part_lies() -> None:
+def test_a_keyframe_is_where_the_part_lies() -> None:
     """Turned about its middle and shifted, every point of the part is where its pose puts it."""
     picture = live(VISE)
     pose = workhold.Pose(picture.fixture.pose.theta_deg + 7.0, 3.0, -2.0)
-    turned, dx, dy, _ = picture.step(pose, 1.0)
+    turned, dx, dy, _ = picture.keyframe(pose, 1.0)
     cx, cy = picture.center
     for point in ((0.0, 0.0), (41.0, 0.0), (13.0, 37.0)):
         x, y = picture.view(picture.fixture.pose.apply(*point))
@@ -135,7 +135,7 @@ def test_a_step_is_where_the_part_lies() -> None:
 
 def test_two_clamps_say_in_which_order_they_are_tightened() -> None:
     closing = closing_shown(live(TWO))
-    assert "clamp" in closing["words"] and closing["steps"][0][3] > 0
+    assert "clamp" in closing["words"] and closing["keyframes"][0][3] > 0
 
 
 def test_a_clamp_is_drawn_back_no_farther_than_it_goes() -> None:

@@ -6,6 +6,7 @@ import base64
 import re
 import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
+from math import inf, nan
 from typing import Any
 
 import attrs
@@ -16,9 +17,13 @@ from fakes import fake_result
 from workhold.cli.tables import result_table
 from workhold.errors import InputError
 from workhold.listing.identity import entries
+from workhold.model.quality import RANKED
 from workhold.model.requirements import Restrictions
+from workhold.presenting.figure_words import figure_text
+from workhold.presenting.further_html import MOST_SEATS
 from workhold.presenting.markup import MOST_SVG, Markup, compact, image, table
 from workhold.presenting.notebook import MOST_ROWS
+from workhold.units import MILLIMETRE
 
 RECTANGLE = [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]]
 WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
@@ -75,7 +80,19 @@ def every_kind() -> list[Any]:
     supports = DENSE[0].supports(thickness=8, pad_radius=1.5, inside=1.0)
     bare = DENSE[0].supports(thickness=8, pad_radius=1.5, inside=30.0)
     assert supports.triples and not bare.triples
-    return [RESULT, RESULT[0], seated, seated[0], seated[0].seating, supports, bare, NONE, NONE.why_none()]
+    return [
+        WEDGE,
+        RESULT[0].draw(),
+        RESULT,
+        RESULT[0],
+        seated,
+        seated[0],
+        seated[0].seating,
+        supports,
+        bare,
+        NONE,
+        NONE.why_none(),
+    ]
 
 
 @pytest.mark.parametrize("thing", every_kind(), ids=lambda thing: repr(thing)[:28])
@@ -83,14 +100,20 @@ def test_only_plain_html_is_shown(thing: Any) -> None:
     """No script, style or address elsewhere; pictures are SVG that is well formed; plain text stays short."""
     page = Page(thing._repr_html_())
     assert page.elements <= {"p", "b", "code", "table", "thead", "tbody", "tr", "th", "td", "img"}
-    assert page.attributes <= {"align", "nowrap", "src", "width", "alt"}
+    assert page.attributes <= {"align", "style", "nowrap", "src", "width", "alt"}
+    assert set(re.findall(r'style="([^"]*)"', thing._repr_html_())) <= {
+        "text-align:left",
+        "text-align:right",
+        "min-width:200px",
+        "min-width:240px",
+    }
     assert page.open == []
     for picture in page.pictures:
         root = ET.fromstring(picture)
         assert root.tag.endswith("}svg") and b"<script" not in picture and b"href" not in picture
         # Its own ground, on which black lines show in a dark page too.
         assert root.find("{*}rect").get("fill") == "#ffffff"  # type: ignore[union-attr]
-    assert len(repr(thing)) < 200
+    assert isinstance(thing, str) or len(repr(thing)) < 200
 
 
 @pytest.mark.parametrize("result", [RESULT, fake_result(30)], ids=["wedge", "fakes"])
@@ -147,6 +170,38 @@ def test_why_there_is_none_is_asked_of_none_only() -> None:
     with pytest.raises(InputError, match="was not found out"):
         attrs.evolve(NONE, complete=False).why_none()
     assert "why_none" not in attrs.evolve(NONE, complete=False)._repr_html_()
+
+
+def test_seats_are_bounded_and_counted() -> None:
+    """The widget has more seats than there is room for."""
+    vise = workhold.Vise(pitch=8, columns=2, peg_radius=2)
+    (seating,) = workhold.seatings(workhold.design(workhold.load("widget"), vise, best=1))
+    page = Page(seating._repr_html_())
+    seats = [row for row in page.rows if len(row) == 6][1:]
+    assert len(seats) == MOST_SEATS < len(seating.seats)
+    assert f"{MOST_SEATS} of {len(seating.seats)} seats shown" in page.words
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("closure_margin", nan, "-"),
+        ("capture_opening", inf, "any"),
+        ("reading", inf, "none"),
+        ("capture_opening", 1.2345, "1.23"),
+        ("location_error", 0.12345, "0.1235"),
+        ("tilt", -1e-9, "0.000"),
+    ],
+)
+def test_figures_are_written_with_their_decimals(key: str, value: float, words: str) -> None:
+    """What is not known is a dash, and what has no end is said in a word."""
+    figure = next(one for one in RANKED if one.key == key)
+    assert figure_text(figure, value, MILLIMETRE) == words
+
+
+def test_a_part_shows_its_faces() -> None:
+    (picture,) = Page(WEDGE._repr_html_()).pictures
+    assert picture.decode() == compact(WEDGE.draw())
 
 
 def test_a_fixture_of_no_result_is_shown_as_words() -> None:
@@ -207,7 +262,11 @@ def test_a_picture_is_the_same_picture_in_fewer_bytes() -> None:
 
 def test_a_table_escapes_what_is_not_markup() -> None:
     made = table((">a<b",), [("<i>",), (Markup("<b>x</b>"),)])
-    assert '<th align="right" nowrap>a&lt;b</th>' in made and "&lt;i&gt;" in made and "<b>x</b>" in made
+    assert (
+        '<th align="right" style="text-align:right" nowrap>a&lt;b</th>' in made
+        and "&lt;i&gt;" in made
+        and "<b>x</b>" in made
+    )
 
 
 def test_a_large_picture_is_one_of_pixels() -> None:

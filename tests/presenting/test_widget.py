@@ -68,9 +68,9 @@ def test_what_cannot_be_is_said_in_the_widget(widget: Any) -> None:
 
 def test_a_closing_is_answered(widget: Any) -> None:
     widget.asked_closing = 1
-    assert widget.closing["number"] == 1 and len(widget.closing["steps"]) > 2 and widget.closing["words"]
+    assert widget.closing["number"] == 1 and len(widget.closing["keyframes"]) > 2 and widget.closing["words"]
     widget.rank = 2
-    assert len(widget.closing["steps"]) == 2
+    assert len(widget.closing["keyframes"]) == 2
 
 
 def test_the_state_is_plain_and_small(widget: Any) -> None:

@@ -215,8 +215,8 @@ class Workpiece:
         size = f"{x1 - x0:.6g} x {y1 - y0:.6g} mm"
         return f"<Workpiece {self.name}: {faces} face{'s' * (faces != 1)}{inside}, {size}>"
 
-    def _repr_svg_(self) -> str:
-        return str(self.draw())
+    def _repr_html_(self) -> str:
+        return str(delegate("workpiece_html")(self))
 
     def draw(
         self, path: str | Path | None = None, *, peg_radius: float | None = None, unit: str = "mm"

@@ -29,8 +29,8 @@ OF_CAPTURE, SHARES = 0.9, (0.7, 0.4, 0.2)
 ANY_TURN = 12.0
 # mm. Caught from less, no motion would be seen.
 VISIBLE = 0.2
-# Steps that are kept of a closing.
-MOST_STEPS = 120
+# Keyframes that are kept of a closing.
+MOST_KEYFRAMES = 120
 
 
 def closing_shown(picture: LivePicture) -> dict[str, Any]:
@@ -68,12 +68,12 @@ def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, 
             continue
         if way.ending in ("right", "same place"):
             sign = toolkit.clamping
-            every = -(-len(way.poses) // MOST_STEPS)
-            steps = [
-                picture.step(one, max(sign * (travelled - fixture.jaw_separation), 0.0))
+            every = -(-len(way.poses) // MOST_KEYFRAMES)
+            keyframes = [
+                picture.keyframe(one, max(sign * (travelled - fixture.jaw_separation), 0.0))
                 for one, travelled in zip(way.poses[::-1][::every], way.travels[::-1][::every], strict=True)
             ]
-            return picture.closing(steps[::-1], sentences.ended(way.ending, way.seat, way.travels[-1]))
+            return picture.closing(keyframes[::-1], sentences.ended(way.ending, way.seat, way.travels[-1]))
     return picture.closing(words="The part is held in its place meanwhile.")
 
 

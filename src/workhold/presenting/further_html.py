@@ -82,7 +82,7 @@ def supports_picture(supports: Supports, rank: int) -> Markup:
     draw_bench(scene, bench, view, weight=0.7, longest=26.0, axes=False)
     draw_supports(scene, PlannedSupports.of(chosen), view)
     names = ", ".join(pad.hole for pad in chosen.pads)
-    return image(scene.svg(), f"Supports in {names} under {query.workpiece.name}", WIDE)
+    return image(scene.svg(), f"Supports in {names} under {query.workpiece.name}", WIDE, False)
 
 
 def seating_html(seating: Seating) -> str:

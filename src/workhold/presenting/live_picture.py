@@ -3,8 +3,8 @@
 Glossary
 --------
 push : a force on the part that is tried out, at a point of the part.
-step : one moment of closing: how far the part is turned, in degrees, and shifted, in page units, and by how
-    many mm what moves is open.
+keyframe : one moment of closing: how far the part is turned, in degrees, and shifted, in page units, and by
+    how many mm what moves is open.
 """
 
 from __future__ import annotations
@@ -282,13 +282,13 @@ class LivePicture:
                 far = min(far, stroke + travel.most)
         return max(far, 0.0)
 
-    def closing(self, steps: Sequence[Sequence[float]] = (), words: str = "") -> dict[str, Any]:
-        """What is shown of a closing; without steps what moves comes, and the part waits in its place."""
+    def closing(self, keyframes: Sequence[Sequence[float]] = (), words: str = "") -> dict[str, Any]:
+        """What is shown of a closing; without keyframes what moves comes, and the part waits in its place."""
         plain = [[0.0, 0.0, 0.0, self.opened], [0.0, 0.0, 0.0, 0.0]]
-        return {"center": list(self.center), "steps": list(steps) or plain, "words": words}
+        return {"center": list(self.center), "keyframes": list(keyframes) or plain, "words": words}
 
-    def step(self, pose: Pose, opened: float) -> list[float]:
-        """The step in which the part lies in a pose and what moves is open by so many mm."""
+    def keyframe(self, pose: Pose, opened: float) -> list[float]:
+        """The keyframe in which the part lies in a pose and what moves is open by so many mm."""
         x, y = self.view(pose.apply(*self.result.workpiece.center))
         turned = (pose.theta_deg - self.fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
         numbers = turned, x - self.center[0], y - self.center[1], opened

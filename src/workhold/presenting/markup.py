@@ -2,7 +2,7 @@
 
 A picture is an image whose address holds its SVG: its ids meet no others, and nothing in it runs. Its own
 white ground serves a dark page as well as a light one. Sanitizers that take SVG out of HTML leave it alone.
-There are no styles and no scripts, so the page's own colours hold for all that is written.
+There are no colours and no scripts, so those of the page hold for all that is written.
 """
 
 from __future__ import annotations
@@ -18,10 +18,13 @@ from workhold.drawing.render import svg_to_png
 from workhold.drawing.scene import SVG_NAMESPACE
 from workhold.errors import plain
 
-__all__ = ["MOST_SVG", "Markup", "compact", "image", "paragraph", "safe", "table"]
+__all__ = ["LARGE", "MOST_SVG", "Markup", "compact", "image", "paragraph", "safe", "table"]
 
-# Bytes of SVG above which a picture is one of pixels, so many wide for each that it is shown wide.
-MOST_SVG, SHARP = 40_000, 2
+# Width of a page that is shown by itself, in pixels.
+LARGE = 900
+# Bytes of SVG above which a small picture, and a page, is one of pixels; so many pixels for each that it is
+# shown wide.
+MOST_SVG, MOST_PAGE, SHARP = 40_000, 150_000, 2
 # Decimals of page coordinates; a page unit is a pixel or less.
 DECIMALS = 1
 # What children of a group inherit from it.
@@ -54,15 +57,14 @@ def paragraph(*pieces: str) -> Markup:
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
     """A table; a column whose heading begins with ``>`` is flush right, all others are flush left.
 
-    >>> table((">x mm",), [("A<1",)])
-    '<table><thead><tr><th align="right" nowrap>x mm</th></tr></thead>\\n<tbody><tr><td align="right" \
-nowrap>A&lt;1</td></tr></tbody></table>'
+    Which way is said twice: some sanitizers take away styles, and some pages have styles that win.
     """
     ways = ["right" if heading.startswith(">") else "left" for heading in headings]
 
     def row(cells: Sequence[str], tag: str) -> str:
         made = (
-            f'<{tag} align="{way}" nowrap>{safe(cell)}</{tag}>' for cell, way in zip(cells, ways, strict=True)
+            f'<{tag} align="{way}" style="text-align:{way}" nowrap>{safe(cell)}</{tag}>'
+            for cell, way in zip(cells, ways, strict=True)
         )
         return f"<tr>{''.join(made)}</tr>"
 
@@ -71,16 +73,23 @@ nowrap>A&lt;1</td></tr></tbody></table>'
     return Markup(f"<table><thead>{head}</thead>\n<tbody>{body}</tbody></table>")
 
 
-def image(svg: str, words: str, width: int) -> Markup:
+def image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup:
     """A picture, ``width`` pixels wide, as an image; ``words`` stand where it cannot be shown.
 
-    A picture of more than :data:`MOST_SVG` bytes becomes one of pixels.
+    A picture of more than :data:`MOST_SVG` bytes, or :data:`MOST_PAGE` of a page, becomes one of pixels.
+
+    Parameters
+    ----------
+    shrinks : whether it gets narrower in a narrow page; in a table it should not, as its column would.
     """
     drawn, kind = compact(svg).encode("utf-8"), "svg+xml"
-    if len(drawn) > MOST_SVG:
+    if len(drawn) > (MOST_PAGE if width >= LARGE else MOST_SVG):
         drawn, kind = svg_to_png(svg, SHARP * width), "png"
+    wide = "" if shrinks else f' style="min-width:{width}px"'
     held = b64encode(drawn).decode("ascii")
-    return Markup(f'<img src="data:image/{kind};base64,{held}" width="{width}" alt="{escape(plain(words))}">')
+    return Markup(
+        f'<img src="data:image/{kind};base64,{held}" width="{width}"{wide} alt="{escape(plain(words))}">'
+    )
 
 
 def compact(svg: str) -> str:

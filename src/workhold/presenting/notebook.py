@@ -24,19 +24,28 @@ from workhold.presenting.figure_words import (
     short_heading,
     unit_of,
 )
-from workhold.presenting.markup import Markup, image, paragraph, safe, table
-from workhold.presenting.papers import fixture_picture
+from workhold.presenting.markup import LARGE, Markup, image, paragraph, safe, table
+from workhold.presenting.papers import fixture_picture, workpiece_picture
 from workhold.units import MILLIMETRE
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
+    from workhold.model.workpiece import Workpiece
 
-__all__ = ["MOST_ROWS", "fixture_html", "fixture_title", "none_html", "result_html", "sentence", "thumbnail"]
+__all__ = [
+    "MOST_ROWS",
+    "fixture_html",
+    "fixture_title",
+    "none_html",
+    "result_html",
+    "sentence",
+    "thumbnail",
+    "workpiece_html",
+]
 
-# Entries of a result that are shown, and widths of pictures in pixels.
-MOST_ROWS = 6
-SMALL, LARGE = 200, 900
+# Entries of a result that are shown, and the width of their pictures in pixels.
+MOST_ROWS, SMALL = 6, 200
 
 
 def result_html(result: Result) -> str:
@@ -133,7 +142,7 @@ def thumbnail(fixture: Fixture) -> Markup:
     """The small picture of a fixture of a result."""
     result = fixture.listing.result
     drawn = draw_thumbnail(fixture, result.workpiece, result.toolkit)
-    return image(drawn, f"{fixture_title(fixture)}: {fixture_words(fixture, result.toolkit)}", SMALL)
+    return image(drawn, f"{fixture_title(fixture)}: {fixture_words(fixture, result.toolkit)}", SMALL, False)
 
 
 def fixture_title(fixture: Fixture) -> str:
@@ -148,6 +157,11 @@ def fixture_html(fixture: Fixture) -> str | None:
         return None
     words = f"{fixture_title(fixture)}: {fixture_words(fixture, fixture.listing.result.toolkit)}"
     return "\n".join((paragraph(image(fixture_picture(fixture), words, LARGE)), figures_table(fixture)))
+
+
+def workpiece_html(workpiece: Workpiece) -> str:
+    """Shows a workpiece: the part with its faces numbered."""
+    return paragraph(image(workpiece_picture(workpiece), repr(workpiece).strip("<>"), LARGE))
 
 
 def figures_table(fixture: Fixture) -> Markup:

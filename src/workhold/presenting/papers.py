@@ -19,6 +19,7 @@ from workhold.listing.identity import entries
 from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import part_zero
 from workhold.presenting.assembly import STEP_ENDINGS, Assembly, shape_in
+from workhold.presenting.markup import LARGE, image
 from workhold.units import unit_named
 
 if TYPE_CHECKING:
@@ -47,8 +48,8 @@ class Picture(str):
 
     __slots__ = ()
 
-    def _repr_svg_(self) -> str:
-        return str(self)
+    def _repr_html_(self) -> str:
+        return image(self, "A picture of workhold", LARGE)
 
     def save(self, path: str | Path) -> Picture:
         """Writes the picture and returns it.

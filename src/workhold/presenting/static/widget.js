@@ -358,9 +358,9 @@ class View {
   /** Show the closing, at once for those who want no motion. */
   play() {
     cancelAnimationFrame(this.frame);
-    const { steps, words } = this.model.get("closing");
+    const { keyframes, words } = this.model.get("closing");
     const ended = () => {
-      this.place(steps.at(-1));
+      this.place(keyframes.at(-1));
       this.over.removeAttribute("visibility");
       if (words) this.words.textContent = words;
       else this.arrows();
@@ -370,13 +370,14 @@ class View {
       return;
     }
     this.over.setAttribute("visibility", "hidden");
-    const takes = Math.min(Math.max(SHORTEST, 25 * steps.length), LONGEST);
+    this.place(keyframes[0]);
+    const takes = Math.min(Math.max(SHORTEST, 25 * keyframes.length), LONGEST);
     const begun = performance.now();
     const frame = (now) => {
       const share = Math.min(1, Math.max(0, (now - begun) / takes));
-      const along = (1 - (1 - share) ** 2) * (steps.length - 1);
-      const before = Math.min(Math.floor(along), steps.length - 2);
-      const [one, other] = [steps[Math.max(before, 0)], steps[before + 1] ?? steps.at(-1)];
+      const along = (1 - (1 - share) ** 2) * (keyframes.length - 1);
+      const before = Math.min(Math.floor(along), keyframes.length - 2);
+      const [one, other] = [keyframes[Math.max(before, 0)], keyframes[before + 1] ?? keyframes.at(-1)];
       this.place(one.map((value, k) => value + (along - before) * (other[k] - value)));
       if (share < 1) this.frame = requestAnimationFrame(frame);
       else ended();
