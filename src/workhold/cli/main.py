@@ -75,6 +75,9 @@ COMMANDS = {
         "Try many parts in many toolkits: every part with every toolkit, into tables, a report and result "
         "files."
     ),
+    "benchmark": (
+        "List the sets of the benchmark, make their complete lists, or compare another program's with them."
+    ),
     "features": "List the numbered faces of PART, as pictures and result files name them.",
     "parts": "List the built-in parts.",
     "program": (

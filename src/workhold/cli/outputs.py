@@ -53,6 +53,8 @@ ENDS = 4096
 MARKS = (
     b'{"format": "workhold-result/',
     b'{"format": "workhold-family/',
+    b'{"format": "workhold-benchmark',
+    b"format workhold-benchmark/1",
     b"\0workhold-result/",
     b"number,type,theta_deg,x,y,jaw_separation,",
     b"toolkit,fixtures,type_",

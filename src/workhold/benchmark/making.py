@@ -1,0 +1,179 @@
+"""The complete lists of sets: made, written with all that a copy of the benchmark needs, and compared."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+from attrs import frozen
+
+from workhold.benchmark.catalogue import (
+    SetEntry,
+    data_bytes,
+    data_names,
+    parts_of,
+    query_of,
+    set_named,
+)
+from workhold.benchmark.entry import Entry, entered_fixture
+from workhold.benchmark.form import file_text, set_text, sums_of
+from workhold.benchmark.matching import Comparison, Places, compared
+from workhold.errors import InputError
+from workhold.files.atomic import binary_file, write_bytes
+from workhold.search.design import answer
+
+__all__ = ["LARGE", "MadeSet", "compared_entry", "load_arrow", "made_list", "made_sets", "write_common"]
+
+# Fixtures from which on a set is written as Parquet where that is asked for.
+LARGE = 5000
+
+
+@frozen
+class MadeSet:
+    """A set that was made.
+
+    Parameters
+    ----------
+    entry : what the manifest says of it.
+    path : its file.
+    counts : of its fixtures, by type.
+    differs : which checksums are not those of the manifest: "fixtures", "holes", "file".
+    """
+
+    entry: SetEntry
+    path: Path
+    counts: Mapping[str, int]
+    differs: tuple[str, ...]
+
+    @property
+    def size(self) -> int:
+        """How many fixtures were found."""
+        return sum(self.counts.values())
+
+    @property
+    def is_same(self) -> bool:
+        """Whether the list is the one of the manifest, to the last digit or but for rounding."""
+        return "holes" not in self.differs
+
+
+def made_list(
+    entry: SetEntry, threads: int | None = None, cancel: Event | None = None
+) -> tuple[dict[str, Any], list[str]] | None:
+    """The head and the lines of a set, from a search; None where that was cancelled."""
+    result = answer(query_of(entry), threads=threads, cancel=cancel)
+    return set_text(entry.name, result) if result.complete else None
+
+
+def made_sets(
+    chosen: Sequence[SetEntry],
+    folder: Path,
+    *,
+    parquet: bool = False,
+    threads: int | None = None,
+    progress: Callable[[float, int], None] | None = None,
+    cancel: Event | None = None,
+) -> Iterator[MadeSet]:
+    """Makes sets one after the other and writes each into a folder.
+
+    Parameters
+    ----------
+    parquet : whether large sets are written as Parquet instead of JSON; needs pyarrow.
+    progress : called with the share of the sets that are done and the fixtures in them.
+    cancel : when set, no further set is made.
+    """
+    total, fixtures = sum(one.size + 200 for one in chosen), 0
+    done = 0
+    for entry in chosen:
+        made = made_list(entry, threads, cancel)
+        if made is None:
+            return
+        head, lines = made
+        sums = sums_of(head, lines)
+        large = parquet and len(lines) >= LARGE
+        path = folder / f"{entry.name}.{'parquet' if large else 'json'}"
+        if large:
+            write_parquet(path, head, lines)
+        else:
+            write_bytes(path, file_text(head, lines).encode("utf-8"))
+        fixtures, done = fixtures + len(lines), done + entry.size + 200
+        if progress is not None:
+            progress(done / total, fixtures)
+        differs = tuple(name for name, value in sums.items() if entry.sums.get(name) != value)
+        yield MadeSet(entry, path, head["counts"], differs)
+
+
+def write_common(chosen: Sequence[SetEntry], folder: Path) -> None:
+    """Writes manifest, checker, schemas and the workpieces of some sets into a folder."""
+    (folder / "parts").mkdir(parents=True, exist_ok=True)
+    for name in (*data_names(), *(f"parts/{part}.json" for part in parts_of(chosen))):
+        write_bytes(folder / name, data_bytes(name))
+
+
+def write_parquet(path: Path, head: Mapping[str, Any], lines: Sequence[str]) -> None:
+    """Writes a set as Parquet: a row for each fixture, and the head in the metadata of the schema.
+
+    Raises
+    ------
+    InputError
+        Where pyarrow is not installed.
+    """
+    arrow, tables = load_arrow()
+    rows = [json.loads(line) for line in lines]
+    table = arrow.Table.from_pylist(rows)
+    table = table.replace_schema_metadata({"workhold-benchmark": json.dumps(head)})
+    with binary_file(path) as stream:
+        tables.write_table(table, stream, compression="zstd")
+
+
+def load_arrow() -> tuple[Any, Any]:
+    """Imports pyarrow and its tables of Parquet.
+
+    Raises
+    ------
+    InputError
+        Where it is not installed.
+    """
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError as error:
+        raise InputError(
+            "--parquet needs pyarrow: pip install 'workhold[batch]', or leave it out for JSON."
+        ) from error
+    return pyarrow, pyarrow.parquet
+
+
+def compared_entry(
+    entry: Entry,
+    tolerance: float,
+    symmetric: bool,
+    threads: int | None = None,
+    cancel: Event | None = None,
+) -> Comparison | None:
+    """Compares another program's list with the complete one, which is made anew; None where it is cancelled.
+
+    Raises
+    ------
+    InputError
+        Where the list made here is not the one of the manifest.
+    """
+    known = set_named(entry.set_name)
+    query = query_of(known)
+    made = made_list(known, threads, cancel)
+    if made is None:
+        return None
+    head, lines = made
+    if sums_of(head, lines)["holes"] != known.sums["holes"]:
+        raise InputError(
+            f"the list of {known.name} made here is not the one of the manifest: install workhold anew."
+        )
+    complete = [entered_fixture(json.loads(line)) for line in lines]
+    return compared(
+        Places(query.workpiece, complete),
+        Places(query.workpiece, entry.fixtures),
+        tolerance,
+        symmetric,
+    )

@@ -1,0 +1,267 @@
+"""The command ``benchmark``: lists the sets, makes their complete lists, and compares another program's."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from workhold.cli.commands import option
+from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
+from workhold.cli.progress import progress_bar
+from workhold.cli.values import choice, optional_count, positive_number
+from workhold.errors import InputError
+
+if TYPE_CHECKING:
+    from workhold.benchmark.catalogue import SetEntry
+    from workhold.benchmark.matching import Comparison
+
+__all__ = ["benchmark"]
+
+ACTIONS = ("list", "run", "check", "checker")
+DIFFERS = 2
+# mm: how far another program's pegs may be from where the complete list has them.
+TOLERANCE = "0.001"
+
+
+def benchmark(
+    action: Annotated[str, typer.Argument(metavar="ACTION", help="list, run, check or checker.")],
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[NAMES]...",
+            help="Of list and run: sets, workpieces, or words that a set's name contains; all if not given. "
+            "Of check: files with another program's fixtures, JSON or CSV.",
+        ),
+    ] = None,
+    out: str | None = option(None, "DIR", "Of run: the folder to write the sets into."),
+    parquet: Annotated[
+        bool, typer.Option("--parquet", help="Of run: write sets of 5,000 fixtures or more as Parquet.")
+    ] = False,
+    set_: str | None = option(
+        None, "NAME", "Of check: the set that the files are for, where they do not say.", "--set"
+    ),
+    tolerance: str = option(
+        None,
+        "MM",
+        "Of check: how far pegs may be from where the complete list has them.",
+        default=TOLERANCE,
+    ),
+    symmetric: Annotated[
+        bool,
+        typer.Option(
+            "--symmetric",
+            help="Of check: one fixture stands for all that a rotation of the part carries into it.",
+        ),
+    ] = False,
+    threads: str | None = option(None, "N", "Threads to use; all processors if not given."),
+    force: ForceOption = False,
+    json_: JsonOption = False,
+) -> None:
+    """List the sets of the benchmark, make their complete lists, or compare another program's with them.
+
+    A set is a workpiece, a toolkit and the complete list of its fixtures. The lists are made on this machine
+    in less than a minute and compared with the checksums that come with workhold. The last action prints a
+    program that checks a set's file with NumPy alone.
+
+    Example: workhold benchmark run kite --out sets
+    """
+    asked = choice("the action", action, ACTIONS)
+    given = names or []
+    workers = optional_count("--threads", threads)
+    room = positive_number("--tolerance", tolerance)
+    if out is not None and asked != "run":
+        raise InputError(f"--out is of run alone: leave it out, or say run instead of {asked}.")
+    if asked == "checker":
+        from workhold.benchmark.catalogue import data_bytes
+
+        sys.stdout.write(data_bytes("check.py").decode("utf-8"))
+    elif asked == "list":
+        list_sets(chosen_sets(given), json_)
+    elif asked == "run":
+        make_sets(chosen_sets(given), out, parquet, workers, force, json_)
+    else:
+        check_entries(given, set_, room or 0.0, symmetric, workers, json_)
+
+
+def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
+    """The sets that words name: by name, by workpiece, or by what a name contains; all of them without words.
+
+    Raises
+    ------
+    InputError
+        For a word that names none.
+    """
+    from workhold.benchmark.catalogue import set_named, sets
+
+    every, chosen = sets(), set[str]()
+    for word in words:
+        called = [one.name for one in every if one.name == word]
+        of_part = [one.name for one in every if one.part == word]
+        holding = [one.name for one in every if word in one.name]
+        chosen |= set(called or of_part or holding or [set_named(word).name])
+    return [one for one in every if not words or one.name in chosen]
+
+
+def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
+    """Prints names, sizes and reasons of sets."""
+    if as_json:
+        print_json(sets=[set_data(one) for one in chosen])
+        return
+    from workhold.cli.table import Table, print_tables
+    from workhold.cli.tables import plural
+
+    table = Table(("set", ">fixtures", "reason"))
+    for one in chosen:
+        table.add_row(one.name, f"{one.size:,}", one.reason)
+    total = sum(one.size for one in chosen)
+    print_tables(table, f"{plural(len(chosen), 'set')}, {plural(total, 'fixture')}.")
+
+
+def set_data(entry: SetEntry) -> dict[str, Any]:
+    """A set as an object of JSON."""
+    return {
+        "name": entry.name,
+        "workpiece": entry.part,
+        "toolkit": dict(entry.toolkit),
+        "reason": entry.reason,
+        "counts": dict(entry.counts),
+    }
+
+
+def make_sets(
+    chosen: Sequence[SetEntry],
+    out: str | None,
+    parquet: bool,
+    workers: int | None,
+    force: bool,
+    as_json: bool,
+) -> None:
+    """Makes sets, writes them into a folder, and says whether they are those of the manifest."""
+    if out is None:
+        raise InputError("run needs a folder for the sets: name one with --out.")
+    folder = Path(out)
+    names = ["manifest.json", "check.py", *(f"{one.name}.json" for one in chosen)]
+    refuse_output_folder(folder, names, (), force)
+    from workhold.benchmark.making import load_arrow, made_sets, write_common
+
+    if parquet:
+        load_arrow()
+    write_common(chosen, folder)
+    with ask_to_stop("the sets that are done are kept") as cancel:
+        compile_first(cancel)
+        with progress_bar("Making sets", "fixtures") as progress:
+            made = list(
+                made_sets(chosen, folder, parquet=parquet, threads=workers, progress=progress, cancel=cancel)
+            )
+    other = [one for one in made if not one.is_same]
+    rounded = [one for one in made if one.is_same and "fixtures" in one.differs]
+    if as_json:
+        print_json(
+            sets=[
+                {"name": one.entry.name, "file": str(one.path), "counts": dict(one.counts)}
+                | {"differs": list(one.differs)}
+                for one in made
+            ]
+        )
+    else:
+        from workhold.cli.table import print_tables
+        from workhold.cli.tables import plural
+
+        sentences = [
+            f"{one.entry.name}: {one.size:,} fixtures, not the {one.entry.size:,} of the manifest."
+            for one in other
+        ]
+        if rounded:
+            few = ", ".join(one.entry.name for one in rounded[:5])
+            sentences.append(f"The same fixtures, but for rounding of this machine: {few}.")
+        total = sum(one.size for one in made)
+        same = "all as the manifest has them" if not other and not rounded else f"{len(other)} of them differ"
+        done = f"{plural(len(made), 'set')} with {plural(total, 'fixture')} written to {out}, {same}."
+        print_tables(*sentences, done)
+    if len(made) < len(chosen):
+        raise typer.Exit(INTERRUPTED)
+    if other:
+        raise typer.Exit(DIFFERS)
+
+
+def compile_first(cancel: Any) -> None:
+    """Compiles the kernels where that has not been done on this machine."""
+    from workhold.kernels.base.compiling import is_first_run
+
+    if is_first_run():
+        from workhold.cli.warming import compile_kernels
+
+        compile_kernels(cancel)
+
+
+def check_entries(
+    files: Sequence[str],
+    set_name: str | None,
+    tolerance: float,
+    symmetric: bool,
+    workers: int | None,
+    as_json: bool,
+) -> None:
+    """Compares other programs' lists with the complete ones, and prints what is found, missed and extra."""
+    if not files:
+        raise InputError("check needs a file with another program's fixtures: name one or more.")
+    from workhold.benchmark.catalogue import set_named
+    from workhold.benchmark.entry import read_entry
+    from workhold.benchmark.making import compared_entry
+
+    entries = [read_entry(Path(name), set_name) for name in files]
+    for entry in entries:
+        set_named(entry.set_name)
+    done = list[tuple[str, str, Any]]()
+    with ask_to_stop("what is compared is printed") as cancel:
+        compile_first(cancel)
+        with progress_bar("Comparing", "files") as progress:
+            for number, (name, entry) in enumerate(zip(files, entries, strict=True), 1):
+                outcome = compared_entry(entry, tolerance, symmetric, workers, cancel)
+                if outcome is None:
+                    break
+                done.append((name, entry.set_name, outcome))
+                progress(number / len(files), number)
+    if as_json:
+        print_json(files=[comparison_data(*one) for one in done])
+    else:
+        print_comparisons(done)
+    if len(done) < len(files):
+        raise typer.Exit(INTERRUPTED)
+
+
+def comparison_data(name: str, set_name: str, outcome: Comparison) -> dict[str, Any]:
+    """A comparison as an object of JSON; fixtures are numbered from 1."""
+    data: dict[str, Any] = {"file": name, "set": set_name, "listed": outcome.listed, "theirs": outcome.theirs}
+    for key in ("found", "missed", "extra", "repeated"):
+        data[key] = [number + 1 for number in getattr(outcome, key)]
+    return data | {"share": outcome.share}
+
+
+def print_comparisons(done: Sequence[tuple[str, str, Comparison]]) -> None:
+    """Prints a row for each file, and the first fixtures that are missed or extra."""
+    from workhold.cli.table import Table, print_tables
+
+    table = Table(("set", ">complete", ">theirs", ">found", ">missed", ">extra", ">repeated", ">share"))
+    sentences = []
+    for _, set_name, one in done:
+        numbers = (one.listed, one.theirs, len(one.found), len(one.missed), len(one.extra), len(one.repeated))
+        table.add_row(set_name, *(f"{number:,}" for number in numbers), f"{shown_share(one)} %")
+        for words, which in (("Missed", one.missed), ("No fixtures of the set", one.extra)):
+            if which:
+                few = ", ".join(str(number + 1) for number in which[:8])
+                more = f" and {len(which) - 8:,} more" if len(which) > 8 else ""
+                whose = "of the complete list" if words == "Missed" else "of theirs"
+                sentences.append(f"{set_name}: {words}: {few}{more}, {whose}.")
+    print_tables(table, *sentences)
+
+
+def shown_share(outcome: Comparison) -> str:
+    """The share in percent, which is 100 only where nothing is missed."""
+    percent = 100 * outcome.share
+    return f"{min(percent, 99.9) if outcome.missed else percent:.1f}"
