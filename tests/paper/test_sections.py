@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, tan
 
 import pytest
 
@@ -13,8 +13,9 @@ from paper.document import Figures, Heading, Paragraph, Table
 from paper.elimination import CASES, factors, random_system
 from paper.growth import area, power_law
 from paper.html_page import html_page
+from paper.table_two import PRINTED, case_of
 from paper.witnesses import BAR, sliding_fixture
-from workhold.algebra.resultants import TRUE_DEGREES
+from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
@@ -25,6 +26,13 @@ def test_one_factor_holds_the_poses(case: tuple[int, int], seed: int) -> None:
     holding = [one for one in told["factors"] if one["holds_poses"]]
     assert [(one["degree"], one["power"]) for one in holding] == [(TRUE_DEGREES[case], 1)]
     assert told["degree"] == sum(one["degree"] * one["power"] for one in told["factors"])
+
+
+def test_the_degrees_are_those_printed() -> None:
+    """Each row of Table 2 stands for a case of the algebra, with the degree that is printed for it; no case is left out."""
+    found = {case_of(kind, left, right): degree for kind, _, left, _, right, degree in PRINTED}
+    assert found == PAPER_DEGREES and len(PRINTED) == 14
+    assert all(row[1] + row[2] == (2 if row[0] == "I" else 3) for row in PRINTED)
 
 
 def test_four_contacts_slide_apart_without_clamping() -> None:
@@ -45,8 +53,11 @@ def test_four_contacts_slide_apart_without_clamping() -> None:
 
 
 def test_area_of_lines_and_arcs() -> None:
-    """A circle of two bulges, and a square with a round hole."""
+    """A circle of two bulges and one of four, and a square with a round hole."""
     circle = [[5, 0, 1], [-5, 0, 1]]
+    quarter = tan(pi / 8)
+    four = [[5, 0, quarter], [0, 5, quarter], [-5, 0, quarter], [0, -5, quarter]]
+    assert area(workhold.Workpiece.from_loops("disc", [four])) == pytest.approx(25 * pi)
     square = [[-10, -10, 0], [10, -10, 0], [10, 10, 0], [-10, 10, 0]]
     assert area(workhold.Workpiece.from_loops("disc", [circle])) == pytest.approx(25 * pi)
     assert area(workhold.Workpiece.from_loops("plate", [square, circle])) == pytest.approx(400 - 25 * pi)
