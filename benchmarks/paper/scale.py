@@ -319,7 +319,7 @@ def reckoned(figures: Figures) -> list[Block]:
             "workers' time that is spent in searches.",
             ("workers", "one machine's queue (h)", "at work", "Dask (h)", "at work"),
             simulated,
-            left=0,
+            left=(),
         ),
         Table(
             "Table 13",
