@@ -140,6 +140,23 @@ def told(figures: Figures) -> list[Inline]:
     return out
 
 
+def told_of_large(figures: Figures) -> list[Inline]:
+    """How time grows where what any search costs has ceased to count, if there are such points."""
+    if figures.value("time_large") is None:
+        return []
+    return [
+        "Over the points with more than ",
+        figures.count("large"),
+        " contacts, where what any search costs has ceased to count, it grows as A to the power ",
+        figures.fixed("time_large/exponent", 2),
+        " ± ",
+        figures.fixed("time_large/error", 2),
+        " with a spread of ",
+        figures.fixed("time_large/spread", 2),
+        ".",
+    ]
+
+
 def render(figures: Figures) -> list[Block]:
     """The table of exponents and the plot."""
     rows: list[list[Inline]] = []
@@ -169,15 +186,8 @@ def render(figures: Figures) -> list[Block]:
                 figures.fixed("time/exponent", 2),
                 " ± ",
                 figures.fixed("time/error", 2),
-                ", and over those with more than ",
-                figures.count("large"),
-                " contacts, where what any search costs has ceased to count, as A to the power ",
-                figures.fixed("time_large/exponent", 2),
-                " ± ",
-                figures.fixed("time_large/error", 2),
-                " with a spread of ",
-                figures.fixed("time_large/spread", 2),
-                ".",
+                ". ",
+                *told_of_large(figures),
             )
         ),
         Table(
