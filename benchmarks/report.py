@@ -19,6 +19,7 @@ import sys
 from collections.abc import Callable
 from importlib import import_module
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -145,7 +146,7 @@ def machine() -> dict[str, str]:
         "memory": f"{int((first_value('/proc/meminfo', 'MemTotal') or '0').split()[0]) / MIB**2:.1f} GiB",
         "system": f"{platform.system()} {platform.release()}, {platform.machine()}",
         "Python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "numba", "llvmlite")},
+        **{name: version(name) for name in ("numpy", "numba", "llvmlite") if find_spec(name)},
     }
 
 

@@ -7,6 +7,8 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 from time import perf_counter, sleep
@@ -75,14 +77,34 @@ def run_batch(parts: Path, out: Path, workers: int) -> Run:
     start = perf_counter()
     process = started(parts, out, workers)
     assert process.stdout is not None
-    words = process.stdout.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
+    with ended_with(process):
+        words = process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
     process.stdout.close()
     if process.returncode:
         raise RuntimeError(f"workhold batch ended with {process.returncode}: {words.strip()[-300:]}")
     seconds = perf_counter() - start
     return Run(seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * KIB, words)
+
+
+@contextmanager
+def ended_with(process: subprocess.Popen[str]) -> Iterator[None]:
+    """Ends a run with its workers when the block ends by an error or a signal, so that nothing writes any more."""
+    try:
+        yield
+    except BaseException:
+        end(process)
+        raise
+
+
+def end(process: subprocess.Popen[str]) -> None:
+    """Kill a run and wait until its workers, which end by themselves, are gone."""
+    left = workers_of(process.pid)
+    process.kill()
+    for pid in left:
+        wait_for_end(pid)
+    process.wait()
 
 
 def records_of(out: Path) -> dict[str, tuple[int, str]]:
@@ -115,10 +137,20 @@ def killed_and_resumed(parts: Path, out: Path, expected: int) -> dict[str, Any]:
     ----------
     expected : how many records there will be.
     """
-    killed, process = 0, started(parts, out, 2)
+    process = started(parts, out, 2)
     assert process.stdout is not None
+    with ended_with(process):
+        killed, before = kill_in_the_middle(process, out, expected)
+    process.wait()
+    process.stdout.close()
+    again = run_batch(parts, out, 2)
+    return {"workers_killed": killed, "records_when_killed": before, "resumed_seconds": again.seconds}
+
+
+def kill_in_the_middle(process: subprocess.Popen[str], out: Path, expected: int) -> tuple[int, int]:
+    """Kill workers and then the run as records come: how many workers, and the records there were in the end."""
+    killed, begun = 0, perf_counter()
     thresholds = [share * expected for share in WORKERS_KILLED]
-    begun, before = perf_counter(), 0
     while process.poll() is None and perf_counter() - begun < PATIENCE:
         done = sum(1 for _ in out.glob("work/*/*.json"))
         if thresholds and done >= thresholds[0]:
@@ -127,18 +159,10 @@ def killed_and_resumed(parts: Path, out: Path, expected: int) -> dict[str, Any]:
                 killed += 1
             thresholds.pop(0)
         if not thresholds and done >= RUN_KILLED * expected:
-            left = workers_of(process.pid)
-            process.kill()
-            for pid in left:
-                # They end by themselves when their run is gone.
-                wait_for_end(pid)
-            before = sum(1 for _ in out.glob("work/*/*.json"))
+            end(process)
             break
         sleep(LOOK)
-    process.wait()
-    process.stdout.close()
-    again = run_batch(parts, out, 2)
-    return {"workers_killed": killed, "records_when_killed": before, "resumed_seconds": again.seconds}
+    return killed, sum(1 for _ in out.glob("work/*/*.json"))
 
 
 def wait_for_end(pid: int, most: float = 30.0) -> None:

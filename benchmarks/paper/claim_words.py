@@ -6,7 +6,7 @@ from attrs import frozen
 
 from paper.document import Figures, Inline, Line, Marked
 
-__all__ = ["USUAL", "Claim", "claims"]
+__all__ = ["USUAL", "Claim", "claims", "worst_of"]
 
 # Which of the tolerances of a real root is the one that a program would try.
 USUAL = 3
@@ -173,10 +173,16 @@ def finite(figures: Figures) -> Claim:
     )
 
 
+def worst_of(figures: Figures) -> int:
+    """The row of which the usual tolerance loses the largest share."""
+    rows = figures.value("doubles")
+    return max(range(len(rows)), key=lambda k: rows[k]["lost"][USUAL]["share"])
+
+
 def complete(figures: Figures) -> Claim:
     """What complete needs in floating point."""
     rows = figures.value("doubles")
-    worst = max(range(len(rows)), key=lambda k: rows[k]["lost"][USUAL]["share"])
+    worst = worst_of(figures)
     loosest = len(rows[worst]["lost"]) - 1
     left = max(range(len(rows)), key=lambda k: rows[k]["lost"][loosest]["share"])
     return Claim(

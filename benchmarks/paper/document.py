@@ -26,6 +26,7 @@ __all__ = [
     "Picture",
     "Table",
     "line_of",
+    "typographic",
 ]
 
 DIGIT = re.compile(r"\d")
@@ -55,6 +56,11 @@ class Marked:
 
     kind: Literal["code", "quote", "label", "reference", "formula"]
     text: str
+
+
+def typographic(text: str) -> str:
+    """Words with the apostrophe of print."""
+    return text.replace("'", "’")
 
 
 def is_free_of_digits(_: object, __: object, value: Sequence[Inline]) -> None:
@@ -128,7 +134,7 @@ class Table:
     caption : what it shows.
     headings : of the columns, with units.
     rows : lines of cells.
-    left : how many of the first columns hold words.
+    left : the columns that hold words, which stand on the left.
     bold_last : whether the last row sums up.
     groups : what stands over columns that belong together, and over how many; empty words for nothing.
     """
@@ -137,7 +143,7 @@ class Table:
     caption: Line = field(converter=line_of, validator=is_free_of_digits)
     headings: tuple[Line, ...] = field(converter=lines_of, validator=are_free_of_digits)
     rows: tuple[tuple[Line, ...], ...] = field(converter=rows_of)
-    left: int = 1
+    left: tuple[int, ...] = (0,)
     bold_last: bool = False
     groups: tuple[tuple[str, int], ...] = ()
 

@@ -118,7 +118,7 @@ def render(figures: Figures) -> list[Block]:
                 figures.significant("most_ratio", 2),
                 " times faster than the algebra, which is what the method gains; the rest of the ratio in ",
                 Marked("label", "Table 1"),
-                " is thirty years of machines.",
+                " lies in machines, programs and drawings.",
             )
         ),
         Table(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from paper.claim_words import USUAL, worst_of
 from paper.document import Block, Figures, Heading, Inline, Line, Listing, Marked, Paragraph
 
 __all__ = ["TITLE", "after", "before"]
@@ -67,11 +68,12 @@ def abstract(every: Mapping[str, Figures]) -> Line:
         ]
     claims = every.get("claims")
     if claims is not None and claims.value("doubles"):
+        usual = f"doubles/{worst_of(claims)}/lost/{USUAL}"
         out += [
             " Roots in double precision that count as real within ",
-            claims.power("doubles/0/lost/3/tolerance"),
+            claims.power(f"{usual}/tolerance"),
             " lose ",
-            claims.percent("doubles/0/lost/3/share"),
+            claims.percent(f"{usual}/share"),
             " of the fixtures of one workpiece.",
         ]
     scale = every.get("scale")

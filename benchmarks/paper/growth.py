@@ -24,6 +24,8 @@ PITCH = 10.0
 TIMES = {1: (1.0, 1.5, 2.0, 3.0, 4.0), 10: (1.0, 1.5, 2.0)}
 QUICK_PARTS, QUICK_TIMES = PARTS[4:], {1: (1.0, 2.0)}
 REPEATS = 3
+# From so many contacts on what any search costs counts little; a law needs more points than this.
+LARGE, FEWEST = 40_000, 3
 # What grows, and what it grows with.
 QUANTITIES = {"contacts": "contacts A", "fixtures": "fixtures", "seconds": "time"}
 COLOURS = ("#1f6fb5", "#b3122a", "#2e7d32", "#e59a00", "#6a3d9a", "#00838f", "#8d6e63")
@@ -43,7 +45,11 @@ def measure(data: dict[str, Any], quick: bool) -> Iterator[tuple[float, str]]:
         points = [point for point in data["points"] if point["columns"] == columns]
         for quantity in QUANTITIES:
             data["fits"].append({"columns": columns, "quantity": quantity, **fits(points, quantity)})
-    data["time"] = power_law([p["contacts"] for p in data["points"]], [p["seconds"] for p in data["points"]])
+    large = [point for point in data["points"] if point["contacts"] > LARGE]
+    data["large"] = LARGE
+    for name, those in (("time", data["points"]), ("time_large", large)):
+        if len(those) > FEWEST:
+            data[name] = power_law([p["contacts"] for p in those], [p["seconds"] for p in those])
 
 
 def points(designs: list[list[Any]]) -> list[dict[str, Any]]:
@@ -114,6 +120,43 @@ def power_law(xs: list[float], ys: list[float]) -> dict[str, float]:
     }
 
 
+def told(figures: Figures) -> list[Inline]:
+    """How contacts grow, in words, for each number of columns."""
+    out: list[Inline] = []
+    for k in figures.every("fits"):
+        path = f"fits/{k}"
+        if figures.value(f"{path}/quantity") != "contacts":
+            continue
+        out += [
+            "In a vise of ",
+            figures.count(f"{path}/columns"),
+            " column" if figures.value(f"{path}/columns") == 1 else " columns",
+            " contacts grow as the perimeter to the power ",
+            figures.fixed(f"{path}/perimeter/exponent", 2),
+            " or the area to the power ",
+            figures.fixed(f"{path}/area/exponent", 2),
+            ". ",
+        ]
+    return out
+
+
+def told_of_large(figures: Figures) -> list[Inline]:
+    """How time grows where what any search costs has ceased to count, if there are such points."""
+    if figures.value("time_large") is None:
+        return []
+    return [
+        "Over the points with more than ",
+        figures.count("large"),
+        " contacts, where what any search costs has ceased to count, it grows as A to the power ",
+        figures.fixed("time_large/exponent", 2),
+        " ± ",
+        figures.fixed("time_large/error", 2),
+        " with a spread of ",
+        figures.fixed("time_large/spread", 2),
+        ".",
+    ]
+
+
 def render(figures: Figures) -> list[Block]:
     """The table of exponents and the plot."""
     rows: list[list[Inline]] = []
@@ -135,21 +178,16 @@ def render(figures: Figures) -> list[Block]:
         Heading(TITLE),
         Paragraph(
             (
-                "Each model was grown against the pitch, pegs with the pitch, and a power law was "
-                "fitted over all parts and sizes "
-                "by least squares of logarithms. The error is the standard error of the exponent; the "
-                "spread is the factor within "
-                "which two of three points lie about the law. Over parts of different shape neither "
-                "perimeter nor area says much by "
-                "itself: with a fixed number of columns the vise does not grow with the part. What time "
-                "follows is the number of "
-                "contacts: over all points it grows as A to the power ",
+                "Each model was grown against the pitch, pegs with the pitch, and a power law was fitted over all "
+                "parts and sizes by least squares of logarithms. The error is the standard error of the exponent; "
+                "the spread is the factor within which two of three points lie about the law. ",
+                *told(figures),
+                "Time follows the number of contacts: over all points it grows as A to the power ",
                 figures.fixed("time/exponent", 2),
                 " ± ",
                 figures.fixed("time/error", 2),
-                " with a spread of ",
-                figures.fixed("time/spread", 2),
-                ".",
+                ". ",
+                *told_of_large(figures),
             )
         ),
         Table(

@@ -7,7 +7,19 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
-from paper.document import Block, Heading, Inline, Line, Listing, Marked, Number, Paragraph, Picture, Table
+from paper.document import (
+    Block,
+    Heading,
+    Inline,
+    Line,
+    Listing,
+    Marked,
+    Number,
+    Paragraph,
+    Picture,
+    Table,
+    typographic,
+)
 
 __all__ = ["html_page"]
 
@@ -26,7 +38,7 @@ def html_page(title: str, blocks: Sequence[Block]) -> str:
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{escape(title)}</title>\n<style>\n{style}</style></head>\n"
-        f"<body><main>\n<h1>{escape(title)}</h1>\n{body}\n</main></body></html>\n"
+        f"<body><main>\n<h1>{escape(typographic(title))}</h1>\n{body}\n</main></body></html>\n"
     )
 
 
@@ -35,7 +47,7 @@ def html_of(block: Block) -> str:
     match block:
         case Heading():
             level = block.depth + 1
-            return f'<h{level} id="{anchor(block.text)}">{escape(block.text)}</h{level}>'
+            return f'<h{level} id="{anchor(block.text)}">{escape(typographic(block.text))}</h{level}>'
         case Paragraph():
             return f"<p>{html_line(block.line)}</p>"
         case Listing():
@@ -61,10 +73,11 @@ def html_line(line: Line) -> str:
 def html_inline(one: Inline) -> str:
     """A piece of a line; a number says on hovering where it comes from, and a click opens its data file."""
     if isinstance(one, str):
-        return escape(one)
+        return escape(typographic(one))
     if isinstance(one, Marked):
         tag = TAGS[one.kind]
-        return f"<{tag}>{escape(one.text)}</{tag}>"
+        text = one.text if one.kind == "code" else typographic(one.text)
+        return f"<{tag}>{escape(text)}</{tag}>"
     return html_number(one)
 
 
@@ -82,7 +95,7 @@ def html_table(table: Table) -> str:
     """A table in a frame of its own, which scrolls where the window is narrow."""
 
     def cells(tag: str, row: Sequence[Line]) -> str:
-        kinds = ("w" if k < table.left else "r" for k in range(len(row)))
+        kinds = ("w" if k in table.left else "r" for k in range(len(row)))
         return "".join(f'<{tag} class="{k}">{html_line(c)}</{tag}>' for k, c in zip(kinds, row, strict=True))
 
     last = len(table.rows) - 1

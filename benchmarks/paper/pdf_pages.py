@@ -13,7 +13,7 @@ from datetime import UTC, date, datetime, time
 from attrs import define, field
 from fpdf import FPDF
 
-from paper.document import Block, Heading, Line, Listing, Marked, Paragraph, Picture, Table
+from paper.document import Block, Heading, Line, Listing, Marked, Paragraph, Picture, Table, typographic
 from paper.typesetting import SPACE, Word, broken, natural_width, words_of
 from workhold.drawing.pdf import FONT, POINTS_PER_UNIT, draw_children
 from workhold.drawing.scene import BLACK, GREY, PORTRAIT, font_files, text_width
@@ -92,7 +92,7 @@ class Pages:
         # The first page has the title.
         number = self.pdf.page_no()
         if number > 1:
-            self.plain(self.title, LEFT, 60.0, SMALL, GREY)
+            self.plain(typographic(self.title), LEFT, 60.0, SMALL, GREY)
             self.plain(str(number), RIGHT - text_width(str(number), SMALL), 60.0, SMALL, GREY)
 
     def need(self, height: float) -> None:
@@ -242,7 +242,7 @@ class Pages:
             lines = layout.lines(cell, number, bold)
             first = most - len(lines) if bold else 0
             for place, words in enumerate(lines, first):
-                spare = width - natural_width(words, size) if number >= layout.left else 0.0
+                spare = width - natural_width(words, size) if number not in layout.left else 0.0
                 self.write(words, x + spare, self.y + 1.3 * size * (place + 1), size)
             x += width + layout.gutter
         self.y += layout.height(row, bold)
@@ -284,18 +284,18 @@ class TableLayout:
     ----------
     size : of its letters.
     widths : of its columns.
-    left : how many of the first columns stand on the left.
+    left : the columns that stand on the left.
     gutter : between two columns.
     """
 
     size: float
     widths: list[float]
-    left: int
+    left: tuple[int, ...]
     gutter: float
 
     @classmethod
     def of(cls, table: Table) -> TableLayout:
-        """As large as it fits: letters become smaller first, then words of the first columns are broken."""
+        """As large as it fits: letters become smaller first, then words of the widest are broken."""
         size = TABLE
         while True:
             widths = [
@@ -310,7 +310,7 @@ class TableLayout:
                 break
             size -= 0.2
         if spare < 0.0:
-            widest = max(range(table.left), key=widths.__getitem__)
+            widest = max(table.left or range(len(widths)), key=widths.__getitem__)
             widths[widest] += spare
             spare = 0.0
         return cls(size, widths, table.left, GUTTER + spare / max(len(widths) - 1, 1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 from collections.abc import Iterator
 from math import sqrt
@@ -29,6 +30,8 @@ PARTS, KINDS = 1_000_000, ("vise", "plate", "fence")
 WORKERS = (16, 64, 256, 1024)
 QUICK_SHARE = 100
 QUICK_PRESETS = ("plate-20mm", "clamp-plate-20mm", "fence-20mm")
+# The load from which times by the clock say little on two processors.
+BUSY = 3.5
 HOUR, DAY = 3600.0, 86400.0
 # What we take as the end of what is useful: bytes of a page that a browser opens, of memory for who asks, of disk, and
 # seconds before a run that goes on begins.
@@ -66,6 +69,8 @@ def run_catalogue(data: dict[str, Any], folder: Path, count: int) -> Iterator[tu
     pair = run_batch(parts, folder / "two", 2)
     data["two"] = {"seconds": pair.seconds, "processor": pair.processor}
     data["gain"] = alone.seconds / pair.seconds
+    # Above the number of processors, something else was at work.
+    data["load"] = os.getloadavg()[0]
     yield 0.65, "two workers, killed and resumed"
     data["killed"] = killed_and_resumed(parts, folder / "killed", len(records))
     data["same_two"] = records_of(folder / "two") == records
@@ -213,8 +218,22 @@ def run_here(figures: Figures) -> list[Block]:
                 " (",
                 figures.count("unlike"),
                 " differ).",
+                *busy(figures),
             )
         )
+    ]
+
+
+def busy(figures: Figures) -> list[Inline]:
+    """A caution where the machine had other work."""
+    load = figures.value("load")
+    if load is None or load < BUSY:
+        return []
+    words = " Other programs ran at the same time (a load of "
+    return [
+        words,
+        figures.fixed("load", 1),
+        "), so times by the clock say little here, those of the processor more.",
     ]
 
 
@@ -319,7 +338,7 @@ def reckoned(figures: Figures) -> list[Block]:
             "workers' time that is spent in searches.",
             ("workers", "one machine's queue (h)", "at work", "Dask (h)", "at work"),
             simulated,
-            left=0,
+            left=(),
         ),
         Table(
             "Table 13",

@@ -17,14 +17,14 @@ SECONDS, QUICK_SECONDS = 8.0, 3.0
 CARD, EDGE = (400.0, 340.0), 12.0
 # What the paper's figure shows, the workpiece, the vise's pitch and columns, and the type and place of the fixture.
 FIXTURES = (
-    ("15", "Type I fixture for thin4Handle", "thin4Handle", 10, 1, "I", 0),
-    ("15", "another Type I fixture for thin4Handle", "thin4Handle", 10, 1, "I", 12),
-    ("16 a", "Type II fixture for thin4Handle", "thin4Handle", 10, 1, "II", 0),
-    ("16 b", "Type I fixture for 8Handle", "8Handle", 10, 1, "I", 0),
-    ("17 a", "Type I fixture for widget", "widget", 10, 1, "I", 0),
-    ("17 b", "Type II fixture for widget", "widget", 10, 1, "II", 0),
-    ("18 a", "Type I fixture for flange", "flange", 10, 1, "I", 0),
-    ("18 b", "Type II fixture for flange", "flange", 10, 2, "II", 0),
+    ("15 a", "Type I, thin4Handle", "thin4Handle", 10, 1, "I", 0),
+    ("15 b", "Type I, thin4Handle", "thin4Handle", 10, 1, "I", 12),
+    ("16 a", "Type II, thin4Handle", "thin4Handle", 10, 1, "II", 0),
+    ("16 b", "Type I, 8Handle", "8Handle", 10, 1, "I", 0),
+    ("17 a", "Type I, widget", "widget", 10, 1, "I", 0),
+    ("17 b", "Type II, widget", "widget", 10, 1, "II", 0),
+    ("18 a", "Type I, flange", "flange", 10, 1, "I", 0),
+    ("18 b", "Type II, flange", "flange", 10, 2, "II", 0),
 )
 # Workpieces of Table 1 of which no figure shows a fixture.
 MORE = (("", "", "small4Handle"), ("", "", "large4Handle"), ("", "", "oblongPart"))
@@ -129,9 +129,9 @@ def render(figures: Figures) -> list[Block]:
         )
         for k in figures.every("examples")
     )
-    grown = tuple((one["svg"], "grown features, after 3") for one in figures.value("grown") or [])
+    grown = tuple((one["svg"], "grown features, 3") for one in figures.value("grown") or [])
     same = tuple(
-        (one["svg"], f"after 5 {letter}")
+        (one["svg"], f"5 {letter}")
         for one, letter in zip(figures.value("same_faces") or [], "abc", strict=False)
     )
     blocks: list[Block] = [
@@ -163,7 +163,7 @@ def render(figures: Figures) -> list[Block]:
                     " that there are.",
                 ),
                 (*grown, *same),
-                across=2,
+                across=4,
             )
         )
     if examples:
@@ -178,7 +178,7 @@ def render(figures: Figures) -> list[Block]:
                     ").",
                 ),
                 examples,
-                across=2,
+                across=4,
             )
         )
     return blocks

@@ -11,7 +11,7 @@ from typing import Literal
 
 from attrs import evolve, field, frozen
 
-from paper.document import Inline, Marked, Number
+from paper.document import Inline, Marked, Number, typographic
 from workhold.drawing.scene import has_character, text_width
 
 __all__ = ["Piece", "Word", "broken", "natural_width", "words_of"]
@@ -62,8 +62,9 @@ def piece_of(one: Inline) -> Piece:
         return Piece(one.text, link=f"data/{section}.json#{path}")
     if isinstance(one, Marked):
         text = one.text.join(QUOTES) if one.kind == "quote" else one.text
+        text = text if one.kind == "code" else typographic(text)
         return Piece(text, bold=one.kind == "label", code=one.kind == "code")
-    return Piece(one)
+    return Piece(typographic(one))
 
 
 def words_of(line: Sequence[Inline], bold: bool = False) -> list[Word]:

@@ -15,6 +15,7 @@ import pytest
 from report_reading import Page, at_key, page_of, pdf_numbers
 
 import workhold
+from paper.stages import STAGES
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "benchmarks" / "make_paper.py"
@@ -69,6 +70,31 @@ def test_the_pdf_has_the_numbers_of_the_page(folder: Path, page: Page) -> None:
         (number.key, number.text.replace(" ", "")) for number in pdf_numbers(folder / "report.pdf")
     )
     assert printed == Counter((number.key, number.text.replace(" ", "")) for number in page.numbers)
+
+
+def test_what_is_derived_follows_from_the_rows(folder: Path) -> None:
+    """Sums, ratios and counts of Tables 1 and 2 are those of their rows; the shares of the stages add up to the whole."""
+    one, two, stages = (
+        json.loads((folder / "data" / f"{name}.json").read_text())["data"]
+        for name in ("table-one", "table-two", "stages")
+    )
+    for row in one["rows"]:
+        assert row["ratio"] == pytest.approx(row["paper"]["seconds"] / row["seconds"])
+        assert row["contacts"] > row["I"] + row["II"] > 0
+        proof = row["proof"]
+        assert proof["candidates"] == proof["discarded_by_bound"] + proof["verified"] + proof["undecided"]
+    seconds, paper = (
+        sum(values)
+        for values in zip(*((r["seconds"], r["paper"]["seconds"]) for r in one["rows"]), strict=True)
+    )
+    assert one["together"] == pytest.approx(
+        {"seconds": seconds, "paper_seconds": paper, "ratio": paper / seconds}
+    )
+    assert two["disagreeing"] == sum(row["printed"] > row["poses"] for row in two["rows"]) == 7
+    assert two["most"] == {"I": 16, "II": 6} and two["all_agree"]
+    for row in stages["rows"]:
+        shares = [value for name, value in row.items() if name in STAGES]
+        assert len(shares) == len(STAGES) and sum(shares) == pytest.approx(1.0) and min(shares) > -0.05
 
 
 def test_every_section_says_its_command(folder: Path) -> None:

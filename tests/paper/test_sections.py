@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from math import pi
+import json
+from math import pi, tan
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 import workhold
-from paper import scale
+from paper import benchmark_set, scale
 from paper.catalogue_runs import killed_and_resumed, records_of, run_batch, write_parts
-from paper.document import Figures, Heading, Paragraph, Table
+from paper.document import Figures, Heading, Line, Paragraph, Table
 from paper.elimination import CASES, factors, random_system
 from paper.growth import area, power_law
 from paper.html_page import html_page
+from paper.table_two import PRINTED, case_of
 from paper.witnesses import BAR, sliding_fixture
-from workhold.algebra.resultants import TRUE_DEGREES
+from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
@@ -25,6 +29,13 @@ def test_one_factor_holds_the_poses(case: tuple[int, int], seed: int) -> None:
     holding = [one for one in told["factors"] if one["holds_poses"]]
     assert [(one["degree"], one["power"]) for one in holding] == [(TRUE_DEGREES[case], 1)]
     assert told["degree"] == sum(one["degree"] * one["power"] for one in told["factors"])
+
+
+def test_the_degrees_are_those_printed() -> None:
+    """Each row of Table 2 stands for a case of the algebra, with the degree that is printed for it; no case is left out."""
+    found = {case_of(kind, left, right): degree for kind, _, left, _, right, degree in PRINTED}
+    assert found == PAPER_DEGREES and len(PRINTED) == 14
+    assert all(row[1] + row[2] == (2 if row[0] == "I" else 3) for row in PRINTED)
 
 
 def test_four_contacts_slide_apart_without_clamping() -> None:
@@ -45,8 +56,11 @@ def test_four_contacts_slide_apart_without_clamping() -> None:
 
 
 def test_area_of_lines_and_arcs() -> None:
-    """A circle of two bulges, and a square with a round hole."""
+    """A circle of two bulges and one of four, and a square with a round hole."""
     circle = [[5, 0, 1], [-5, 0, 1]]
+    quarter = tan(pi / 8)
+    four = [[5, 0, quarter], [0, 5, quarter], [-5, 0, quarter], [0, -5, quarter]]
+    assert area(workhold.Workpiece.from_loops("disc", [four])) == pytest.approx(25 * pi)
     square = [[-10, -10, 0], [10, -10, 0], [10, 10, 0], [-10, 10, 0]]
     assert area(workhold.Workpiece.from_loops("disc", [circle])) == pytest.approx(25 * pi)
     assert area(workhold.Workpiece.from_loops("plate", [square, circle])) == pytest.approx(400 - 25 * pi)
@@ -108,3 +122,41 @@ def test_a_killed_run_goes_on_to_the_same_records(tmp_path_factory: pytest.TempP
     told = killed_and_resumed(parts, folder / "killed", len(records))
     assert told["workers_killed"] == 2 and 0 < told["records_when_killed"] < len(records)
     assert records_of(folder / "killed") == records
+
+
+def test_the_shares_of_the_benchmark_set_are_read_where_they_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of the step of 1 mm, of each kind and of every set once; without the file there is no section."""
+    monkeypatch.setattr(benchmark_set, "FILE", tmp_path / "grid-share.json")
+    nothing: dict[str, Any] = {}
+    assert list(benchmark_set.measure(nothing, True)) and nothing == {}
+    assert benchmark_set.render(Figures("benchmark-set", nothing)) == []
+    sets = [
+        {
+            "set": name,
+            "kind": "vise",
+            "fixtures": 10 * k,
+            "fixed": [0.5, 0.1 * k, 0.9],
+            "half": [1.0, 0.8, 0.7],
+        }
+        for k, name in enumerate("abc", 1)
+    ]
+    kinds = {"vise": {"fixed": [0.5, 0.2, 0.9], "half": [1.0, 0.8, 0.7]}}
+    told = {"command": "python some.py", "steps": [2.0, 1.0, 0.5], "touch": 0.1, "kinds": kinds, "sets": sets}
+    benchmark_set.FILE.write_text(json.dumps(told))
+    data: dict[str, Any] = {}
+    assert list(benchmark_set.measure(data, True))
+    *_, kinds_table, sets_table = benchmark_set.render(Figures("benchmark-set", data))
+    assert isinstance(kinds_table, Table) and isinstance(sets_table, Table)
+    assert [words(cell) for cell in kinds_table.rows[0]] == ["vise", "3", "60", "20.0 %", "80.0 %"]
+    cells = [[words(cell) for cell in row] for row in sets_table.rows]
+    assert cells == [
+        ["a", "10", "10.0 %", "80.0 %", "c", "30", "30.0 %", "80.0 %"],
+        ["b", "20", "20.0 %", "80.0 %", "", "", "", ""],
+    ]
+
+
+def words(line: Line) -> str:
+    """A line as it is read."""
+    return "".join(one if isinstance(one, str) else one.text for one in line)
