@@ -21,6 +21,7 @@ SECTION = re.compile(r"^(\w[\w ]*)\n-{3,}\n", flags=re.M)
 # Sections whose entries are names with what they mean; those of the others are types.
 OF_NAMES = {"Parameters", "Attributes", "Glossary"}
 COLUMNS = "88"
+EXPLAINED = Path(__file__).parent.parent / "src" / "workhold" / "web" / "static" / "method"
 
 
 def on_config(config: Any) -> Any:
@@ -29,6 +30,15 @@ def on_config(config: Any) -> Any:
     pages = sorted({path.name for path in Path(config["docs_dir"]).glob("*.md")} - named)
     config["nav"] += [{"More": pages}] if pages else []
     return config
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """The page that explains the method with pictures, as the server has it, in the folder ``explained``."""
+    from mkdocs.structure.files import File
+
+    for path in sorted(EXPLAINED.iterdir()):
+        files.append(File.generated(config, f"explained/{path.name}", abs_src_path=str(path)))
+    return files
 
 
 def on_page_markdown(markdown: str, **about: Any) -> str:

@@ -88,6 +88,7 @@ def create_app(
     app.include_router(job_routes.router)
     app.include_router(fixture_routes.router)
     app.add_api_route("/", page, methods=["GET", "HEAD"], include_in_schema=False)
+    app.add_api_route("/method", method_page, methods=["GET", "HEAD"], include_in_schema=False)
     app.add_api_route("/static/{path:path}", static_file, methods=["GET", "HEAD"], include_in_schema=False)
     add_error_handlers(app)
     app.add_middleware(Guard, hosts=hosts or Hosts(), limits=limits, token=token)
@@ -98,6 +99,11 @@ def create_app(
 async def page(request: Request) -> Response:
     """Sends the page."""
     return await static_file(request, "index.html")
+
+
+async def method_page(request: Request) -> Response:
+    """Leads to the page that explains the method."""
+    return Response(status_code=307, headers={"Location": "static/method/index.html"})
 
 
 async def static_file(request: Request, path: str) -> Response:

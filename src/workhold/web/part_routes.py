@@ -15,7 +15,7 @@ from workhold.web.forms import WorkpieceForm
 from workhold.web.job_routes import found_job
 from workhold.web.program_forms import ProgramQuestion
 from workhold.web.shapes import ShapeOrder
-from workhold.web.state import at_desk, state_of
+from workhold.web.state import at_desk, at_desk_while_heard, state_of
 from workhold.web.tasks import Upload
 
 __all__ = ["router"]
@@ -168,6 +168,17 @@ async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
     """The part, or what is wrong with it and where."""
     state = state_of(request)
     answer: dict[str, Any] = await at_desk(request, "check_part", (form, state.limits.segments))
+    return answer
+
+
+@router.post("/lesson", summary="What the page that explains the method shows of a part")
+async def lesson(request: Request, form: WorkpieceForm) -> dict[str, Any]:
+    """The part's contact features, and its Type I fixtures in a vise chosen for it, with their chords.
+
+    Lengths are in mm, angles in radians.
+    """
+    payload = form, state_of(request).limits.segments
+    answer: dict[str, Any] = await at_desk_while_heard(request, "make_lesson", payload)
     return answer
 
 

@@ -184,6 +184,14 @@ def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, An
     return part_answer(form.workpiece(most_segments))
 
 
+def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
+    """Makes what the page that explains the method shows of a part."""
+    from workhold.presenting.lesson import lesson
+
+    form, most_segments = payload
+    return lesson(form.workpiece(most_segments), order.cancel)
+
+
 def builtin_part(name: str, order: Order) -> dict[str, Any]:
     """Describes a built-in part; the name is known to exist."""
     from workhold.files.part.finding import builtin_path
@@ -315,6 +323,7 @@ TASKS: Tasks = {
     "explanation": explanation,
     "check_job": check_job,
     "check_part": check_part,
+    "make_lesson": make_lesson,
     "builtin_part": builtin_part,
     "read_part": read_part,
     "survey_part": survey_part,

@@ -80,3 +80,20 @@ def test_search_works_without_a_server(site: Path, browser: Any) -> None:
     found.first.wait_for(state="attached")
     page.close()
     assert [address for address in asked if not address.startswith(("file:", "data:"))] == []
+
+
+def test_the_pictures_of_the_method_open_as_files(site: Path, browser: Any) -> None:
+    """The manual has the page of the server, whole, with links to its own pages."""
+    page = browser.new_page()
+    troubles: list[str] = []
+    page.on("pageerror", lambda error: troubles.append(str(error)))
+    page.on("console", lambda line: troubles.append(line.text) if line.type == "error" else None)
+    page.goto((site / "explained" / "index.html").as_uri())
+    page.wait_for_selector("body.manual[data-ready]")
+    links = page.locator("a:visible").evaluate_all("(all) => all.map((one) => one.href)")
+    page.close()
+    assert troubles == []
+    assert len(links) >= 2
+    assert [link for link in links if not Path(link.removeprefix("file://")).exists()] == []
+    for name in ("method.html", "index.html"):
+        assert 'href="explained/index.html"' in (site / name).read_text()

@@ -1,0 +1,258 @@
+"""A lesson: what the page that explains the method shows of one part, as plain data.
+
+Glossary
+--------
+lesson : a part with its contact features, and its Type I fixtures whose pegs stand on chord curves.
+shown fixture : the one that the page's pictures are about; both of its chords have room to slide.
+
+The vise of a lesson is chosen for the part, with few holes under it, so that a picture shows them all.
+Everything stands in the part's own coordinates but for pegs, which stand in the vise's. Lengths are in mm,
+angles in radians unless a name says degrees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot, radians, tau
+from threading import Event
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from workhold.contact.curves import CurveTable, curve_table, loosened
+from workhold.contact.problem import Problem
+from workhold.errors import InputError
+from workhold.files.result.writer import toolkit_fields
+from workhold.fixels.vise import Vise
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    IS_ARC,
+    RADIUS,
+    SEGMENT_LENGTH,
+    SIGN,
+    X,
+    Y,
+)
+from workhold.kernels.chord.columns import BRANCH, COLUMN_STEP, FROM, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, TO
+from workhold.kernels.chord.evaluation import chord, distance_to_end, parameter_on
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.query import Query
+from workhold.model.requirements import Restrictions
+from workhold.model.result import Result
+from workhold.model.workpiece import Workpiece
+from workhold.search.design import answer
+from workhold.search.toolkit_search import lattice_steps
+
+__all__ = ["lesson"]
+
+# Columns of a feature's row that a browser needs.
+FEATURE = [IS_ARC, X, Y, AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN]
+# Faces that are looked at: the longest ones, so that the search of a detailed part ends soon.
+MOST_FACES = 40
+# Fixtures that a lesson carries at most.
+MOST_FIXTURES = 300
+# Row pitches that are tried, as shares of the part's smaller extent, with one column and then with two.
+PITCHES = (0.42, 0.3, 0.55, 0.22)
+# A peg's radius as a share of the pitch.
+PEG = 0.25
+# A part that can turn by this much either way, in radians, shows how it slides.
+ROOM = 0.17
+# Tails this near to a peg, in mm, are the peg's.
+SAME = 1e-5
+# How far a root may lie outside the ends of its chord's range, in radians: those of the ranges are rounded.
+END = 1e-6
+
+
+@frozen
+class ChordRange:
+    """A chord of a fixture, and the orientations over which it exists.
+
+    Parameters
+    ----------
+    tail, head : numbers of the features its pegs touch.
+    swapped : whether the second peg of the pair is the tail.
+    step : columns and rows from the tail's hole to that of the head.
+    shift, length : direction in radians and length in mm of the step.
+    branch : which of two chords it is, 1 or -1.
+    low, high : the orientations psi, in radians, around that of the fixture.
+    """
+
+    tail: int
+    head: int
+    swapped: bool
+    step: tuple[int, int]
+    shift: float
+    length: float
+    branch: float
+    low: float
+    high: float
+
+
+@frozen
+class CurveFixture:
+    """A Type I fixture on two chord curves, its chords as of its first and its second pair of pegs."""
+
+    fixture: Fixture
+    rank: int
+    chords: tuple[ChordRange, ChordRange]
+
+    @property
+    def psi(self) -> float:
+        """The orientation in radians, as the part sees the pegs."""
+        return -radians(self.fixture.pose.theta_deg)
+
+    @property
+    def room(self) -> float:
+        """The angle in radians by which the part can turn either way while both pairs touch."""
+        return min(
+            self.psi - max(one.low for one in self.chords), min(one.high for one in self.chords) - self.psi
+        )
+
+
+def lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[str, Any]:
+    """Makes the lesson of a part.
+
+    Parameters
+    ----------
+    cancel : when set, the search in hand ends.
+
+    Returns
+    -------
+    dict
+        Plain data for JSON: the outline, the vise, features, and fixtures with the shown one first.
+
+    Raises
+    ------
+    InputError
+        When no vise tried has a Type I fixture on two chord curves.
+    """
+    avoided = short_faces(workpiece)
+    best: tuple[float, Problem, Result, list[CurveFixture]] | None = None
+    for query in queries(workpiece, avoided):
+        try:
+            problem, result = Problem.of(query), answer(query, cancel=cancel)
+        except InputError:
+            # The pegs of this vise fit nowhere along the part.
+            continue
+        found = sorted(on_curves(problem, result), key=lambda one: -min(one.room, ROOM))
+        if found and (best is None or found[0].room > best[0]):
+            best = found[0].room, problem, result, found
+        if best is not None and best[0] >= ROOM:
+            break
+    if best is None:
+        raise InputError(
+            f"no vise that was tried holds {workpiece.name} with two pegs on each jaw that could slide: "
+            "choose a part with more sides, or one that is less round."
+        )
+    return lesson_data(*best[1:], len(avoided))
+
+
+def short_faces(workpiece: Workpiece) -> tuple[int, ...]:
+    """The numbers of all faces but the longest ones."""
+    faces = sorted(workpiece.faces, key=lambda face: -face.segment.length)
+    return tuple(face.number for face in faces[MOST_FACES:])
+
+
+def queries(workpiece: Workpiece, avoided: tuple[int, ...]) -> Iterator[Query]:
+    """Makes what is asked of one vise after the other, those with one column first."""
+    x0, y0, x1, y1 = workpiece.bounds
+    for columns in (1, 2):
+        for share in PITCHES:
+            pitch = rounded(share * min(x1 - x0, y1 - y0))
+            vise = Vise(pitch, columns, rounded(PEG * pitch))
+            yield Query(workpiece, vise, arrangements=("I",), restrictions=Restrictions(avoid=avoided))
+
+
+def rounded(length: float) -> float:
+    """A length to two digits.
+
+    >>> rounded(17.3), rounded(0.4567)
+    (17.0, 0.46)
+    """
+    return float(f"{length:.2g}")
+
+
+def on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
+    """The fixtures of a result of which both pairs of pegs stand on chord curves, in its order."""
+    frame = problem.frame
+    steps = lattice_steps(frame.carriers, problem.diameter)
+    table = curve_table(loosened(problem.rows[:, :SEGMENT_LENGTH]), steps)
+    out = []
+    for rank, fixture in enumerate(result, 1):
+        first, second = (
+            range_of(problem, table, fixture, pair) or range_of(problem, table, fixture, pair[::-1], True)
+            for pair in (fixture.pegs[:2], fixture.pegs[2:])
+        )
+        if first is not None and second is not None:
+            out.append(CurveFixture(fixture, rank, (first, second)))
+    return out
+
+
+def range_of(
+    problem: Problem, table: CurveTable, fixture: Fixture, pegs: tuple[Peg, ...], swapped: bool = False
+) -> ChordRange | None:
+    """The chord on which two pegs of a fixture stand, None where they stand on a sliding pair."""
+    tail, head = pegs
+    inverse, center = fixture.pose.inverse, problem.workpiece.center
+    places = [
+        (float(x) - center[0], float(y) - center[1]) for x, y in (inverse.apply(peg.x, peg.y) for peg in pegs)
+    ]
+    ends = [feature_of(problem, peg.face, place) for peg, place in zip(pegs, places, strict=True)]
+    step = head.column - tail.column, head.row - tail.row
+    psi = -radians(fixture.pose.theta_deg)
+    numbers, reals = table.curves.integers, table.curves.reals
+    (alike,) = np.nonzero((numbers[:, [TAIL, HEAD, COLUMN_STEP, ROW_STEP]] == (*ends, *step)).all(axis=1))
+    for one in alike:
+        real = reals[one]
+        alpha = real[FROM] - END + (psi + real[SHIFT] - real[FROM] + END) % tau
+        ux, uy = chord(problem.rows[ends[0]], problem.rows[ends[1]], real[LENGTH], alpha, real[BRANCH])[:2]
+        if alpha <= real[TO] + END and hypot(ux - places[0][0], uy - places[0][1]) < SAME:
+            low, high = (float(psi + end - alpha) for end in (real[FROM], real[TO]))
+            length, branch, shift = (float(real[column]) for column in (LENGTH, BRANCH, SHIFT))
+            return ChordRange(ends[0], ends[1], swapped, step, shift, length, branch, low, high)
+    return None
+
+
+def feature_of(problem: Problem, face: int, place: tuple[float, float]) -> int:
+    """The number of the feature of a face that a peg's centre lies on, about the centre of the part's box."""
+    (own,) = np.nonzero(problem.faces == face)
+    return int(
+        max(own, key=lambda k: distance_to_end(problem.rows[k], parameter_on(problem.rows[k], *place)))
+    )
+
+
+def lesson_data(problem: Problem, result: Result, found: list[CurveFixture], avoided: int) -> dict[str, Any]:
+    """A lesson as plain data."""
+    part = problem.workpiece
+    features: NDArray[np.float64] = problem.rows[:, FEATURE] + np.array([0, *part.center, 0, 0, 0, 0, 0])
+    return {
+        "name": part.name,
+        "loops": [loop.tolist() for loop in part.loops],
+        "toolkit": toolkit_fields(result.toolkit),
+        "features": features.tolist(),
+        "faces": problem.faces.tolist(),
+        "faces_left_out": avoided,
+        "found": sum(result.found.values()),
+        "curves": result.statistics["chord_curves"],
+        "pairs": result.statistics["curve_pairs"],
+        "on_curves": len(found),
+        "fixtures": [curve_fixture_data(one) for one in found[:MOST_FIXTURES]],
+    }
+
+
+def curve_fixture_data(one: CurveFixture) -> dict[str, Any]:
+    """A fixture of a lesson as plain data."""
+    fixture = one.fixture
+    return {
+        "rank": one.rank,
+        "pose": [radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y],
+        "opening": fixture.jaw_separation,
+        "pegs": [[peg.column, peg.row, peg.x, peg.y, peg.face, peg.force] for peg in fixture.pegs],
+        "chords": [
+            [c.tail, c.head, int(c.swapped), c.shift, c.length, c.branch, c.low, c.high] for c in one.chords
+        ],
+    }
