@@ -9,7 +9,7 @@ from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields
+from workhold.files.result.writer import outlines_entry, proof_entry, tolerance_entry, toolkit_fields
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.pegs import standoff
@@ -79,6 +79,17 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
         "remarks": list(remarks),
         "solid": None,
         **solid_data(workpiece.solid),
+        "outlines": own_answer(workpiece),
+    }
+
+
+def own_answer(workpiece: Workpiece) -> dict[str, Any]:
+    """Describes what carriers with heights of their own meet of a part, by role, as a request takes it."""
+    entries = outlines_entry(workpiece).get("outlines", {})
+    return {
+        role: {"heights": [one.solid.low, one.solid.peg_height], **entries[role]}
+        for role, one in workpiece.outlines
+        if one.solid is not None
     }
 
 
