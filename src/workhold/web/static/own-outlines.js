@@ -36,4 +36,5 @@ export async function outlinesOf(part, read) {
   if (!survey.part) throw new ApiError(survey.error, 400);
   // The part stays the same one: nobody has to be told of it.
   part.outlines = survey.part.outlines;
+  part.own_faces = survey.part.own_faces;
 }
