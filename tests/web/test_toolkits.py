@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any
 
 import pytest
-from attrs import fields_dict
+from attrs import asdict, fields_dict
 from running_server import WIDGET, RunningServer, request
 
 from workhold.files.toolkit_file import load_toolkit, preset_names
@@ -58,6 +58,29 @@ def test_every_choice_can_be_asked_for(one: Described) -> None:
             value = [choice.value] if field.form == "several" else choice.value
             toolkit = asked({"kind": one.name, **one.start, **field.when, field.name: value})
             assert json.loads(json.dumps(getattr(toolkit, field.name))) == json.loads(json.dumps(value))
+
+
+def test_every_figure_of_hardware_is_on_the_page() -> None:
+    """Of supports and of the clamp on top, for every kind of toolkit; each can be asked for."""
+    for one in kinds_answer():
+        assert [table["name"] for table in one["hardware"]] == list(HARDWARE)
+        for table in one["hardware"]:
+            fields = {field["name"]: field for field in table["fields"]}
+            assert set(fields) == {row.name for row in HARDWARE[table["name"]].table.fields}
+            assert {field["table"] for field in fields.values()} == {table["name"]}
+            assert all(field["hint"] and field["label"] for field in fields.values())
+            values = {name: [[0.0, 0.0, 5.0, 90.0]] if name == "reach" else 2.5 for name in fields}
+            made = asked({"kind": one["name"], **one["start"], table["name"]: values})
+            assert json.loads(json.dumps(asdict(getattr(made, table["name"])))) == values
+
+
+@pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
+def test_the_role_of_every_field_of_heights_is_told(one: Described) -> None:
+    """So that the page asks for the outlines of the carriers that it gives heights."""
+    named = {name: [2.0 + k, 9.0] for k, name in enumerate(one.roles)}
+    assert set(named) == {field.name for field in one.fields if field.name.endswith("_heights")} and named
+    made = asked({"kind": one.name, **one.start, **named})
+    assert {one.roles[name]: tuple(ends) for name, ends in named.items()} == made.heights
 
 
 def test_a_preset_is_of_the_kind_that_says_most() -> None:

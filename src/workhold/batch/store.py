@@ -24,7 +24,8 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.atomic import plain_errors, write_bytes
-from workhold.files.result.writer import solid_entry, workpiece_entry
+from workhold.files.result.writer import outlines_entry, solid_entry, workpiece_entry
+from workhold.model.own_outlines import with_own_outlines
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
@@ -50,6 +51,13 @@ FIRST, LAST = b'{"format": "workhold-', b"]}\n"
 def part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
     """The record of a drawing that was read."""
     about = {"format": PART, **workpiece_entry(workpiece), **solid_entry(workpiece.solid), "name": PART_NAME}
+    heights = {
+        role: (one.solid.low, one.solid.peg_height)
+        for role, one in workpiece.outlines
+        if one.solid is not None
+    }
+    if heights:
+        about |= {**outlines_entry(workpiece), "heights": heights}
     x0, y0, x1, y1 = workpiece.bounds
     return ended(
         about | {"faces": len(workpiece.faces), "size": [x1 - x0, y1 - y0], "remarks": list(remarks)}
@@ -85,7 +93,10 @@ def plain_record(content: bytes) -> dict[str, Any]:
 def workpiece_of(record: dict[str, Any]) -> Workpiece:
     """The part of a drawing's record."""
     solid = SolidOutline.of_entries(record["solid"], record) if record.get("solid") else None
-    return Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
+    workpiece = Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
+    if "outlines" not in record:
+        return workpiece
+    return with_own_outlines(workpiece, record["outlines"], record["heights"])
 
 
 # Letters of a name that its folder has: so no folder has too many files.

@@ -16,7 +16,14 @@ from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_out
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
-from workhold.cli.toolkit_lists import ListWords, Named, query_of, toolkits_to_try, words_of
+from workhold.cli.toolkit_lists import (
+    ListWords,
+    Named,
+    heights_of_all,
+    query_of,
+    toolkits_to_try,
+    words_of,
+)
 from workhold.cli.values import length_unit, optional_count
 from workhold.errors import InputError
 
@@ -245,7 +252,7 @@ def requests_of(
             raise InputError("no toolkit is given: name one or more with --toolkit (see workhold toolkits).")
         held_in = held_in_all(named, words, reading)
         requests = [
-            Request(part, words[2].reading(part.name, reading).options(), held_in)
+            Request(part, options_of(named, words[2].reading(part.name, reading)), held_in)
             for part in part_list(plain, [folder])
         ]
     for name in parts:
@@ -268,12 +275,24 @@ def requests_of(
                     )
                 held_in = held_in_all(own, own_words, own_reading)
                 requests += [
-                    Request(part, own_words[2].reading(part.name, own_reading).options(), held_in)
+                    Request(part, options_of(own, own_words[2].reading(part.name, own_reading)), held_in)
                     for part in part_list([job.part], [folder])
                 ]
             except InputError as error:
                 raise InputError(f"{job.place}: {error}") from error
     return requests
+
+
+def options_of(toolkits: Sequence[Named], reading: PartWords) -> dict[str, Any]:
+    """Makes the options of reading a part that some toolkits share, with the heights of their carriers.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing, and toolkits that differ in the heights of a carrier.
+    """
+    heights = heights_of_all(toolkits)
+    return {**reading.options(), **({"heights": heights} if heights else {})}
 
 
 def asked_toolkits(

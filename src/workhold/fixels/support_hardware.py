@@ -14,7 +14,7 @@ from attrs import field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.fixels.table import FieldTable, ToolkitField
+from workhold.fixels.table import FieldTable, PageLabel, ToolkitField
 from workhold.limits import real, refuse_long
 
 __all__ = ["HARDWARE", "SUPPORTS", "TOP_CLAMP", "SupportPads", "TopClamp", "hardware_of"]
@@ -23,11 +23,13 @@ __all__ = ["HARDWARE", "SUPPORTS", "TOP_CLAMP", "SupportPads", "TopClamp", "hard
 SUPPORTS, TOP_CLAMP = "supports", "top_clamp"
 
 Rings = tuple[tuple[float, ...], ...]
+# What stands in a field of the page that is empty.
+USUAL = "usual"
 
 
-def length_row(name: str, least: Any, figure: str) -> ToolkitField:
+def length_row(name: str, least: Any, figure: str, label: PageLabel) -> ToolkitField:
     """A row of a length that may be left out."""
-    return ToolkitField(name, "length", "LENGTH", figure, (), least=least, figure=figure)
+    return ToolkitField(name, "length", "LENGTH", figure, (label,), least=least, figure=figure)
 
 
 def rings(values: Iterable[Iterable[Any]] | None) -> Rings | None:
@@ -39,18 +41,33 @@ PADS = FieldTable(
     SUPPORTS,
     "Supports under the part",
     (
-        length_row("pad_radius", "0", "radius of the supports' pads"),
-        length_row("pad_margin", "0", "from a pad to the border of the face below"),
-        length_row("height", "above 0", "height of the supports"),
+        length_row("pad_radius", "0", "radius of the supports' pads", PageLabel("Pad radius", USUAL)),
+        length_row(
+            "pad_margin", "0", "from a pad to the border of the face below", PageLabel("Pad to border", USUAL)
+        ),
+        length_row("height", "above 0", "height of the supports", PageLabel("Height", USUAL)),
     ),
 )
 CLAMP = FieldTable(
     TOP_CLAMP,
     "A clamp on top",
     (
-        length_row("tip_radius", "above 0", "radius of the tip of the clamp on top"),
-        length_row("inside", "above 0", "from the clamp on top to the supports' triangle"),
-        ToolkitField("reach", "rings", "X,Y,LEAST,MOST", "where the tip of the clamp on top can stand", ()),
+        length_row(
+            "tip_radius", "above 0", "radius of the tip of the clamp on top", PageLabel("Tip radius", USUAL)
+        ),
+        length_row(
+            "inside",
+            "above 0",
+            "from the clamp on top to the supports' triangle",
+            PageLabel("Tip within the triangle", USUAL),
+        ),
+        ToolkitField(
+            "reach",
+            "rings",
+            "X,Y,LEAST,MOST",
+            "where the tip of the clamp on top can stand",
+            (PageLabel("Reaches about x, y from least to most", "anywhere"),),
+        ),
     ),
 )
 

@@ -9,7 +9,7 @@ from math import hypot
 from typing import TYPE_CHECKING, Any
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import proof_entry, tolerance_entry, toolkit_fields
+from workhold.files.result.writer import outlines_entry, proof_entry, tolerance_entry, toolkit_fields
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.pegs import standoff
@@ -61,7 +61,7 @@ def place_in(sentence: str) -> dict[str, float] | None:
 
 def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
     """Describes a part with its segments and faces."""
-    face_of = {number: face.number for face in workpiece.faces for number in face.segments}
+    face_of = face_numbers(workpiece)
     segments, number = [], 0
     for index, loop in enumerate(workpiece.loop_segments):
         for segment, (_, _, bulge) in zip(loop, workpiece.loops[index].tolist(), strict=True):
@@ -79,6 +79,29 @@ def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, 
         "remarks": list(remarks),
         "solid": None,
         **solid_data(workpiece.solid),
+        "outlines": own_answer(workpiece),
+        "own_faces": {role: own_numbers(workpiece, role) for role, _ in workpiece.outlines},
+    }
+
+
+def face_numbers(workpiece: Workpiece) -> dict[int, int]:
+    """Returns the number of the face of every segment."""
+    return {number: face.number for face in workpiece.faces for number in face.segments}
+
+
+def own_numbers(workpiece: Workpiece, role: str) -> list[int]:
+    """Returns the faces of the segments of what carriers of a role meet, numbered on."""
+    outline, first = workpiece.outline_of(role)
+    return [first + face for _, face in sorted(face_numbers(outline).items())]
+
+
+def own_answer(workpiece: Workpiece) -> dict[str, Any]:
+    """Describes what carriers with heights of their own meet of a part, by role, as a request takes it."""
+    entries = outlines_entry(workpiece).get("outlines", {})
+    return {
+        role: {"heights": [one.solid.low, one.solid.peg_height], **entries[role]}
+        for role, one in workpiece.outlines
+        if one.solid is not None
     }
 
 

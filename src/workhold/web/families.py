@@ -13,7 +13,8 @@ from workhold.errors import InputError
 from workhold.model.query import Query
 from workhold.model.ranking import asked_ranking
 from workhold.web.form import LARGEST, Form, Name
-from workhold.web.forms import HeldIn, ToleranceForm, WorkpieceForm
+from workhold.web.forms import HeldIn, ToleranceForm
+from workhold.web.part_forms import WorkpieceForm
 from workhold.web.worker import Order
 
 if TYPE_CHECKING:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from workhold.errors import InputError
+from workhold.files.input_forms import TAGS
 
 __all__ = [
     "LARGEST",
@@ -18,7 +21,11 @@ __all__ = [
     "Name",
     "Number",
     "Point",
+    "of_address",
+    "sentence_of",
 ]
+
+Asked = TypeVar("Asked")
 
 # Beyond this, in mm, degrees, N or N mm, a number is a mistake.
 LARGEST = 1e9
@@ -40,3 +47,32 @@ class Form(BaseModel):
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+
+def of_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
+    """A value of an address that is JSON.
+
+    Raises
+    ------
+    InputError
+        For anything that the adapter does not take.
+    """
+    try:
+        return adapter.validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        raise InputError(sentence_of({**first, "loc": ("query", name, *map(str, first["loc"]))})) from error
+
+
+def sentence_of(error: dict[str, Any]) -> str:
+    """One thing that pydantic finds wrong with a request, as a sentence."""
+    loc = [str(part) for part in error.get("loc", ()) if part not in TAGS]
+    if error.get("type") == "json_invalid":
+        return "The request is not valid JSON: send one object."
+    where, rest = (loc[0], loc[1:]) if loc else ("body", [])
+    place = ".".join(rest)[:120]
+    message = str(error.get("msg", "not what it should be")).strip().rstrip(".")
+    message = message[:1].lower() + message[1:200]
+    if where == "body":
+        return f"The request is not as it should be{f' at {place}' if place else ''}: {message}."
+    return f"The {where} value {place} of the address is not as it should be: {message}."

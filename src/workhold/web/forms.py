@@ -4,14 +4,13 @@ not known.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from attrs import evolve
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter
 
-from workhold.errors import InputError
-from workhold.files.input_forms import TAGS, forms_by_noun, one_of, optional
+from workhold.files.input_forms import forms_by_noun, one_of, optional
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.kinds import USUAL, toolkit_of
@@ -21,98 +20,37 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.query import Query
 from workhold.model.ranking import asked_ranking
 from workhold.model.requirements import Load, Tolerance
-from workhold.model.solid import SolidOutline
-from workhold.model.workpiece import Workpiece
 from workhold.web.form import (
     LARGEST,
     MOST_LOADS,
     MOST_POINTS,
     MOST_RANGES,
     MOST_VERTICES,
-    BandForm,
     Form,
     LoopForm,
     Name,
     Number,
     Point,
+    of_address,
+    sentence_of,
 )
+from workhold.web.part_forms import WorkpieceForm
 from workhold.web.program_forms import ProgramForm
 
-__all__ = ["ExploreForm", "JobForm", "LoadsForm", "WorkpieceForm", "asked_loads", "sentence_of"]
+__all__ = [
+    "ExploreForm",
+    "JobForm",
+    "LoadsForm",
+    "asked_loads",
+    "sentence_of",
+]
+
 
 MOST_NAMES, MOST_TOOLKITS = 500, 60
 # Fixtures whose seating is worked out in one search.
 MOST_SEATED = 1_000
 
 DirectionPair = Annotated[list[Name], Field(min_length=2, max_length=2)]
-
-
-FacesForm = Annotated[list[Annotated[int, Field(ge=0, le=1_000_000)]], Field(max_length=10_000)]
-
-
-class SolidForm(Form):
-    """How the solid of an outline stands, and the heights at which each segment is touched; lengths in mm."""
-
-    axis: Literal["x", "y", "z", "-x", "-y", "-z"]
-    height: Annotated[float, Field(gt=0, le=LARGEST)]
-    peg_height: Annotated[float, Field(gt=0, le=LARGEST)]
-    head_room: Annotated[float, Field(ge=0, le=LARGEST)]
-    least_band: Annotated[float, Field(ge=0, le=LARGEST)]
-    bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
-    faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
-    bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
-    top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
-    top_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
-
-
-class WorkpieceForm(Form):
-    """A part; lengths in mm."""
-
-    name: Name = "part"
-    loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
-    departure: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
-    solid: SolidForm | None = None
-
-    def workpiece(self, most_segments: int) -> Workpiece:
-        """The part.
-
-        Raises
-        ------
-        InputError
-            For loops that cannot be used, and for too many segments.
-        """
-        solid = None if self.solid is None else SolidOutline(**self.solid.model_dump())
-        return checked_part(self.name, self.loops, most_segments, self.departure, solid)
-
-
-def checked_part(
-    name: str,
-    loops: Sequence[Sequence[Sequence[float]]],
-    most_segments: int,
-    departure: float = 0.0,
-    solid: SolidOutline | None = None,
-) -> Workpiece:
-    """A part of loops in mm, with how far they may be from what was drawn.
-
-    Raises
-    ------
-    InputError
-        For loops that cannot be used, and for more segments than this server takes.
-    """
-    count = sum(map(len, loops))
-    if count > most_segments:
-        raise InputError(
-            f"The part has {count} segments, more than the {most_segments} this server takes: draw its "
-            "outline with lines and arcs instead of many short pieces."
-        )
-    try:
-        return Workpiece.from_loops(name, loops, departure=departure, solid=solid)
-    except (ArithmeticError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(
-            "The part's numbers are too large or too small to compute with: check its units."
-        ) from error
 
 
 class ToolkitRequest(Form):
@@ -229,13 +167,7 @@ def asked_loads(text: str | None) -> tuple[Load, ...] | None:
     """
     if text is None:
         return None
-    try:
-        return tuple(form.load() for form in SeveralLoads.validate_json(text))
-    except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False)[0]
-        raise InputError(
-            sentence_of({**first, "loc": ("query", "loads", *map(str, first["loc"]))})
-        ) from error
+    return tuple(form.load() for form in of_address(SeveralLoads, "loads", text))
 
 
 class SearchForm(Form):
@@ -335,17 +267,3 @@ class ExploreForm(SearchForm):
             )
             for title, toolkit, tolerance in named
         )
-
-
-def sentence_of(error: dict[str, Any]) -> str:
-    """One thing that pydantic finds wrong with a request, as a sentence."""
-    loc = [str(part) for part in error.get("loc", ()) if part not in TAGS]
-    if error.get("type") == "json_invalid":
-        return "The request is not valid JSON: send one object."
-    where, rest = (loc[0], loc[1:]) if loc else ("body", [])
-    place = ".".join(rest)[:120]
-    message = str(error.get("msg", "not what it should be")).strip().rstrip(".")
-    message = message[:1].lower() + message[1:200]
-    if where == "body":
-        return f"The request is not as it should be{f' at {place}' if place else ''}: {message}."
-    return f"The {where} value {place} of the address is not as it should be: {message}."

@@ -11,8 +11,8 @@ from starlette.exceptions import HTTPException
 from workhold.version import __version__
 from workhold.web.answers import figures_answer, toolkit_answer
 from workhold.web.fixture_tasks import has_step
-from workhold.web.forms import WorkpieceForm
 from workhold.web.job_routes import found_job
+from workhold.web.part_forms import WorkpieceForm, asked_heights
 from workhold.web.program_forms import ProgramQuestion
 from workhold.web.shapes import ShapeOrder
 from workhold.web.state import at_desk, at_desk_while_heard, state_of
@@ -90,6 +90,13 @@ HeightGiven = Annotated[
 ]
 RoomGiven = Annotated[float | None, Query(ge=0, le=1e6, description="kept free above the pegs, in mm")]
 BandGiven = Annotated[float | None, Query(ge=0, le=1e6, description="least height of a face to touch, in mm")]
+HeightsGiven = Annotated[
+    str | None,
+    Query(
+        max_length=2_000,
+        description="JSON: by role between which heights carriers with their own touch, in mm",
+    ),
+]
 
 
 async def sent(
@@ -103,6 +110,7 @@ async def sent(
     peg_height: HeightGiven = None,
     head_room: RoomGiven = None,
     least_band: BandGiven = None,
+    heights: HeightsGiven = None,
 ) -> Upload:
     """Collects a file that is sent, and the options of how to read it."""
     content = await request.body()
@@ -112,6 +120,7 @@ async def sent(
         given["fit"] = fit
     if name.lower().endswith((".step", ".stp")):
         given |= {"axis": axis, "peg_height": peg_height, "head_room": head_room, "least_band": least_band}
+        given["heights"] = asked_heights(heights)
     options = {key: value for key, value in given.items() if value is not None}
     return Upload(content, name, state_of(request).limits.segments, options)
 

@@ -20,8 +20,8 @@ from workhold.web.form import (
     Name,
     Number,
     Point,
+    sentence_of,
 )
-from workhold.web.forms import sentence_of
 
 __all__ = ["ChosenSupportsForm", "FirstSideForm", "SpatialLoadForm", "SupportsForm", "asked_of"]
 

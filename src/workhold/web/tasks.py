@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
     from workhold.web.families import FamilyForm
-    from workhold.web.forms import ExploreForm, JobForm, LoadsForm, WorkpieceForm
+    from workhold.web.forms import ExploreForm, JobForm, LoadsForm
+    from workhold.web.part_forms import WorkpieceForm
 
 __all__ = ["TASKS", "Found", "NamedQuery", "Upload", "warm_up", "work"]
 
@@ -260,7 +261,7 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
         For more segments than this server takes.
     """
     from workhold.web.answers import part_answer
-    from workhold.web.forms import checked_part
+    from workhold.web.part_forms import checked_part
 
     part, stem = loaded.workpiece, upload.name.rpartition(".")[0]
     checked_size = checked_part(
@@ -271,7 +272,8 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
         part.solid,
     )
     name = stem or upload.name if part.name == path.stem else part.name
-    return part_answer(evolve(checked_size, name=name or "part"), loaded.remarks)
+    whole = evolve(checked_size, name=name or "part", outlines=part.outlines)
+    return part_answer(whole, loaded.remarks)
 
 
 def program(question: ProgramQuestion, order: Order) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from attrs import asdict, frozen
 from workhold.drawing.panel import arrangement_words
 from workhold.files.toolkit_file import LoadedToolkit
 from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
+from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import Choice, ToolkitField
 
 __all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind"]
@@ -30,7 +31,10 @@ PAGE_FORMS: Mapping[str, str] = {"flat": "length", "heights": "span"}
 
 @frozen
 class PageField:
-    """A field of the page; :class:`workhold.fixels.table.PageLabel` explains what the toolkit's field lacks."""
+    """A field of the page; :class:`workhold.fixels.table.PageLabel` explains what the toolkit's field lacks.
+
+    Fields of hardware stand in a ``table`` of the toolkit.
+    """
 
     name: str
     label: str
@@ -40,14 +44,17 @@ class PageField:
     least: str
     choices: tuple[Choice, ...]
     when: Mapping[str, Any]
+    table: str | None = None
 
 
-def page_fields(row: ToolkitField) -> Iterator[PageField]:
+def page_fields(row: ToolkitField, table: str | None = None) -> Iterator[PageField]:
     """Yields the fields of the page for a field of a toolkit."""
     for one in row.labels:
         choosing = "several" if one.several else "one"
         form = choosing if one.choices else PAGE_FORMS.get(row.form, row.form)
-        yield PageField(row.name, one.label, form, one.hint, one.is_usual, row.least, one.choices, one.when)
+        yield PageField(
+            row.name, one.label, form, one.hint, one.is_usual, row.least, one.choices, one.when, table
+        )
 
 
 @frozen
@@ -78,6 +85,17 @@ class Described:
         rows = (row for row in table_of(kind_of(self.name)[0]).fields if row.name not in self.said)
         return tuple(one for row in rows for one in page_fields(row))
 
+    @property
+    def roles(self) -> dict[str, str]:
+        """The role of the carriers whose heights a field says, by the name of the field."""
+        rows = (row for row in table_of(kind_of(self.name)[0]).fields if row.form == "heights")
+        any_heights = (1.0, 2.0)
+        return {
+            row.name: role
+            for row in rows
+            for role in toolkit_of(self.name, {**self.start, row.name: any_heights}).heights
+        }
+
     def answer(self) -> dict[str, Any]:
         """Describes the kind for the page."""
         toolkit = toolkit_of(self.name, self.start)
@@ -94,7 +112,22 @@ class Described:
             "start": dict(self.start),
             "types": [{"name": name, "words": words} for name, words in types.items()],
             "fields": [asdict(one) for one in self.fields],
+            "hardware": hardware_answer(),
+            "roles": self.roles,
         }
+
+
+def hardware_answer() -> list[dict[str, Any]]:
+    """Describes what every kind of toolkit may have for three dimensions, with the fields of each."""
+    tables = {name: kind.table for name, kind in HARDWARE.items()}
+    return [
+        {
+            "name": name,
+            "title": table.summary,
+            "fields": [asdict(one) for row in table.fields for one in page_fields(row, name)],
+        }
+        for name, table in tables.items()
+    ]
 
 
 DESCRIBED = tuple(Described(name, words.title, words.closes, words.start) for name, words in PAGES.items())

@@ -4,13 +4,14 @@
  */
 import { ApiError, ask, send, surveyPart } from "./api.js";
 import { byId, make, show } from "./dom.js";
+import { outlinesOf } from "./own-outlines.js";
 import { state } from "./state.js";
 import { countText } from "./units.js";
 
 const POLL = 250;
 const ENDED = ["done", "failed", "cancelled"];
 
-/** The parts read, and files that are no parts, in the order given. @type {{name: string, part: any, reason: string}[]} */
+/** The parts read, and files that are no parts, in the order given. @type {{name: string, part: any, reason: string, file: File}[]} */
 let entries = [];
 /** The job at the server, or null. @type {string|null} */
 let job = null;
@@ -45,10 +46,10 @@ export async function openFamily(files) {
   const mine = latest;
   for (const file of files) {
     say(`Reading ${file.name} …`);
-    let entry = { name: file.name, part: null, reason: "" };
+    let entry = { name: file.name, part: null, reason: "", file };
     try {
-      const { part, refusal } = await surveyPart(file);
-      entry = { name: file.name, part, reason: part ? "" : refusal };
+      const { part, error: why } = await surveyPart(file);
+      entry = { name: file.name, part, reason: part ? "" : why, file };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       entry.reason = error.message;
@@ -101,7 +102,10 @@ async function search() {
   bar.removeAttribute("value");
   show(bar, true);
   try {
-    const workpieces = entries.filter((entry) => entry.part).map(({ name, part }) => ({ name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null }));
+    const read = entries.filter((entry) => entry.part);
+    for (const { part, file } of read) await outlinesOf(part, { file, how: {} });
+    if (mine !== latest) return;
+    const workpieces = read.map(({ name, part }) => ({ name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null, outlines: part.outlines ?? {} }));
     const asked = { workpieces, toolkit: state.toolkit, types: state.types, contact_margin: state.contactMargin, tolerance: state.tolerance };
     const begun = await send("families", asked);
     if (mine !== latest) {

@@ -6,7 +6,7 @@
 import { draw, show } from "./dom.js";
 import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
 import { drawLettering } from "./fixture-lettering.js";
-import { contactsOf, forceOf, intoVise, partSegments, place, poseMatrix } from "./pose.js";
+import { contactsOf, forceOf, intoVise, partSegments, place, poseMatrix, touchableSegments } from "./pose.js";
 import { nearestMove, programPaths } from "./program-drawing.js";
 import { clampFromAbove, supportPads } from "./supports-drawing.js";
 import { lyingMatrix } from "./trial.js";
@@ -133,7 +133,7 @@ export class FixtureDrawing {
     const shape = draw("g.part", { transform: poseMatrix(row) }, draw("path.part-fill", { d: outline }));
     this.shape = shape;
     this.ghost = draw("path.ghost", { d: outline, transform: poseMatrix(row), hidden: true });
-    for (const { segment, face } of partSegments(part)) {
+    for (const { segment, face } of touchableSegments(part)) {
       if (touched.has(face)) shape.append(draw("path.touched", { d: segmentPath(segment), "data-face": face }));
     }
     shape.append(...programPaths(this.program), ...nearestMove(this.passing));

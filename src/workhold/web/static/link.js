@@ -19,7 +19,7 @@ export function snapshot() {
   const { part, job, selected, pinned } = state;
   return {
     known: Object.fromEntries(CARRIED.map((key) => [key, state[key]])),
-    part: part && { name: part.name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null },
+    part: part && { name: part.name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null, outlines: part.outlines ?? {} },
     job: job?.job ?? null,
     searched: job !== null,
     rank: selected?.rank ?? null,

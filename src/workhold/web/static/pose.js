@@ -71,6 +71,17 @@ export function partSegments(part) {
 }
 
 /**
+ * All segments that something may touch: those of the part, then those that only carriers with heights of their own meet.
+ * @param {any} part
+ * @returns {{segment: import("./geometry.js").Segment, face: number}[]}
+ */
+export function touchableSegments(part) {
+  const own = Object.entries(part.outlines ?? {}).flatMap(([role, { loops }]) =>
+    loops.flatMap(segmentsOf).map((segment, k) => ({ segment, face: part.own_faces[role][k] })));
+  return own.length ? [...partSegments(part), ...own] : partSegments(part);
+}
+
+/**
  * Where the pegs of a fixture touch the part, in part coordinates: contact and outward unit normal.
  * @param {any} part
  * @param {Row} row
@@ -84,7 +95,7 @@ export function contactsOf(part, row) {
     // What lies flush on a wall is pushed straight up.
     if (row.flush.includes(k)) return { peg, contact: peg, normal: [-s, -c] };
     let best = null;
-    for (const { segment, face } of partSegments(part)) {
+    for (const { segment, face } of touchableSegments(part)) {
       if (face !== row.faces[k]) continue;
       const found = nearest(segment, peg);
       if (!best || found.distance < best.distance) best = { ...found, segment };

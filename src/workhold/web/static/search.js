@@ -5,6 +5,7 @@
  */
 import { ApiError, ask, send } from "./api.js";
 import { quiet } from "./dom.js";
+import { readOutlines } from "./own-outlines.js";
 import { SETTINGS, change, on, request, state } from "./state.js";
 
 const ENDED = ["done", "failed", "cancelled"];
@@ -45,6 +46,8 @@ export async function start() {
   const mine = token;
   change({ job: withoutServer("queued") });
   try {
+    await readOutlines();
+    if (mine !== token) return;
     const { job } = await send("jobs", request());
     if (mine === token) follow(job, mine);
     else forget(job);

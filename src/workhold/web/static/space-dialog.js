@@ -12,7 +12,7 @@ import { on, state } from "./state.js";
 import { supportsQuery } from "./supports.js";
 import { length } from "./units.js";
 
-const NO_WEBGL = "Drawn without WebGL, which this browser has not or would be slow with.";
+const NO_WEBGL = "Drawn without WebGL, which this browser lacks or would draw slowly.";
 /** How far things open at most, in parts of the extent of all bodies. */
 const WIDEST = 0.3;
 

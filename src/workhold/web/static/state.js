@@ -108,7 +108,7 @@ export function programRequest(program) {
 /** What the server is asked to search. */
 export function request() {
   return {
-    workpiece: { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0, solid: state.part.solid ?? null },
+    workpiece: { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0, solid: state.part.solid ?? null, outlines: state.part.outlines ?? {} },
     toolkit: state.toolkit,
     types: state.types,
     listing: state.listing,

@@ -2,7 +2,7 @@
  * Small pictures of fixtures on canvases, drawn only for rows in sight.
  */
 import { boundsOf, outlinePath, segmentPath } from "./geometry.js";
-import { intoVise, partSegments, turn } from "./pose.js";
+import { intoVise, partSegments, touchableSegments, turn } from "./pose.js";
 
 /** @type {WeakMap<any, {outline: Path2D, faces: Map<number, Path2D>}>} */
 const paths = new WeakMap();
@@ -25,17 +25,19 @@ function inks() {
 
 /** Paths of a part, made once. */
 function pathsOf(part) {
-  let known = paths.get(part);
+  // A part may get other outlines of carriers with heights of their own.
+  const key = part.outlines ?? part;
+  let known = paths.get(key);
   if (!known) {
     const faces = new Map();
-    for (const { segment, face } of partSegments(part)) {
+    for (const { segment, face } of touchableSegments(part)) {
       faces.set(face, `${faces.get(face) ?? ""}${segmentPath(segment)}`);
     }
     known = {
       outline: new Path2D(outlinePath(part.loops)),
       faces: new Map([...faces].map(([face, d]) => [face, new Path2D(d)])),
     };
-    paths.set(part, known);
+    paths.set(key, known);
   }
   return known;
 }

@@ -14,8 +14,8 @@ const PAIRS = { pitch: ["x", "y"], span: ["least", "most"] };
 const input = (id) => /** @type {HTMLInputElement} */ (byId(id));
 
 /** The name of a field's element. @param {Field} field */
-function idOf({ name }) {
-  return name.replaceAll("_", "-");
+function idOf({ name, table }) {
+  return [table, name].filter(Boolean).join("-").replaceAll("_", "-");
 }
 
 /** The names of the inputs of a field of one or two numbers. @param {Field} field */
@@ -38,8 +38,8 @@ export function makeFields(field) {
     const options = field.choices.map(({ words }, k) => make("option", { value: k }, words));
     return [make("label", {}, field.label, make("select", { id }, ...options))];
   }
-  const mode = field.form === "count" ? "numeric" : field.form === "holes" ? "text" : "decimal";
-  const unit = ["length", "pitch", "span"].includes(field.form) ? [" ", make("span.unit")] : [];
+  const mode = field.form === "count" ? "numeric" : ["holes", "rings"].includes(field.form) ? "text" : "decimal";
+  const unit = ["length", "pitch", "span", "rings"].includes(field.form) ? [" ", make("span.unit")] : [];
   return idsOf(field).map((each, k) => {
     const label = PAIRS[field.form] ? `${field.label}${field.form === "span" ? "," : ""} ${PAIRS[field.form][k]}` : field.label;
     return make("label", {}, label, ...unit.map((part) => (typeof part === "string" ? part : part.cloneNode())),
@@ -64,6 +64,12 @@ export function readField(field, known) {
     const names = input(id).value.split(/[\s,;]+/).filter(Boolean).map((name) => name.toUpperCase());
     return { value: names.length ? names : null, wrong: false };
   }
+  if (field.form === "rings") {
+    const rings = ringsOf(input(id).value, known);
+    const wrong = rings === null;
+    input(id).setAttribute("aria-invalid", String(wrong));
+    return { value: rings?.length ? rings : null, wrong };
+  }
   const ids = idsOf(field);
   const before = ids.length > 1 ? (known ?? []) : [known];
   const values = ids.map((each, k) => {
@@ -77,6 +83,19 @@ export function readField(field, known) {
   ids.forEach((each, k) => input(each).setAttribute("aria-invalid", String(wrong[k])));
   if (wrong.includes(true)) return { value: null, wrong: true };
   return { value: empty ? null : values.length > 1 ? values : values[0], wrong: false };
+}
+
+/** Rings as they are typed: x, y, least and most of each, with semicolons between them. @param {number[][]|null} rings */
+function ringsText(rings) {
+  return (rings ?? []).map((ring) => ring.map((one) => fieldLength(one)).join(", ")).join("; ");
+}
+
+/** Rings of a text in mm, those known where it still stands for them; null for what is none. */
+function ringsOf(text, known) {
+  if (text === ringsText(known)) return known ?? [];
+  const rings = text.split(";").filter((part) => part.trim()).map((part) => part.split(",").map((one) => readLength(one)));
+  const good = rings.every((ring) => ring.length === 4 && ring.every(Number.isFinite) && ring[2] >= 0 && ring[2] <= ring[3]);
+  return good ? rings : null;
 }
 
 /** Whether a number suits a field. */
@@ -106,6 +125,7 @@ export function writeField(field, value) {
   ids.forEach((each, k) => {
     if (input(each) === document.activeElement) return;
     if (field.form === "holes") input(each).value = (value ?? []).join(", ");
+    else if (field.form === "rings") input(each).value = ringsText(value);
     else input(each).value = field.form === "count" ? String(values[k] ?? "") : fieldLength(values[k]);
     input(each).setAttribute("aria-invalid", "false");
   });

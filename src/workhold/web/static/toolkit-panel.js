@@ -5,7 +5,7 @@ import { ask } from "./api.js";
 import { byId, make, quiet, show } from "./dom.js";
 import { change, on, state } from "./state.js";
 import { makeFields, readField, writeField } from "./toolkit-fields.js";
-import { asKind, fieldsOf, hardwareOf, kindOf, kinds, learnKinds, same } from "./toolkits.js";
+import { asKind, fieldsOf, kindOf, kinds, learnKinds, same, setValue, valueOf } from "./toolkits.js";
 import { fieldLength, readLength, unitWord } from "./units.js";
 
 const TOLERANCES = ["tolerance-peg", "tolerance-face"];
@@ -85,12 +85,12 @@ function typesOf(toolkit) {
 /** Read the fields into the state; what cannot be read is marked and changes nothing. */
 function read() {
   const kind = kindOf(state.toolkit);
-  const toolkit = { kind: kind.name, ...kind.said, ...hardwareOf(state.toolkit) };
+  const toolkit = { kind: kind.name, ...kind.said };
   let bad = "";
-  for (const each of fieldsOf(kind, state.toolkit)) {
-    const { value, wrong } = readField(each, state.toolkit[each.name]);
+  for (const each of [...fieldsOf(kind, state.toolkit), ...kind.hardware.flatMap(({ fields }) => fields)]) {
+    const { value, wrong } = readField(each, valueOf(state.toolkit, each));
     if (wrong) bad = bad || each.label;
-    else if (value !== null) toolkit[each.name] = value;
+    else setValue(toolkit, each, value);
   }
   // What belongs to another choice than the one just made is left behind.
   const left = fieldsOf(kind, state.toolkit).filter((each) => !fieldsOf(kind, toolkit).includes(each));
@@ -105,16 +105,28 @@ function read() {
   if (words || !off.every((value) => value >= 0)) return;
   const fit = toolkit.peg_radius === state.toolkit.peg_radius ? (state.tolerance?.fit ?? null) : null;
   const tolerance = { peg: off[0], face: off[1], fit };
-  const unchanged = same(sorted(toolkit), sorted({ kind: kind.name, ...state.toolkit }));
+  const unchanged = same(sorted(toolkit), sorted(withoutUnsaid({ kind: kind.name, ...state.toolkit })));
   const sameOff = off[0] === (state.tolerance?.peg ?? 0.01) && off[1] === (state.tolerance?.face ?? 0.01)
     && fit === (state.tolerance?.fit ?? null);
   if (unchanged && sameOff) return;
   change({ ...(unchanged ? {} : { toolkit, toolkitName: OWN }), ...(sameOff ? {} : { tolerance }) });
 }
 
-/** An object's entries in the order of their keys. */
+/** A toolkit without hardware of which nothing is said, and without what nobody says of it. */
+function withoutUnsaid(toolkit) {
+  const said = { ...toolkit };
+  for (const { name } of kindOf(toolkit).hardware) {
+    const figures = Object.entries(said[name] ?? {}).filter(([, value]) => value !== null);
+    if (figures.length) said[name] = Object.fromEntries(figures);
+    else delete said[name];
+  }
+  return said;
+}
+
+/** An object's entries in the order of their keys, and so those of objects in it. */
 function sorted(values) {
-  return Object.entries(values).sort(([a], [b]) => (a < b ? -1 : 1));
+  const whole = ([key, value]) => [key, value && typeof value === "object" && !Array.isArray(value) ? sorted(value) : value];
+  return Object.entries(values).map(whole).sort(([a], [b]) => (a < b ? -1 : 1));
 }
 
 /** Write the state into the fields, but not under the user's fingers. */
@@ -127,9 +139,10 @@ function write() {
   if (wanted !== shown) {
     shown = wanted;
     byId("toolkit-usual").replaceChildren(...fields.filter((each) => each.is_usual).flatMap(makeFields));
-    byId("toolkit-more").replaceChildren(...fields.filter((each) => !each.is_usual).flatMap(makeFields));
+    byId("toolkit-more").replaceChildren(...fields.filter((each) => !each.is_usual).flatMap(makeFields),
+      ...kind.hardware.map((one) => make("fieldset.plain.wide", {}, make("legend", {}, one.title), make("div.grid-fields", {}, ...one.fields.flatMap(makeFields)))));
   }
-  for (const each of fields) writeField(each, toolkit[each.name]);
+  for (const each of [...fields, ...kind.hardware.flatMap((one) => one.fields)]) writeField(each, valueOf(toolkit, each));
   const off = [state.tolerance?.peg, state.tolerance?.face];
   TOLERANCES.forEach((id, k) => {
     if (field(id) !== document.activeElement) field(id).value = fieldLength(off[k]);

@@ -3,13 +3,14 @@
  */
 import { ask } from "./api.js";
 
-/** @typedef {{name: string, label: string, form: string, hint: string|null, is_usual: boolean, least: string, choices: {value: any, words: string}[], when: Object<string, any>}} Field */
-/** @typedef {{name: string, kind: string, title: string, noun: string, mover: string, locked: string, closes: string, said: Object<string, any>, start: Object<string, any>, types: {name: string, words: string}[], fields: Field[]}} Kind */
+/** @typedef {{name: string, label: string, form: string, hint: string|null, is_usual: boolean, least: string, choices: {value: any, words: string}[], when: Object<string, any>, table: string|null}} Field */
+/** @typedef {{name: string, title: string, fields: Field[]}} Hardware */
+/** @typedef {{name: string, kind: string, title: string, noun: string, mover: string, locked: string, closes: string, said: Object<string, any>, start: Object<string, any>, types: {name: string, words: string}[], fields: Field[], hardware: Hardware[], roles: Object<string, string>}} Kind */
 
 /** What a toolkit is that does not say. */
 const USUAL = "vise";
 
-/** What a toolkit has for three dimensions, from a file; the page keeps it and has no fields for it. */
+/** What a toolkit has for three dimensions. */
 const HARDWARE = ["supports", "top_clamp"];
 
 /** @type {Kind[]} */
@@ -35,11 +36,24 @@ export function same(a, b) {
 }
 
 /**
- * What a toolkit has for three dimensions.
+ * What a toolkit says in a field.
  * @param {any} toolkit
+ * @param {Field} field
  */
-export function hardwareOf(toolkit) {
-  return Object.fromEntries(HARDWARE.filter((name) => toolkit[name]).map((name) => [name, toolkit[name]]));
+export function valueOf(toolkit, { name, table }) {
+  return (table ? toolkit[table] : toolkit)?.[name];
+}
+
+/**
+ * Say something in a field of a toolkit; null leaves it to its usual value.
+ * @param {any} toolkit
+ * @param {Field} field
+ * @param {any} value
+ */
+export function setValue(toolkit, { name, table }, value) {
+  if (value === null) return;
+  if (table) toolkit[table] = { ...toolkit[table], [name]: value };
+  else toolkit[name] = value;
 }
 
 /**
