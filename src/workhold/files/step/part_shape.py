@@ -125,7 +125,7 @@ def part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
 
 
 def levels_of(solid: SolidOutline) -> Levels:
-    """The heights at which a solid was found upright or level: of bands, and of faces with their loops' areas."""
+    """The heights of bands, and those of level faces with the areas of their loops."""
     bands = [[*band] for band in solid.bands if band is not None]
     # Files of an older program do not say how high upper faces are.
     if len(solid.top_heights) < len(solid.top):
@@ -190,7 +190,7 @@ def has_levels(levels: Levels, others: Levels) -> bool:
 
 
 def have_same(one: list[list[float]], other: list[list[float]]) -> bool:
-    """Whether each pair of numbers of two lists is in the other list, too, as nearly as corners are the same."""
+    """Whether each pair of numbers of two lists is in the other as well, as nearly as corners are the same."""
     a, b = (np.array(pairs).reshape(-1, 2) for pairs in (one, other))
     off = np.abs(a[:, None] - b[None]) - SAME_AREA * np.abs(a[:, None])
     near = off.max(axis=2, initial=-inf) <= SAME_CORNER
