@@ -190,7 +190,7 @@ def has_levels(levels: Levels, others: Levels) -> bool:
 
 
 def have_same(one: list[list[float]], other: list[list[float]]) -> bool:
-    """Whether each pair of numbers of two lists is in the other as well, as nearly as corners are the same."""
+    """Whether each pair of numbers of two lists is in the other as well, as nearly as corners agree."""
     a, b = (np.array(pairs).reshape(-1, 2) for pairs in (one, other))
     off = np.abs(a[:, None] - b[None]) - SAME_AREA * np.abs(a[:, None])
     near = off.max(axis=2, initial=-inf) <= SAME_CORNER

@@ -48,7 +48,7 @@ class PlaneFaces:
     arcs : (A, 5) centre, radius, middle angle and half the sweep of the round edges.
     arc_ends : (F + 1,) where the round edges of each face begin, and those of the last end.
     boxes : (F, 4) least x and y, greatest x and y of each face, in mm.
-    known : whether faces hold points by both rays, as far as was asked: every height asks for the same points.
+    known : whether faces hold points by both rays, once that was asked: all heights ask for the same points.
     """
 
     planes: Array
