@@ -202,6 +202,24 @@ def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: 
     return high
 
 
+def runs_of(numbers: Sequence[int]) -> str:
+    """Rising numbers in words, three and more that follow one another as a range.
+
+    Examples
+    --------
+    >>> runs_of([1, 3, 4, 6, 7, 8, 20])
+    '1, 3, 4, 6 to 8, 20'
+    """
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    words = (f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
+    return ", ".join(words)
+
+
 def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> tuple[Supports, ...]:
     """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them."""
     from workhold.model.support_request import SupportRequest
@@ -218,14 +236,14 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     for rank, one in enumerate(found, 1):
         if one.triples:
             table.add_row(str(rank), *row_of(one.triples[0], unit, with_loads))
-    bare = [str(rank) for rank, one in enumerate(found, 1) if not one.triples]
+    bare = [rank for rank, one in enumerate(found, 1) if not one.triples]
     pad, tip = unit.text(request.pad_radius), unit.text(request.tip_radius)
     held = (
         f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
     )
-    none = [f"Under {', '.join(bare)} no three hold the part."] if bare else []
+    none = [f"Under {runs_of(bare)} no three hold the part."] if bare else []
     if bare:
-        none.append(f"Under {bare[0]}: {why_none(found[int(bare[0]) - 1], unit)}")
+        none.append(f"Under {bare[0]}: {why_none(found[bare[0] - 1], unit)}")
     best = [triple for one in found for triple in one.triples]
     print_tables(
         "",

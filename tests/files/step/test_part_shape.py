@@ -73,6 +73,13 @@ def test_another_part_is_refused(result: Result, tmp_path: Path) -> None:
         path = write_step(tmp_path / "other.step", other)
         with pytest.raises(InputError, match=r"other\.step: no solid of the STEP file gives the outline"):
             result[0].save_glb(tmp_path / "a.glb", part=path)
+    # A recess from below or above leaves outline and height; along x no level face and no band shows it.
+    for recess in ((15, 12, 2, (33, 3, 0)), (15, 12, 2, (33, 3, 24))) if seen else ():
+        path = write_step(
+            tmp_path / "cut.step", cut(filleted(cut(body, BORE), 2, at_height(34)), box(*recess))
+        )
+        with pytest.raises(InputError, match=r"cut\.step: no solid of the STEP file gives the outline"):
+            result[0].save_glb(tmp_path / "a.glb", part=path)
     (tmp_path / "none.step").write_text("ISO-10303-21;")
     with pytest.raises(InputError, match=r"none\.step: "):
         result[0].save_glb(tmp_path / "a.glb", part=tmp_path / "none.step")

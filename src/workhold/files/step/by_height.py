@@ -293,7 +293,7 @@ def drawn(shape: Any, solid: StandingSolid, view: HeightView, *, is_advised: boo
     Parameters
     ----------
     shape : the solid as the file has it.
-    is_advised : whether a refusal names a height that helps, for which many are looked at.
+    is_advised : whether heights that help are named, for which many are looked at.
 
     Raises
     ------
@@ -316,7 +316,7 @@ def drawn(shape: Any, solid: StandingSolid, view: HeightView, *, is_advised: boo
     found = SolidOutline(axis, *sizes, ordered.bands, ordered.faces, **known_levels(solid))
     own = tuple(own_drawings(solid, view.heights, found))
     plain_prism = view.peg_height is None and is_prism(solid)
-    rows = [] if plain_prism else height_table(solid, room, least)
+    rows = height_table(solid, room, least) if is_advised and not plain_prism else []
     remarks = [] if plain_prism else height_remarks(outline, found, rows, ordered.feet)
     if any(band is None for band in ordered.bands):
         remarks += other_axis_remarks(shape, axis)

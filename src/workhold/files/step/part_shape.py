@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from io import BytesIO
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -25,11 +26,14 @@ from workhold.files.step.solids import along, read_solids, sub_shapes
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Pose
+from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["PartShape", "part_shape", "pose_move", "prepare"]
 
 Array = NDArray[np.float64]
+# Bands and level faces of a solid as plain data: pairs of heights, and heights with areas.
+Levels = dict[str, list[list[float]]]
 # How far chords and triangles may be from the shape, in mm and as a turn in radians.
 SAGITTA, TURN = 0.05, 0.35
 # Outlines agree where their corners do so far, in mm, and their areas to this part.
@@ -114,12 +118,24 @@ def part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
         "head_room": solid.head_room,
         "least_band": solid.least_band,
     }
-    options = {"view": view, "loops": [loop.tolist() for loop in workpiece.loops], "height": solid.height}
+    loops = [loop.tolist() for loop in workpiece.loops]
+    options = {"view": view, "loops": loops, "height": solid.height, "levels": levels_of(solid)}
     positions, normals, triangles, kept = run_apart(__name__, content, options, "the STEP file")
     return PartShape(np.array(positions), np.array(normals), np.array(triangles, dtype=np.int64), kept)
 
 
-def plain(content: bytes, view: dict[str, Any], loops: list[Any], height: float) -> Any:
+def levels_of(solid: SolidOutline) -> Levels:
+    """The heights of bands, and those of level faces with the areas of their loops."""
+    bands = [[*band] for band in solid.bands if band is not None]
+    # Files of an older program do not say how high upper faces are.
+    if len(solid.top_heights) < len(solid.top):
+        return {"bands": bands, "faces": []}
+    faces = [*((0.0, loop) for loop in solid.bottom), *zip(solid.top_heights, solid.top, strict=True)]
+    sizes = [[float(height), float(signed_area(loop_segments(np.array(loop))))] for height, loop in faces]
+    return {"bands": bands, "faces": sizes}
+
+
+def plain(content: bytes, view: dict[str, Any], loops: list[Any], height: float, levels: Levels) -> Any:
     """Mesh and shape of the solid that gives some loops, as plain data.
 
     Raises
@@ -128,11 +144,13 @@ def plain(content: bytes, view: dict[str, Any], loops: list[Any], height: float)
         As :func:`part_shape`.
     """
     wanted = [np.array(loop) for loop in loops]
-    return guarded(lambda: shape_of_outline(content, view, wanted, height), ValueError)
+    return guarded(lambda: shape_of_outline(content, view, wanted, height, levels), ValueError)
 
 
-def shape_of_outline(content: bytes, view: dict[str, Any], loops: list[Array], height: float) -> Any:
-    """Meshes and keeps the solid of a file that gives some loops, see :func:`plain`.
+def shape_of_outline(
+    content: bytes, view: dict[str, Any], loops: list[Array], height: float, levels: Levels
+) -> Any:
+    """Meshes and keeps the solid of a file that gives some loops and levels, see :func:`plain`.
 
     Raises
     ------
@@ -145,7 +163,8 @@ def shape_of_outline(content: bytes, view: dict[str, Any], loops: list[Array], h
         if abs(found.height - height) > SAME_HEIGHT:
             continue
         with suppress(InputError):
-            if is_same(loops, drawn(solid.shape, found, HeightView(**view), is_advised=False).loops):
+            own = drawn(solid.shape, found, HeightView(**view), is_advised=False)
+            if is_same(loops, own.loops) and has_levels(levels, levels_of(own.solid)):
                 return *meshed(found.shape), kept(found.shape)
     raise InputError(
         "no solid of the STEP file gives the outline of the result, as of another part or after a change: "
@@ -160,6 +179,22 @@ def is_same(loops: list[Array], others: tuple[Array, ...]) -> bool:
     near = np.abs(ours[:, None, :] - corners[None, :, :]).max(axis=2).min(axis=1)
     areas = [sum(signed_area(loop_segments(loop)) for loop in every) for every in (loops, others)]
     return bool(near.max() <= SAME_CORNER and abs(areas[0] - areas[1]) <= SAME_AREA * abs(areas[0]))
+
+
+def has_levels(levels: Levels, others: Levels) -> bool:
+    """Whether some levels are others; faces count where both are known."""
+    faces, other_faces = levels["faces"], others["faces"]
+    if faces and other_faces and (len(faces) != len(other_faces) or not have_same(faces, other_faces)):
+        return False
+    return have_same(levels["bands"], others["bands"])
+
+
+def have_same(one: list[list[float]], other: list[list[float]]) -> bool:
+    """Whether each pair of numbers of two lists is in the other as well, as nearly as corners agree."""
+    a, b = (np.array(pairs).reshape(-1, 2) for pairs in (one, other))
+    off = np.abs(a[:, None] - b[None]) - SAME_AREA * np.abs(a[:, None])
+    near = off.max(axis=2, initial=-inf) <= SAME_CORNER
+    return bool(near.any(axis=1).all() and near.any(axis=0).all())
 
 
 def kept(shape: Any) -> str:

@@ -14,7 +14,7 @@ from math import pi, sin, tan, tau
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import SHORTEST
@@ -48,6 +48,7 @@ class PlaneFaces:
     arcs : (A, 5) centre, radius, middle angle and half the sweep of the round edges.
     arc_ends : (F + 1,) where the round edges of each face begin, and those of the last end.
     boxes : (F, 4) least x and y, greatest x and y of each face, in mm.
+    known : whether faces hold points by both rays, once that was asked: all heights ask for the same points.
     """
 
     planes: Array
@@ -56,6 +57,7 @@ class PlaneFaces:
     arcs: Array
     arc_ends: NDArray[np.int64]
     boxes: Array
+    known: dict[tuple[int, Point], bool] = field(init=False, factory=dict)
 
     @classmethod
     def of(cls, faces: Sequence[SolidFace], edges: Sequence[EdgeCurve]) -> tuple[PlaneFaces, list[int]]:
@@ -103,9 +105,14 @@ class PlaneFaces:
         """Whether the upright line through a point meets a face between two z in mm; two rays must agree."""
         levels = self.levels(point)
         near = self.near(point) & (low < levels) & (levels < high)
-        return any(
-            self.holds(k, point) and self.holds(k, point, OTHER_RAY) for k in np.flatnonzero(near).tolist()
-        )
+        return any(self.surely_holds(k, point) for k in np.flatnonzero(near).tolist())
+
+    def surely_holds(self, face: int, point: Point) -> bool:
+        """Whether both rays find a point in a face of a number."""
+        key = face, point
+        if key not in self.known:
+            self.known[key] = self.holds(face, point) and self.holds(face, point, OTHER_RAY)
+        return self.known[key]
 
     def levels(self, point: Point) -> Array:
         """The z (F,) in mm of each face's plane or cone at a point."""
