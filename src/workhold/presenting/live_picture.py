@@ -35,8 +35,9 @@ __all__ = ["LivePicture", "TriedForce"]
 PAGE, RIM = (640.0, 480.0), 44.0
 # Of the names of pegs, and how far they stand off them, page units.
 NAME, OFF = 13.0, 14.0
-# How long the arrow of the usual push is, page units, and shorter than what a push is none.
-USUAL, SHORTEST = 100.0, 6.0
+# How long the arrow of the usual push is, page units, shorter than what a push is none, and how long the
+# longest arrow of a contact is.
+USUAL, SHORTEST, LONGEST = 100.0, 6.0, 170.0
 # Of the pitch, and of the width of what shows, how far jaws stand open before they close.
 OPEN_PITCHES, OPEN_SHARE = 1.5, 0.16
 # A peg lets go when its force is negative and larger than this part of the largest.
@@ -176,12 +177,17 @@ class LivePicture:
         return scene.group("moves", data_way=f"{x * scale:.9g} {-y * scale:.9g}")
 
     def write_name(self, scene: Scene, number: int) -> None:
-        """Writes the hole of a peg beside it, away from the part and within the page."""
+        """Writes the hole of a peg beside it, away from the part and within the page.
+
+        That of a clamp stands beside its body, which is behind the tip.
+        """
         peg, (_, (nx, ny)) = self.fixture.pegs[number], self.bench.contacts[number]
         (x, y), radius = self.view((peg.x, peg.y)), self.bench.radius(self.view, number)
         half = text_width(peg.hole, NAME, bold=True) / 2
-        aside = radius + OFF + abs(nx) * (half - NAME / 2)
-        at = min(max(x + aside * nx, half), PAGE[0] - half), y - aside * ny
+        dx, dy = (nx, ny) if self.result.toolkit.carrier(peg.carrier).has_lattice else (-ny, nx)
+        aside = radius + OFF + abs(dx) * (half - NAME / 2)
+        along = 0.0 if (dx, dy) == (nx, ny) else half * nx
+        at = min(max(x + aside * dx + along, half), PAGE[0] - half), y - aside * dy
         scene.text(at, peg.hole, NAME, "middle", bold=True, halo=3.0)
 
     def arrow(self, push: TriedForce) -> list[float]:
@@ -232,6 +238,8 @@ class LivePicture:
         )
         needed, loose = case.needed.value, self.fixture.pegs[case.needed.peg].hole
         most = max(*map(abs, case.largest), 1e-9)
+        # All arrows are shorter where the largest would cover the picture.
+        length = min(USUAL / self.usual, LONGEST / most)
         # A whole number of newtons that is enough.
         enough = f"{ceil(needed):,} N so that no peg lets go; below that {loose} does."
         words = [
@@ -253,7 +261,7 @@ class LivePicture:
                     "words": "lets go" if force < -NOTHING * most else f"{max(force, 0.0):,.0f} N",
                     "share": abs(force) / most,
                     "pulls": force < -NOTHING * most,
-                    "arrow": self.force_arrow(number, force),
+                    "arrow": self.force_arrow(number, length * force),
                 }
                 for number, (peg, force) in enumerate(zip(self.fixture.pegs, case.largest, strict=True))
             ],
@@ -261,10 +269,9 @@ class LivePicture:
             "words": " ".join(words),
         }
 
-    def force_arrow(self, number: int, force: float) -> list[float]:
-        """The arrow of a contact force on the part, from the contact; no longer than the page is high."""
+    def force_arrow(self, number: int, length: float) -> list[float]:
+        """The arrow of a contact force on the part; it points away from the part for a length below 0."""
         contact, (nx, ny) = self.bench.contacts[number]
-        length = max(min(force * USUAL / self.usual, PAGE[1] / 2), -PAGE[1] / 2)
         x, y = self.view(contact)
         return [float(x), float(y), float(x - length * nx), float(y + length * ny)]
 
