@@ -295,7 +295,11 @@ def reckoned(figures: Figures) -> list[Block]:
             (
                 "Reckoned: ",
                 figures.count("catalogue/parts"),
-                " parts in a vise, on a plate and against a fence, ",
+                " parts in a vise, on a plate ",
+                Marked("reference", "[3]"),
+                " and against a fence ",
+                Marked("reference", "[4]"),
+                ", ",
                 figures.count("catalogue/jobs"),
                 " searches whose seconds are drawn from those measured. They cost ",
                 figures.fixed("catalogue/core_hours", 0),
