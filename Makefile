@@ -60,7 +60,7 @@ bench: $(INSTALLED)
 # The report of the paper's figures and ours, from measurements of this run: paper/report.html and paper/report.pdf, in half an
 # hour on two cores; PAPER=--quick makes a small one, PAPER=--keep measures only what this program has not measured yet.
 paper: $(INSTALLED)
-	-$(INSTALL) distributed fsspec
+	-$(INSTALL) distributed fsspec pyarrow
 	$(BIN)/python benchmarks/make_paper.py $(PAPER)
 
 # Thousands of planted fixtures, ten thousand random SVG drawings against resvg, signals at every stage, the paper's Table 2, then

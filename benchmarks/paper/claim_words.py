@@ -59,7 +59,9 @@ def clamp(figures: Figures) -> Claim:
         ),
         (
             "About half do. A vise's right peg stands to the right of every left peg, or the jaws would "
-            "overlap; a clamp on a plate "
+            "overlap; a clamp on a plate ",
+            Marked("reference", "[3]"),
+            " "
             "may stand beside or behind a locator, or inside a hole. With one direction of the clamp, "
             "holes ",
             figures.fixed("clamp_pitch", 0),
@@ -147,7 +149,9 @@ def finite(figures: Figures) -> Claim:
             "Section 6",
         ),
         (
-            "By the paper's own test, simultaneous contact and force closure, there are parts with "
+            "By the paper's own test, simultaneous contact and force closure ",
+            Marked("reference", "[5]"),
+            ", there are parts with "
             "infinitely many. In the witness two "
             "left pegs hold an upright from both sides and two right pegs a cross bar from above and "
             "below. In rational numbers all "

@@ -45,8 +45,9 @@ def abstract(every: Mapping[str, Figures]) -> Line:
         "A fixture vise holds a flat workpiece of lines and arcs by four pegs in two lattices of holes. "
         "Wallack and Canny ",
         Marked("reference", "[1]"),
-        " enumerate all such fixtures. This report runs their algorithm and a faster one, both proven, "
-        "on models of their workpieces.",
+        " enumerate all such fixtures, as they did for polygons before ",
+        Marked("reference", "[2]"),
+        ". This report runs their algorithm and a faster one, both proven, on models of their workpieces.",
     ]
     one = every.get("table-one")
     if one is not None and one.value("together"):

@@ -147,7 +147,7 @@ def told_of_large(figures: Figures) -> list[Inline]:
     return [
         "Over the points with more than ",
         figures.count("large"),
-        " contacts, where what any search costs has ceased to count, it grows as A to the power ",
+        " contacts, of which what any search costs is a smaller part, it grows as A to the power ",
         figures.fixed("time_large/exponent", 2),
         " ± ",
         figures.fixed("time_large/error", 2),

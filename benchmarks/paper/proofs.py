@@ -85,13 +85,15 @@ def render(figures: Figures) -> list[Block]:
             "whole ranges of orientation. "
             "Of all candidates ",
             figures.percent("together/discarded_share"),
-            " break a rule wherever "
-            "rounding may have put them; "
-            "the others are proven by a certificate that exactly one solution lies near, or named as "
+            " break a rule wherever rounding may have put them; the others are proven by a certificate ",
+            Marked("reference", "[8]"),
+            " that exactly one solution lies near, or named as "
             "undecided. A fixture found from "
             "both faces of a joint, or either way round, counts twice among the proven candidates and "
             "once among the fixtures. "
-            "The verification derives each listed fixture again in ball arithmetic of ",
+            "The verification derives each listed fixture again in ball arithmetic ",
+            Marked("reference", "[7]"),
+            " of ",
             figures.count("most_bits"),
             " bits at most, from the drawing alone, in ",
             figures.significant("together/ms", 2),

@@ -84,16 +84,13 @@ def run_catalogue(data: dict[str, Any], folder: Path, count: int) -> Iterator[tu
     fewer = write_parts(folder / "fewer", max(count // TENTH, 1))
     known, few = run_batch(parts, folder / "one", 1), run_batch(fewer, folder / "two", 1)
     more = jobs - max(count // TENTH, 1) * len(TOOLKITS)
-    sizes = {
-        name: (folder / "one" / name).stat().st_size
-        for name in ("report.html", "results.parquet", "best.parquet")
-        if (folder / "one" / name).exists()
-    }
+    tables = [path for kind in ("results.*", "best.*") for path in (folder / "one").glob(kind)]
+    page = folder / "one" / "report.html"
     data["each"] = {
         "processor": alone.processor / jobs,
         "record": sum(size for size, _ in records.values()) / jobs,
-        "page": sizes.get("report.html", 0) / jobs,
-        "tables": sum(size for name, size in sizes.items() if name != "report.html") / jobs,
+        "page": page.stat().st_size / jobs,
+        "tables": sum(path.stat().st_size for path in tables) / jobs,
         "memory": max(known.memory - few.memory, 0) / more,
         "known": max(known.processor - few.processor, 0.0) / more,
     }
@@ -298,7 +295,11 @@ def reckoned(figures: Figures) -> list[Block]:
             (
                 "Reckoned: ",
                 figures.count("catalogue/parts"),
-                " parts in a vise, on a plate and against a fence, ",
+                " parts in a vise, on a plate ",
+                Marked("reference", "[3]"),
+                " and against a fence ",
+                Marked("reference", "[4]"),
+                ", ",
                 figures.count("catalogue/jobs"),
                 " searches whose seconds are drawn from those measured. They cost ",
                 figures.fixed("catalogue/core_hours", 0),
