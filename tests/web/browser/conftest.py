@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from lesson_page import STATIC, LessonPage
 from running_server import RunningServer
 from walking import Walk
 
@@ -38,3 +39,13 @@ def walk(browser: Any, server: RunningServer) -> Iterator[Walk]:
     context.close()
     assert walk.troubles == []
     assert all(address.startswith((walk.home, "data:", "blob:")) for address in walk.asked)
+
+
+@pytest.fixture
+def shown(browser: Any) -> Iterator[LessonPage]:
+    """The page as a file, as in the manual; at the end nothing may have gone wrong unseen."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    page = LessonPage(context.new_page(), (STATIC / "index.html").as_uri())
+    yield page
+    context.close()
+    assert page.troubles == []

@@ -93,7 +93,7 @@ def test_the_pictures_of_the_method_open_as_files(site: Path, browser: Any) -> N
     links = page.locator("a:visible").evaluate_all("(all) => all.map((one) => one.href)")
     page.close()
     assert troubles == []
-    assert len(links) >= 2
+    assert len(links) >= 3
     assert [link for link in links if not Path(link.removeprefix("file://")).exists()] == []
     for name in ("method.html", "index.html"):
         assert 'href="explained/index.html"' in (site / name).read_text()
