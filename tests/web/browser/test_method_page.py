@@ -210,3 +210,25 @@ def test_sampling_finds_what_numpy_says(shown: LessonPage, name: str) -> None:
         before = max(before, len(expected))
     assert before > 0
     assert len(shown.put("every-one", 0)["found"]) < len(every)
+
+
+def test_distances_are_outward_of_every_kind_of_feature(shown: LessonPage) -> None:
+    """A point moved off a line, a convex or a hollow arc along its outward normal is as far outside as it was moved."""
+    seen = set()
+    for name in EXAMPLES:
+        for row in shown.lesson(name)["features"]:
+            seen.add((row[0], row[7]))
+            size = min(1.0, row[6]) if row[0] else 1.0
+            for off in (-0.3 * size, 0.7 * size):
+                found = shown.page.evaluate(
+                    """([row, off]) => {
+                      const along = 0.4 * featureLength(row);
+                      const point = pointAlong(row, along);
+                      const normal = outwardNormal(row, point);
+                      const moved = [point[0] + off * normal[0], point[1] + off * normal[1]];
+                      return [distanceOutside(row, moved), nearestAlong(row, moved) - along];
+                    }""",
+                    [row, off],
+                )
+                assert np.allclose(found, [off, 0.0], atol=1e-9)
+    assert seen == {(0, 1), (1, 1), (1, -1)}
