@@ -38,6 +38,8 @@ __all__ = ["asked_thickness", "report_supported", "supports"]
 
 # Fixtures for which a search looks for supports.
 MOST_SUPPORTED = 20
+# What keeps pads and the clamp off places.
+KEEP_OFF = ("--keep-out-below", "--keep-out-above")
 PART, SUPPORTS, CLAMP = "Heights of the part", "Supports", "The clamp on top"
 
 
@@ -224,6 +226,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them."""
     from workhold.model.support_request import SupportRequest
     from workhold.supports.listing import supports_of_best
+    from workhold.supports.notes import flat_faces_notes
     from workhold.supports.why_none import why_none
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
@@ -251,22 +254,10 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         held,
         *none,
         *before_first(best),
-        *flat_faces(result.workpiece),
+        *flat_faces_notes(result.workpiece, KEEP_OFF),
         stream=stream,
     )
     return found
-
-
-def flat_faces(workpiece: Workpiece) -> list[str]:
-    """Says that a solid is taken to be flat below or on top, where no level face of it is known."""
-    solid = workpiece.solid
-    lacking = [] if solid is None else [name for name in ("bottom", "top") if not getattr(solid, name)]
-    if not lacking:
-        return []
-    return [
-        f"No level face of the part is known at its {' and '.join(lacking)}, which is taken to be flat as far "
-        "as the outline goes: keep pads and tip off the rest with --keep-out-below and --keep-out-above."
-    ]
 
 
 def before_first(listed: Sequence[Triple]) -> list[str]:
@@ -363,16 +354,10 @@ def row_of(triple: Triple, unit: Unit, with_loads: bool) -> list[str]:
 
 def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
     """Says what the figures mean, and what has to be set otherwise than for the fixture alone."""
+    from workhold.supports.notes import listing_notes
+
     notes = [
         "The clamp presses at that point of the part's coordinates. Its force times the tipping arm is the "
         "moment that tips the part; where the last figure is above 0, the part stands before it is clamped."
     ]
-    if found.loads:
-        notes.append(f"All for a closing force of {found.jaw_force:.0f} N, without friction.")
-    moved = {one.travel for one in listed if one.travel is not None}
-    if any(abs(one - found.fixture.jaw_separation) > 1e-6 for one in moved):
-        notes.append(
-            "With these supports the jaws stand elsewhere in their holes, opened to "
-            f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
-        )
-    return notes + before_first(listed) + flat_faces(found.query.workpiece)
+    return notes + before_first(listed) + listing_notes(found, listed, unit, KEEP_OFF)

@@ -30,6 +30,9 @@ from workhold.web.worker import Order
 
 __all__ = ["SupportsOrder", "chosen_supports", "find_supports"]
 
+# What keeps pads and the clamp off places, as the page calls it.
+KEEP_OFF = ('"Keep pads off"', '"Keep the clamp off"')
+
 
 @frozen(eq=False)
 class SupportsOrder:
@@ -192,30 +195,13 @@ def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, fl
 
 
 def notes_of(found: Supports, unit: str) -> list[str]:
-    """Says what is not seen in the figures, and what has to be set otherwise than for the fixture alone."""
-    given, listed = unit_named(unit), found.triples
-    notes = []
-    if not listed:
-        from workhold.supports.why_none import why_none
+    """Says why there are no sets, or what their figures do not show."""
+    from workhold.supports.notes import listing_notes
+    from workhold.supports.why_none import why_none
 
-        notes.append(why_none(found, given))
-    if found.loads and listed and found.jaw_force > 0:
-        notes.append(f"All for a closing force of {found.jaw_force:.0f} N, without friction.")
-    moved = {one.travel for one in listed if one.travel is not None}
-    if any(abs(one - found.fixture.jaw_separation) > 1e-6 for one in moved):
-        opened = ", ".join(given.text(one) for one in sorted(moved))
-        notes.append(
-            f"With supports the jaws stand elsewhere in their holes, opened to {opened}; columns are counted "
-            "as for the fixture."
-        )
-    solid = found.query.workpiece.solid
-    lacking = [] if solid is None else [name for name in ("bottom", "top") if not getattr(solid, name)]
-    if lacking:
-        notes.append(
-            f"No level face of the part is known at its {' and '.join(lacking)}, which is taken to be flat "
-            "as far as the outline goes: keep pads and clamp off the rest."
-        )
-    return notes
+    given, listed = unit_named(unit), found.triples
+    reasons = [] if listed else [why_none(found, given)]
+    return reasons + listing_notes(found, listed, given, KEEP_OFF)
 
 
 def boxes_of(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:

@@ -1,0 +1,62 @@
+"""What is said beside a list of supports: the same words on the command line and on the page, each with its remedy."""
+
+from __future__ import annotations
+
+import pytest
+from attrs import evolve
+
+import workhold
+from own_heights import BASE, stepped
+from workhold import Vise
+from workhold.cli.supports_command import notes_of as notes_of_command
+from workhold.model.support_request import SpatialLoad, SupportRequest
+from workhold.model.support_triples import Supports
+from workhold.supports.listing import supports_of
+from workhold.supports.notes import flat_faces_notes
+from workhold.units import unit_named
+from workhold.web.support_tasks import notes_of as notes_of_page
+
+LOAD = SpatialLoad(points=[[20, 15]], force=150.0)
+
+
+@pytest.fixture(scope="module")
+def found() -> Supports:
+    """The best sets under the first fixture of a vise that stands elsewhere with supports, of a part with no level faces."""
+    part = stepped({})
+    result = workhold.design(part, Vise(10, 4, 3))
+    for fixture in result:
+        request = SupportRequest.of(part, 30.0, toolkit=result.toolkit)
+        some = supports_of(fixture, result.query, request, [LOAD], best=3)
+        if some.triples:
+            opened = fixture.jaw_separation + 20.0
+            return evolve(some, triples=tuple(evolve(one, travel=opened) for one in some.triples))
+    raise AssertionError("take another part")
+
+
+def test_both_say_the_same(found: Supports) -> None:
+    """Closing force, openings, and what is taken to be flat; in the unit that is asked for."""
+    page = notes_of_page(found, "mm")
+    command = notes_of_command(found, found.triples, unit_named("mm"))
+    assert len(page) == 3 and "closing force" in page[0] and "opened to" in page[1]
+    assert command[-3:-1] == page[:2]
+    assert (
+        command[-1]
+        .replace("--keep-out-below", '"Keep pads off"')
+        .replace("--keep-out-above", '"Keep the clamp off"')
+        == (page[2])
+    )
+    assert "bottom and top" in page[2]
+    assert unit_named("inch").text(found.triples[0].travel) in notes_of_page(found, "inch")[1]
+
+
+def test_nothing_is_said_of_what_is_not_there(found: Supports) -> None:
+    """Without loads, openings of their own, or a solid; one known side leaves the other to be named alone."""
+    still = tuple(evolve(one, travel=found.fixture.jaw_separation) for one in found.triples)
+    plain = evolve(found, triples=still, loads=())
+    assert [note for note in notes_of_page(plain, "mm") if "level face" not in note] == []
+    assert flat_faces_notes(workhold.load("widget"), ("a", "b")) == []
+    part = stepped({})
+    assert part.solid is not None
+    known = evolve(part, solid=evolve(part.solid, bottom=[BASE]))
+    (note,) = flat_faces_notes(known, ("a", "b"))
+    assert "at its top," in note and note.endswith("off the rest with b.")
