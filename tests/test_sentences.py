@@ -15,7 +15,8 @@ SOURCES = Path(__file__).parent.parent / "src" / "workhold"
 # An option of the command line; custom properties of style sheets stand in brackets or before a colon.
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
 # What is part of the command line: the commands, and the starting of the server for one.
-OF_THE_COMMAND = {"__main__.py", "web/serve.py"}
+# The checker of the benchmark is a command by itself.
+OF_THE_COMMAND = {"__main__.py", "data/benchmark/check.py", "web/serve.py"}
 # Commands to be typed, quoted as such: another program's, and one in a report.
 QUOTED = ("pip install --force-reinstall", "workhold sheet ")
 

@@ -141,6 +141,29 @@ def other_jaw(content: Content) -> None:
     pegs[0]["jaw"] = "right"
 
 
+def one_hole(content: Content) -> None:
+    """Put a peg into the hole of another one."""
+    pegs = content["fixtures"][0]["pegs"]
+    pegs[1] = dict(pegs[0])
+
+
+def clamp_on_a_locator(content: Content) -> None:
+    """Put a clamp's tip where a locator stands."""
+    pegs = content["fixtures"][0]["pegs"]
+    pegs[3]["x"], pegs[3]["y"] = pegs[0]["x"], pegs[0]["y"]
+
+
+def part_under_a_peg(content: Content) -> None:
+    """Draw a further loop where a peg stands."""
+    made = content["fixtures"][0]
+    theta = math.radians(made["pose"]["theta_deg"])
+    x, y = (made["pegs"][0][key] - made["pose"][key] for key in ("x", "y"))
+    q = [math.cos(theta) * x + math.sin(theta) * y, math.cos(theta) * y - math.sin(theta) * x]
+    content["workpiece"]["loops"].append(
+        [[q[0] + a, q[1] + b, 0.0] for a, b in ((0.5, 0.5), (0.6, 0.5), (0.5, 0.6))]
+    )
+
+
 def all_of_a_type(content: Content) -> None:
     """Leave out every fixture of Type II."""
     content["fixtures"] = [f for f in content["fixtures"] if f["type"] == "I"]
@@ -176,6 +199,11 @@ FORGERIES: dict[str, tuple[str, Forgery, str]] = {
     "a fixture of a symmetric part lost": (SYMMETRIC, lost(100), "image"),
     "a fixture of a vise lost": (VISE, lost(52), "missing"),
     "a fixture lost, counts as before": (VISE, lambda c: c["fixtures"].pop(3), "counts"),
+    "a fixture beside a fence lost": (FENCE, lost(11), "missing"),
+    "a fixture of a fence and two clamps lost": ("el-fence-pair", lost(23), "missing"),
+    "two pegs in one hole": (VISE, one_hole, "one hole"),
+    "a clamp on a locator": (PLATE, clamp_on_a_locator, "meets a locator"),
+    "a peg within the part": (VISE, part_under_a_peg, "enters"),
     "every fixture of a type lost": (VISE, all_of_a_type, "missing"),
     "a fixture doubled": (VISE, doubled(7), "again"),
     "a fixture doubled, moved by 1e-8": (VISE, doubled(7, x=1e-8), "again"),

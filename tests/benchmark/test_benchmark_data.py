@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
 from workhold.benchmark.catalogue import data_bytes, manifest, query_of, sets
 from workhold.benchmark.entry import entered_fixture
 from workhold.benchmark.matching import Places, compared
@@ -94,6 +95,7 @@ def test_the_datasheet_counts_what_there_is() -> None:
     page = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
     assert f"{len(sets())} sets" in page
     assert f"{len(manifest()['workpieces'])} workpieces" in page
+    assert f"refuses {len(FORGERIES) + len(MANIFEST_ONLY)} kinds of forged files" in page
     for kind, clamps in (("vise", 1), ("edge", 1), ("flat-jaw", 1), ("opening-vise", 1)):
         of = [e for e in sets() if e.toolkit["kind"] == kind and e.toolkit.get("clamps", 1) == clamps]
         total, empty = sum(e.size for e in of), sum(e.size == 0 for e in of)

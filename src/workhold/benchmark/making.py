@@ -140,9 +140,7 @@ def load_arrow() -> tuple[Any, Any]:
         import pyarrow
         import pyarrow.parquet
     except ImportError as error:
-        raise InputError(
-            "--parquet needs pyarrow: pip install 'workhold[batch]', or leave it out for JSON."
-        ) from error
+        raise InputError("Parquet needs pyarrow: pip install 'workhold[batch]', or ask for JSON.") from error
     return pyarrow, pyarrow.parquet
 
 

@@ -119,18 +119,18 @@ def compared(complete: Places, theirs: Places, tolerance: float, symmetric: bool
     symmetric : whether a fixture stands for all that a rotation of the part carries it into.
     """
     index = Index.of(complete.places, tolerance)
-    hits: set[int] = set()
+    hits, met = set[int](), set[int | None]()
     extra, repeated = list[int](), list[int]()
     for number, place in enumerate(theirs.places):
-        images = complete.images(place) if symmetric else [place]
         own = index.nearest(place)
-        every = [own, *(index.nearest(one) for one in images[1:])]
-        known = {one for one in every if one is not None}
+        images = complete.images(place)[1:] if symmetric else []
+        known = {one for one in (own, *map(index.nearest, images)) if one is not None}
         if not known:
             extra.append(number)
-        elif own in hits or (own is None and known <= hits):
+        elif own in met:
             repeated.append(number)
         hits |= known
+        met.add(own)
     missed = tuple(number for number in range(len(complete.places)) if number not in hits)
     return Comparison(
         listed=len(complete.places),

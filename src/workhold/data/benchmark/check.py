@@ -5,8 +5,8 @@
 Written from the published rules, apart from the program that made the lists: every fixture is judged (holes,
 contacts, no overlap, clearances, closure, forces, figures), then the list (each once, in order, counts,
 account of the search), then its completeness as far as a short program can. Images under the part's own
-rotations must be listed, and so must every fixture that this program finds by itself: from random starts by
-Newton's method, and of each pose all clamps in closed form. With the manifest, the checksums decide.
+rotations must be listed, and so must every fixture that this program finds by itself: beside a
+fence all in closed form, else from random starts by Newton's method. With the manifest, the checksums decide.
 
 Each fault is one line on the output. The exit code is 0 where there is none, and 2 otherwise.
 
@@ -1129,6 +1129,115 @@ class Finder:
         return {"type": kind, **said, "pegs": pegs, "pose": self.pose(x[0], shift - low * pitch)}
 
 
+class WallFinder:
+    """Finds every fixture beside a fence: one orientation for each hull edge, the rest in closed form."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.bench, self.outline = bench, bench.outline
+        self.clamping = Finder(bench, 0)
+
+    def flush(self) -> list[tuple[float, float, float, float]]:
+        """Orientation and height of the part on each hull edge, and from where to where it touches, its x at 0."""
+        o = self.outline
+        arcs = [k for k in np.flatnonzero(o.arc) if o.sign[k] > 0]
+        discs = [(*p, 0.0, -1) for p in o.a] + [(*o.c[k], o.r[k], k) for k in arcs]
+        found: list[tuple[float, float, float, float]] = []
+        for one, two in product(discs, discs):
+            v = np.array(two[:2]) - np.array(one[:2])
+            size = np.hypot(*v)
+            if size <= abs(one[2] - two[2]) + EDGE:
+                continue
+            # The common tangent that has both on its left.
+            along = np.arctan2(v[1], v[0]) - np.arcsin((two[2] - one[2]) / size)
+            n = np.array([np.sin(along), -np.cos(along)])
+            t = np.array([-n[1], n[0]])
+            if any(k >= 0 and not o.directed(k, np.arctan2(n[1], n[0])) for k in (one[3], two[3])):
+                continue
+            heights = [float(n @ p) for p in o.a]
+            heights += [float(n @ o.c[k]) + o.r[k] for k in arcs if o.directed(k, np.arctan2(n[1], n[0]))]
+            top = float(n @ np.array(one[:2])) + one[2]
+            if max(heights) > top + TOL:
+                continue
+            at = [float(t @ np.array(p[:2])) for p in discs if self.reaches(p, n, top)]
+            edge = (float(-along % (2 * pi)), top, min(at), max(at))
+            new = all(abs(np.sin((edge[0] - other[0]) / 2)) > 1e-7 for other in found)
+            if edge[3] - edge[2] > EDGE and new:
+                found.append(edge)
+        return found
+
+    def reaches(self, disc: Any, n: Any, top: float) -> bool:
+        """Whether a corner or an arc touches the line of a height."""
+        on = disc[3] < 0 or self.outline.directed(disc[3], np.arctan2(n[1], n[0]))
+        return bool(on and abs(float(n @ np.array(disc[:2])) + disc[2] - top) < TOL)
+
+    def found(self) -> Fixtures:
+        """Fixtures in the form of the file, as far as judging them needs it; those that do not fit among them."""
+        bench, kit, pitch, made = self.bench, self.bench.kit, self.bench.pitch, list[dict[str, Any]]()
+        rows = kit["rows"] or int((self.outline.diameter + 2 * bench.rho) / pitch[1]) + 2
+        for theta, top, x0, x1 in self.flush():
+            R = rotation(theta)
+            for row in range(rows):
+                y = bench.base[1] + row * pitch[1]
+                start = np.array([0.0, y - top])
+                for x, segment in self.outline.hits(R.T @ start, R.T @ np.array([1.0, 0.0]), bench.rho):
+                    shift = np.array([-x, top])
+                    made += self.with_clamps(
+                        R, theta, shift, (row, int(self.outline.face[segment])), (x0 - x, x1 - x)
+                    )
+        return made
+
+    def with_clamps(self, R: Any, theta: float, shift: Any, stop: Any, ends: Any) -> Fixtures:
+        """Every choice of clamps beside a locator at x = 0."""
+        bench, kit, pitch, options = self.bench, self.bench.kit, self.bench.pitch, []
+        ways = {d for one in kit["directions"] for d in ([one] if isinstance(one, str) else one)}
+        span = ((self.outline.diameter + 2 * bench.rho) / pitch).astype(int) + 2
+        for role in sorted(ways):
+            axis, d = (1 if role[1] == "x" else 0), np.abs(np.array(DIRECTIONS[role]))
+            for line in range(0 if axis else -span[0], span[axis] + 1):
+                base = bench.base * axis
+                base = base + (1 - d) * line * pitch
+                for s, seg in self.outline.hits(R.T @ (base - shift), R.T @ d, bench.tip):
+                    options.append((role, line, base + s * d, int(self.outline.face[seg])))
+        asked = {tuple(sorted(p)) for p in kit["directions"]} if bench.pairs else set()
+        made = []
+        for clamps in combinations(options, 2) if bench.pairs else ((one,) for one in options):
+            if bench.pairs and tuple(sorted(c[0] for c in clamps)) not in asked:
+                continue
+            low = min([0, *(c[1] for c in clamps if c[0][1] == "y")])
+            made.append(self.fixture(sorted(clamps, key=self.order), theta, shift, stop, ends, low))
+        return [one for one in made if one is not None]
+
+    def order(self, clamp: Any) -> Any:
+        """What two clamps are ordered by."""
+        return list(DIRECTIONS).index(clamp[0]), clamp[1], clamp[3]
+
+    def fixture(
+        self, clamps: Any, theta: float, shift: Any, stop: Any, ends: Any, low: int
+    ) -> dict[str, Any] | None:
+        """A fixture shifted to column 0; None where there are too few columns or rows."""
+        kit, away = self.bench.kit, -low * self.bench.pitch[0]
+        columns = [0, *(c[1] for c in clamps if c[0][1] == "y")]
+        rows = [stop[0], *(c[1] for c in clamps if c[0][1] == "x")]
+        for values, lowest, key in ((columns, low, "columns"), (rows, 0, "rows")):
+            if kit[key] is not None and max(values) - lowest >= kit[key]:
+                return None
+        y = self.bench.base[1] + stop[0] * self.bench.pitch[1]
+        pegs: Fixtures = [
+            {"role": "locator", "column": -low, "row": stop[0], "x": away, "y": y, "segment": stop[1]}
+        ]
+        for role, line, tip, face in clamps:
+            place = {"row": line} if role[1] == "x" else {"column": line - low}
+            at = {"x": tip[0] + away, "y": tip[1], "segment": face}
+            pegs.append({"role": "clamp", "direction": role, **place, **at})
+        zero: Any = [[0.0, 0.0]] * 2 if self.bench.pairs else [0.0, 0.0]
+        wall = {"from": [ends[0] + away, 0.0], "to": [ends[1] + away, 0.0], "forces": zero}
+        ways = [c[0] for c in clamps]
+        said = {"directions": ways} if self.bench.pairs else {"direction": ways[0]}
+        kind = "edge2" if self.bench.pairs else "edge"
+        pose = self.clamping.pose(theta, shift + np.array([away, 0.0]))
+        return {"type": kind, **said, "pegs": pegs, "pose": pose, "wall": wall}
+
+
 class Unlisted(Batch):
     """Fixtures that this program found: judged by the rules alone, for nothing is written of them."""
 
@@ -1160,7 +1269,8 @@ def own_search_faults(bench: Bench, listed: Listed, starts: int, seed: int) -> t
     if starts == 0 or (bench.kit.get("travel") is not None) or bench.kit.get("blocked"):
         return [], 0
     faults, seen = [], set()
-    found = Finder(bench, seed).found(starts)
+    fence = bench.kind == "edge"
+    found = WallFinder(bench).found() if fence else Finder(bench, seed).found(starts)
     for members in groups(bench, found).values():
         batch = Unlisted(bench, [found[n] for n in members])
         batch.judge()
@@ -1221,9 +1331,9 @@ def check(
     missing, met = own_search_faults(bench, listed, starts, seed)
     faults += missing
     if notes is not None and fixtures:
-        notes.append(
-            f"a search from {starts} random starts met {met} of the {len(fixtures)} fixtures by itself"
-        )
+        how = "in closed form" if bench.kind == "edge" else f"from {starts} random starts"
+        by_itself = f"a search {how} met {met} of the {len(fixtures)} fixtures by itself"
+        notes.append(by_itself if met else "nothing was searched for: completeness rests on the manifest")
     return faults + (sums_faults(content, text, manifest) if manifest else [])
 
 
