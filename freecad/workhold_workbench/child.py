@@ -18,6 +18,10 @@ OWN_VARIABLES = ("PYTHONPATH", "PYTHONHOME", "LD_LIBRARY_PATH")
 NAP = 0.05
 
 
+# What is said of a child that the system or somebody else has ended.
+ENDED = "Workhold was ended before it had an answer: choose the command again."
+
+
 class Refusal(Exception):
     """A sentence that says what cannot be done, and what to do."""
 
@@ -95,6 +99,8 @@ def run(*words, cancel=None, wait=None):
             cancel = None
     child.wait()
     error = said["stderr"].decode("utf-8", "replace")
+    if child.returncode < 0:
+        raise Refusal(ENDED)
     if child.returncode not in (0, 143):
         lines = [line for line in error.splitlines() if "error: " in line] or error.splitlines()[-1:]
         sentence = lines[-1].split("error: ", 1)[-1].strip() if lines else "workhold ended without a word."
@@ -105,5 +111,15 @@ def run(*words, cancel=None, wait=None):
 
 
 def answer(*words, cancel=None, wait=None):
-    """The object that the command prints with ``--json``."""
-    return json.loads(run(*words, "--json", cancel=cancel, wait=wait))
+    """The object that the command prints with ``--json``.
+
+    Raises
+    ------
+    Refusal
+        As of :func:`run`, and where it ended before it had printed all.
+    """
+    printed = run(*words, "--json", cancel=cancel, wait=wait)
+    try:
+        return json.loads(printed)
+    except ValueError:
+        raise Refusal(ENDED) from None
