@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from time import monotonic
 from typing import Any
 
 import httpx
@@ -88,8 +89,11 @@ def test_a_job_that_is_followed_or_asked_for_goes_on(impatient: RunningServer) -
             if line.startswith("data: ") and json.loads(line.removeprefix("data: "))["seconds"] > 3 * LEFT:
                 break
         assert not job.is_over
+        before = monotonic()
     impatient.wait_until(lambda: job.is_over)
     assert job.state == "cancelled"
+    # It was in use until the connection was gone, and the time counts from there.
+    assert job.used >= before
     url = impatient.submit(LONG, "/api/v1/jobs?when_left=cancel")
     asked_for = impatient.state_when(url, lambda state: state["seconds"] > 3 * LEFT)
     assert asked_for["state"] in ("running", "listing")
