@@ -26,11 +26,16 @@ changed = held.State
 again = fixture.design(held)
 same = fixture.chosen_holes(held) == before
 longer = distances(held)
+fixture.choose(held, 10)
+other = fixture.chosen_holes(held)
+block.Length = 65
+document.recompute()
+second = [fixture.design(held), fixture.chosen_holes(held) == other]
 fixture.choose(held, 3)
 document.saveAs("held.FCStd")
 App.closeDocument("held")
 opened = App.openDocument("held.FCStd").getObject("Fixture")
-answered(first=first, changed=changed, again=again, same=same, distance=distance, longer=longer,
+answered(first=first, changed=changed, again=again, same=same, second=second, distance=distance, longer=longer,
          opened=[opened.State, len(opened.Group), isinstance(opened.Proxy, fixture.Fixture)],
          rows=len(fixture.rows(opened)))
 """
@@ -38,6 +43,9 @@ answered(first=first, changed=changed, again=again, same=same, distance=distance
     assert answer["first"] == "Fixture 1 of 20."
     assert answer["changed"] == "The part has changed: design again."
     assert (answer["again"], answer["same"]) == ("Fixture 1 of 20.", True)
+    # One that is not the first of the list is looked for, too.
+    words, same = answer["second"]
+    assert same and words.startswith("Fixture ") and words != "Fixture 1 of 20."
     for distances in (answer["distance"], answer["longer"]):
         touching = {name: far for name, far in distances.items() if not name.startswith("bolt")}
         assert len(touching) == 6 and set(touching.values()) == {0.0}
