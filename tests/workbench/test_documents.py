@@ -293,6 +293,8 @@ answered(said=said, bodies=[bodies, len(held.Group)])
         assert sentence.startswith("refused: ") and sentence.endswith(".") and "Traceback" not in sentence
     ball, cone, both = answer["said"]
     assert "upright" in ball and "upright" in cone, answer["said"]
+    # In the words of the panel: no option of the command, and no name of a file.
+    assert ball.startswith("refused: Ball: ") and "--" not in ball + cone
     assert both == "refused: Both has 2 solids: choose a body with one."
     assert answer["bodies"][0] == answer["bodies"][1] == 8
 
