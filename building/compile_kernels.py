@@ -226,6 +226,18 @@ def emit(part: str, folder: Path) -> None:
         (folder / f"{kernel.__name__}.json").write_text(json.dumps(told))
 
 
+def is_built(folder: Path) -> bool:
+    """Whether the library in a folder is that of these sources, for machines of this kind."""
+    os.environ["WORKHOLD_KERNELS"] = "building"
+    sys.path.insert(0, str(SOURCES))
+    from workhold.kernels.base.built import Library, library_name, source_hash
+
+    try:
+        return bool(Library(folder / library_name()).source_hash == source_hash())
+    except (OSError, AttributeError, ValueError):
+        return False
+
+
 def build(folder: Path, parts: Sequence[str] = ()) -> Path:
     """Build the library of these sources, or of some parts of them, into a folder, unless it is there; return its path.
 
@@ -234,16 +246,12 @@ def build(folder: Path, parts: Sequence[str] = ()) -> Path:
     SystemExit
         In one sentence, where there is no linker, or a kernel cannot be compiled.
     """
-    os.environ["WORKHOLD_KERNELS"] = "building"
-    sys.path.insert(0, str(SOURCES))
-    from workhold.kernels.base.built import Library, library_name, source_hash
+    fits = is_built(folder)
+    from workhold.kernels.base.built import library_name, source_hash
 
     path, wanted = folder / library_name(), source_hash()
-    try:
-        if Library(path).source_hash == wanted:
-            return path
-    except (OSError, AttributeError, ValueError):
-        pass
+    if fits:
+        return path
     linker = shutil.which("cc") or shutil.which("ld")
     if linker is None:
         sys.exit("Building the kernels needs a linker: install gcc or binutils.")
@@ -261,6 +269,9 @@ def build(folder: Path, parts: Sequence[str] = ()) -> Path:
         write_exports(objects / "exports.o", {"source_hash": wanted, "kernels": kernels})
         if sys.platform == "darwin":
             options = ["-dynamiclib", "-undefined", "dynamic_lookup"]
+        elif sys.platform == "win32":
+            # Of MinGW, whose C library is linked to; untested.
+            options = ["-shared", "-s"]
         else:
             # What is left open, the functions of libm and malloc, is found in the process that loads the library.
             options = ["-shared", "-s"] + (["-nostdlib"] if linker.endswith("cc") else [])

@@ -4,6 +4,7 @@ kernels that are compiled on first use, byte for byte.
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -21,6 +22,11 @@ import workhold
 
 ROOT = Path(workhold.__file__).parents[2]
 VISE = ("--peg-radius", "3", "--threads")
+# What of the C library and of libm the kernels may call: musl and glibc have these.
+OF_C = {
+    *("malloc", "free", "memcpy", "memset", "acos", "asin", "atan", "atan2", "ceil", "cos", "exp2", "floor"),
+    *("fmod", "hypot", "sin", "sincos"),
+}
 # A part with arcs, one with many fixtures on two threads, a drawing with loads, and a table.
 DESIGNS = (
     ("widget.json", "widget", "--pitch", "10", "--columns", "1", *VISE, "1"),
@@ -90,13 +96,14 @@ def without_numba(built, tmp_path_factory) -> dict[str, str]:
         "--no-index",
         wheel,
     ]
-    subprocess.run(install, check=True)
+    kept = {key: value for key, value in os.environ.items() if not key.startswith(("WORKHOLD", "PYTHON"))}
+    subprocess.run(install, check=True, env=kept)
     for name in needed_by(metadata.Distribution.at(next(packages.glob("workhold-*.dist-info")))):
         for top in {path.parts[0] for path in metadata.files(name) or () if path.parts[0] != ".."}:
             if not (packages / top).exists():
                 (packages / top).symlink_to(Path(sysconfig.get_paths()["purelib"]) / top)
-    kept = {key: value for key, value in os.environ.items() if not key.startswith(("WORKHOLD", "PYTHON"))}
-    return {**kept, "VIRTUAL_ENV": str(home)}
+    # No compiler, no linker and no other Python can be found.
+    return {**kept, "VIRTUAL_ENV": str(home), "PATH": str(home / "bin")}
 
 
 def needed_by(distribution: metadata.Distribution) -> set[str]:
@@ -136,8 +143,14 @@ def test_the_sdist_has_what_it_takes_to_build_test_and_cite(built):
         "Containerfile",
         "constraints.txt",
         "mkdocs.yml",
+        "conda/recipe/recipe.yaml",
+        "freecad/package.xml",
+        "examples/clients/workhold.mjs",
     ):
         assert name in names
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False)
+    left = {name for name in tracked.stdout.splitlines() if not name.startswith(".")}
+    assert left - names == set()
     for folder, ending in (
         ("docs", "md"),
         ("tests", "py"),
@@ -160,6 +173,51 @@ assert not found and "empty" in workhold.__file__
 print(workhold.design(workhold.load("widget"), workhold.Vise(pitch=8, columns=1, peg_radius=3)).counts)
 """
     assert run(without_numba, tmp_path, "python", "-c", program).strip() == "{'I': 459, 'II': 46}"
+
+
+@pytest.mark.wheel
+def test_a_machine_without_a_compiler_makes_the_demo(without_numba, tmp_path):
+    """All of ``make demo`` there; ``doctor`` says that nothing of the core is missing."""
+    shutil.copy(ROOT / "examples" / "bracket.dxf", tmp_path)
+    program = "import shutil; print([name for name in ('cc', 'gcc', 'clang', 'ld') if shutil.which(name)])"
+    assert run(without_numba, tmp_path, "python", "-c", program).strip() == "[]"
+    jaws = ("--pitch", "10", "--columns", "2", "--peg-radius", "3")
+    run(
+        without_numba,
+        tmp_path,
+        "workhold",
+        "design",
+        "bracket.dxf",
+        *jaws,
+        "--out",
+        "b.json",
+        "--draw",
+        "drawn",
+    )
+    run(without_numba, tmp_path, "workhold", "sheet", "b.json", "1", "-o", "setup.pdf", "--jaw-force", "3000")
+    assert (tmp_path / "setup.pdf").read_bytes().startswith(b"%PDF")
+    assert (tmp_path / "drawn" / "thumbnails.png").stat().st_size > 10_000
+    told = json.loads(run(without_numba, tmp_path, "workhold", "doctor", "--json"))
+    found = {one["what"]: one for one in told["findings"]}
+    assert found["kernels"]["state"] == "compiled in the package" and found["kernels"]["remedy"] is None
+    assert found["numba"]["state"] == "not needed here"
+
+
+@pytest.mark.wheel
+@pytest.mark.skipif(sys.platform != "linux" or not shutil.which("readelf"), reason="readelf is not installed")
+def test_the_library_fits_every_c_library_of_linux(without_numba):
+    """It names no library that it needs, and no version of what it calls: glibc's old ones and musl have it all."""
+    (library,) = Path(without_numba["VIRTUAL_ENV"]).glob("lib/python3*/site-packages/workhold/kernels/*.so")
+    dynamic = subprocess.run(["readelf", "-dV", library], capture_output=True, text=True, check=True).stdout
+    assert "STRTAB" in dynamic
+    assert "NEEDED" not in dynamic and "GLIBC" not in dynamic
+    symbols = subprocess.run(
+        ["readelf", "-W", "--dyn-syms", library], capture_output=True, text=True, check=True
+    )
+    called = {
+        line.split()[-1] for line in symbols.stdout.splitlines() if " UND " in line and len(line.split()) == 8
+    }
+    assert {"malloc", "free"} <= called <= OF_C
 
 
 @pytest.mark.wheel

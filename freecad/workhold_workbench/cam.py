@@ -1,33 +1,13 @@
 """Between a fixture and a job of FreeCAD's CAM workbench, which was called Path before version 1.0."""
 
-import importlib
 import os
 import tempfile
-from pathlib import Path
 
 from . import fixture
 from .child import Refusal
+from .compat import job_module, program_of
 
 __all__ = ["job_of", "send", "take_program"]
-
-# Where the module that makes jobs has been, the newest first.
-JOB_MODULES = ("Path.Main.Job", "PathScripts.PathJob")
-
-
-def job_module():
-    """The module that makes jobs.
-
-    Raises
-    ------
-    Refusal
-        When this FreeCAD has none.
-    """
-    for name in JOB_MODULES:
-        try:
-            return importlib.import_module(name)
-        except ImportError:
-            continue
-    raise Refusal("This FreeCAD has no CAM workbench: install the one that belongs to it.")
 
 
 def job_of(obj):
@@ -73,17 +53,12 @@ def take_program(obj):
     Raises
     ------
     Refusal
-        Without a job, or a file of it.
+        Without a job, or one file of it.
     """
     job = job_of(obj)
     if job is None:
         raise Refusal("No job has this part as its model: send the fixture to CAM first.")
-    path = job.PostProcessorOutputFile
-    if not path or not Path(path).is_file():
-        raise Refusal(
-            "{} has no file with G-code yet: post-process it, and choose the command again.".format(job.Label)
-        )
-    obj.Program, obj.Tools = path, write_tools(job)
+    obj.Program, obj.Tools = program_of(job), write_tools(job)
     return fixture.design(obj)
 
 

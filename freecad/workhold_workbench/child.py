@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import threading
@@ -16,6 +17,22 @@ PREFERENCES = "User parameter:BaseApp/Preferences/Mod/Workhold"
 OWN_VARIABLES = ("PYTHONPATH", "PYTHONHOME", "LD_LIBRARY_PATH")
 # Seconds between looks at a child, and at whether it was cancelled.
 NAP = 0.05
+
+
+# What the panel has instead of options of the command; what it has not is left out. The part is a file of no
+# concern to its user.
+OPTIONS = (
+    (r", or --section\b", ""),
+    (r"--axis\b", "the axis that points up"),
+    (r"--peg-height\b", "the peg height"),
+    (r"--toolkit\b", "the toolkit"),
+    (r"--avoid\b", "the faces not to touch"),
+    (r"--program\b", "the program"),
+    (r"--tools\b", "the table of tools"),
+    (r"\.step: ", ": "),
+)
+# What is said of a child that the system or somebody else has ended.
+ENDED = "Workhold was ended before it had an answer: choose the command again."
 
 
 class Refusal(Exception):
@@ -95,15 +112,33 @@ def run(*words, cancel=None, wait=None):
             cancel = None
     child.wait()
     error = said["stderr"].decode("utf-8", "replace")
+    if child.returncode < 0:
+        raise Refusal(ENDED)
     if child.returncode not in (0, 143):
         lines = [line for line in error.splitlines() if "error: " in line] or error.splitlines()[-1:]
-        sentence = lines[-1].split("error: ", 1)[-1].strip() if lines else "workhold ended without a word."
-        raise Refusal(sentence[:1].upper() + sentence[1:])
+        raise Refusal(in_words_of_the_panel(lines[-1].split("error: ", 1)[-1].strip() if lines else ENDED))
     for line in error.splitlines():
         App.Console.PrintMessage(line + "\n")
     return said["stdout"].decode("utf-8", "replace")
 
 
+def in_words_of_the_panel(sentence):
+    """A sentence of the command without its options and its files: what the panel calls them instead."""
+    for option, words in OPTIONS:
+        sentence = re.sub(option, words, sentence)
+    return sentence[:1].upper() + sentence[1:]
+
+
 def answer(*words, cancel=None, wait=None):
-    """The object that the command prints with ``--json``."""
-    return json.loads(run(*words, "--json", cancel=cancel, wait=wait))
+    """The object that the command prints with ``--json``.
+
+    Raises
+    ------
+    Refusal
+        As of :func:`run`, and where it ended before it had printed all.
+    """
+    printed = run(*words, "--json", cancel=cancel, wait=wait)
+    try:
+        return json.loads(printed)
+    except ValueError:
+        raise Refusal(ENDED) from None

@@ -14,6 +14,7 @@ import FreeCAD as App
 import Part
 
 from .child import Refusal, answer, run
+from .compat import paint
 from .solid import export, face_numbers, foot_height, placing, shape_of, signature
 
 __all__ = ["Fixture", "choose", "design", "fixture_of", "make", "rows", "save_picture", "save_sheet"]
@@ -29,6 +30,8 @@ COLOURS = {
     "wall": (0.45, 0.48, 0.52),
 }
 PLATE = (0.72, 0.74, 0.76)
+# Of plates, in per cent, so that the part below them is seen.
+SEEN_THROUGH = 60
 # The uses of bodies in a STEP assembly, in their order, with their names.
 USES = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('\d+','((?:[^']|'')*)'")
 PROPERTIES = (
@@ -284,9 +287,8 @@ def add_body(obj, name, shape):
     body.Label, body.Shape = name, shape
     obj.addObject(body)
     if App.GuiUp:
-        body.ViewObject.ShapeColor = COLOURS.get(name.split()[0], PLATE)
-        if name.split()[0] not in COLOURS:
-            body.ViewObject.Transparency = 60
+        what = name.split()[0]
+        paint(body.ViewObject, COLOURS.get(what, PLATE), 0 if what in COLOURS else SEEN_THROUGH)
     body.purgeTouched()
 
 

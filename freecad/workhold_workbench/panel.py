@@ -10,6 +10,7 @@ from PySide import QtCore, QtGui
 
 from . import fixture
 from .child import Refusal, answer
+from .compat import button_number
 
 __all__ = ["Panel"]
 
@@ -221,7 +222,7 @@ class Panel:
 
     def getStandardButtons(self):
         """Only the button that closes the panel."""
-        return int(QtGui.QDialogButtonBox.Close)
+        return button_number(QtGui.QDialogButtonBox.Close)
 
     def reject(self):
         """Closes the panel; what was put in stays."""

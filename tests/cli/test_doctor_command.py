@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import platform
+import sys
 import tomllib
 from importlib import metadata
 from pathlib import Path
@@ -12,9 +14,13 @@ from typer.testing import CliRunner
 
 from workhold.cli import doctor_command
 from workhold.cli.main import app
+from workhold.errors import InputError
 from workhold.kernels.base import compiling
+from workhold.version import __version__
 
-HAVE = {"pyarrow": "26.0", "scipy": "1.2", "numba": "0.68.1", "cadquery-ocp-novtk": "8.0.1", "OCP": ""}
+HAVE = {"pyarrow": "26.0", "scipy": "1.2", "numba": "0.68.1", "cadquery-ocp-novtk": "8.0.1"}
+# What can be imported: OCP is the module of its distribution, and fsspec came with another one.
+MODULES = {"pyarrow", "scipy", "numba", "OCP", "fsspec"}
 REQUIRES = [
     "numpy>=2.0",
     'numba>=0.61; extra == "numba"',
@@ -23,6 +29,8 @@ REQUIRES = [
     'mcp; extra == "mcp"',
     'cadquery-ocp-novtk>=8; extra == "step"',
     'pyarrow>=17; extra == "tables"',
+    'numba>=0.61; extra == "tables"',
+    'fsspec>=2024.6; extra == "cluster"',
 ]
 
 
@@ -37,7 +45,7 @@ def installation(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(metadata, "requires", lambda _: REQUIRES)
     monkeypatch.setattr(metadata, "version", version)
-    monkeypatch.setattr(doctor_command, "find_spec", lambda name: HAVE.get(name))
+    monkeypatch.setattr(doctor_command, "find_spec", lambda name: name if name in MODULES else None)
     monkeypatch.setattr(doctor_command, "step_fault", lambda: "apt install libgl1")
 
 
@@ -54,10 +62,11 @@ def test_every_extra_is_looked_at(installation: None, monkeypatch: pytest.Monkey
     found = findings()
     assert found["numba"] == ("numba 0.68.1", None)
     assert found["batch"] == ("scipy 1.2, older than 1.13", "pip install 'workhold[batch]'")
-    assert found["tables"] == ("pyarrow 26.0", None)
+    assert found["tables"] == ("pyarrow 26.0, numba 0.68.1", None)
+    assert found["cluster"] == ("fsspec of another package", None)
     assert found["mcp"] == ("mcp missing", "pip install 'workhold[mcp]'")
     assert found["step"] == ("cadquery-ocp-novtk 8.0.1 does not load", "apt install libgl1")
-    assert found["cluster"][0].startswith("not known")
+    assert found["build123d"][0].startswith("not known")
 
 
 def test_the_report_is_read_by_people(installation: None) -> None:
@@ -67,6 +76,35 @@ def test_the_report_is_read_by_people(installation: None) -> None:
     assert max(map(len, lines)) <= 80
     assert "To add what is missing:" in lines
     assert "  mcp: pip install 'workhold[mcp]'" in lines
+
+
+def test_what_is_missing_is_red_on_a_terminal(installation: None) -> None:
+    """And nothing else is."""
+    shown = doctor_command.table(
+        [
+            doctor_command.InstallationRow("a", "1.0", "x"),
+            doctor_command.InstallationRow("b", "missing", "y", "pip install b"),
+        ]
+    )
+    assert shown.red == {1}
+
+
+def test_kernels_that_are_missing_have_a_remedy(installation: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the program would say it of itself where there is neither a library nor numba."""
+
+    class Missing:
+        def __getattr__(self, name: str) -> object:
+            raise InputError("no kernels; install workhold[numba].")
+
+    monkeypatch.setitem(sys.modules, "workhold.kernels.base.compiling", Missing())
+    assert findings()["kernels"] == ("missing", "no kernels; install workhold[numba].")
+
+
+def test_the_python_that_is_looked_at_is_named() -> None:
+    outcome = CliRunner().invoke(app, ["doctor", "--json"])
+    told = json.loads(outcome.stdout)
+    assert told["python"] == sys.executable and told["version"] == __version__
+    assert platform.python_version() in told["machine"]
 
 
 def test_nothing_is_to_add_where_all_is_there(monkeypatch: pytest.MonkeyPatch) -> None:

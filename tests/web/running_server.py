@@ -13,6 +13,7 @@ from attrs import define
 
 from workhold.files.part.load import load
 from workhold.web.guard import Hosts, ServerLimits
+from workhold.web.origins import Origins
 from workhold.web.serve import Server, bound_socket, make_server
 from workhold.web.state import ServerState
 
@@ -100,13 +101,17 @@ def arriving(server: RunningServer) -> int:
 
 @contextmanager
 def running_server(
-    hosts: Hosts | None = None, proxies: Collection[str] = (), token: str | None = None, **limits: Any
+    hosts: Hosts | None = None,
+    proxies: Collection[str] = (),
+    token: str | None = None,
+    origins: Origins | None = None,
+    **limits: Any,
 ) -> Iterator[RunningServer]:
     """A server with one worker of each kind, ready for requests."""
     listening = threading.Event()
     socket = bound_socket("127.0.0.1", 0)
     given = ServerLimits(**{"searches": 1, "desks": 1, "desk_seconds": PATIENCE, **limits})
-    server = make_server(given, hosts or Hosts(), listening.set, proxies, token)
+    server = make_server(given, hosts or Hosts(), listening.set, proxies, token, origins)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
     thread.start()
     try:

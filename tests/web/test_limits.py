@@ -20,7 +20,7 @@ LIMITED = {
     "seconds": 600.0,
     "fixtures": 100,
     "kept_jobs": 20,
-    "kept_bytes": 70_000,
+    "kept_bytes": 120_000,
     "streams": 1,
 }
 

@@ -32,6 +32,18 @@ def answered(**values):
     with open("ANSWER", "w") as stream:
         json.dump(values, stream)
 
+def shared(held):
+    # The volume in mm3 that each body has in common with the part.
+    bodies = [(one.Label, one.Shape) for one in held.Group]
+    part = solid.shape_of(held.HeldPart)
+    return {{label: round(shape.common(part).Volume, 6) for label, shape in bodies}}
+
+def said_by(work):
+    try:
+        return work()
+    except child.Refusal as refusal:
+        return "refused: " + str(refusal)
+
 def distances(held):
     return {{one.Label: round(one.Shape.distToShape(held.HeldPart.Shape)[0], 6) for one in held.Group}}
 """

@@ -26,11 +26,16 @@ changed = held.State
 again = fixture.design(held)
 same = fixture.chosen_holes(held) == before
 longer = distances(held)
+fixture.choose(held, 10)
+other = fixture.chosen_holes(held)
+block.Length = 65
+document.recompute()
+second = [fixture.design(held), fixture.chosen_holes(held) == other]
 fixture.choose(held, 3)
 document.saveAs("held.FCStd")
 App.closeDocument("held")
 opened = App.openDocument("held.FCStd").getObject("Fixture")
-answered(first=first, changed=changed, again=again, same=same, distance=distance, longer=longer,
+answered(first=first, changed=changed, again=again, same=same, second=second, distance=distance, longer=longer,
          opened=[opened.State, len(opened.Group), isinstance(opened.Proxy, fixture.Fixture)],
          rows=len(fixture.rows(opened)))
 """
@@ -38,6 +43,9 @@ answered(first=first, changed=changed, again=again, same=same, distance=distance
     assert answer["first"] == "Fixture 1 of 20."
     assert answer["changed"] == "The part has changed: design again."
     assert (answer["again"], answer["same"]) == ("Fixture 1 of 20.", True)
+    # One that is not the first of the list is looked for, too.
+    words, same = answer["second"]
+    assert same and words.startswith("Fixture ") and words != "Fixture 1 of 20."
     for distances in (answer["distance"], answer["longer"]):
         touching = {name: far for name, far in distances.items() if not name.startswith("bolt")}
         assert len(touching) == 6 and set(touching.values()) == {0.0}
@@ -200,3 +208,122 @@ QtCore.QTimer.singleShot(1000, go)
     assert answer["up"] == "z" and answer["rows"] == 20
     assert answer["state"] == "Fixture 2 of 20." and answer["bodies"] == 8
     assert answer["picture"] == 420 and (tmp_path / "window.png").stat().st_size > 10_000
+
+
+BRACKET = """
+import os, signal
+plate = document.addObject("Part::Box", "Plate")
+plate.Length, plate.Width, plate.Height = 80, 50, 14
+pocket = document.addObject("Part::Box", "Hollow")
+pocket.Length, pocket.Width, pocket.Height = 30, 20, 8
+pocket.Placement.Base = App.Vector(25, 15, 6)
+slanted = document.addObject("Part::Wedge", "Corner")
+slanted.Xmin, slanted.Xmax, slanted.X2min, slanted.X2max = 0, 18, 0, 0
+slanted.Ymin, slanted.Ymax, slanted.Zmin, slanted.Zmax, slanted.Z2min, slanted.Z2max = 0, 12, 0, 14, 0, 14
+bored = document.addObject("Part::Cut", "Bored")
+bored.Base, bored.Tool = plate, pocket
+bracket = document.addObject("Part::Cut", "Bracket")
+bracket.Base, bracket.Tool = bored, slanted
+bracket.Placement = App.Placement(App.Vector(-40, 300, 25), App.Rotation(App.Vector(0, 0, 1), 90))
+document.recompute()
+"""
+
+
+def test_a_bracket_with_a_pocket_is_held_without_interference(scripted: Scripted) -> None:
+    """Before and after a dimension has changed; the bodies touch the part, and none cuts into it."""
+    answer = scripted(
+        BRACKET
+        + """
+held = fixture.make(document, bracket, "z", "two-clamp-plate-20mm")
+held.PegHeight = 8
+first = fixture.design(held)
+def seen():
+    return dict(volumes=shared(held), near=distances(held), chosen=fixture.chosen_holes(held),
+                low=min(one.Shape.BoundBox.ZMax for one in held.Group if "plate" in one.Label.lower()))
+before = seen()
+poses = [one["pose"]["theta_deg"] for one in json.loads(held.ResultText)["fixtures"]]
+turned = max(range(len(poses)), key=lambda k: abs(poses[k] % 180 - 180 * (poses[k] % 180 > 90)))
+fixture.choose(held, turned + 1)
+across = seen()
+fixture.choose(held, 1)
+plate.Width = 54
+document.recompute()
+changed = held.State
+again = fixture.design(held)
+answered(first=first, before=before, changed=changed, again=again, after=seen(), across=across,
+         turned=poses[turned], foot=bracket.Shape.BoundBox.ZMin)
+"""
+    )
+    assert answer["first"].startswith("Fixture 1 of ")
+    assert answer["changed"] == "The part has changed: design again."
+    assert answer["again"].startswith(("Fixture ", "The fixture that was chosen is not among"))
+    # One in which the part lies turned, neither as drawn nor half round.
+    assert answer["turned"] % 180 > 1
+    for seen in (answer["before"], answer["across"], answer["after"]):
+        assert len(seen["volumes"]) >= 6
+        assert set(seen["volumes"].values()) == {0.0}, seen["volumes"]
+        touching = [far for name, far in seen["near"].items() if name.startswith(("peg", "locator", "clamp"))]
+        assert len(touching) >= 5 and set(touching) == {0.0}, seen["near"]
+        # The part lies on the plate.
+        assert abs(seen["low"] - answer["foot"]) < 1e-3
+    if answer["again"].startswith("Fixture "):
+        assert answer["after"]["chosen"] == answer["before"]["chosen"]
+
+
+def test_what_is_no_prism_is_a_sentence(scripted: Scripted) -> None:
+    """A ball, a cone and a body of two solids; the document keeps the fixture that there was."""
+    answer = scripted(
+        HELD
+        + """
+ball = document.addObject("Part::Sphere", "Ball")
+cone = document.addObject("Part::Cone", "Cone")
+both = document.addObject("Part::Compound", "Both")
+both.Links = [ball, block]
+document.recompute()
+fixture.design(held)
+bodies = len(held.Group)
+said = []
+for part in (ball, cone, both):
+    held.HeldPart = part
+    said.append(said_by(lambda: fixture.design(held)))
+answered(said=said, bodies=[bodies, len(held.Group)])
+"""
+    )
+    for sentence in answer["said"]:
+        assert sentence.startswith("refused: ") and sentence.endswith(".") and "Traceback" not in sentence
+    ball, cone, both = answer["said"]
+    assert "upright" in ball and "upright" in cone, answer["said"]
+    # In the words of the panel: no option of the command, and no name of a file.
+    assert ball.startswith("refused: Ball: ") and "--" not in ball + cone
+    assert both == "refused: Both has 2 solids: choose a body with one."
+    assert answer["bodies"][0] == answer["bodies"][1] == 8
+
+
+def test_a_child_that_is_killed_leaves_freecad_alive(scripted: Scripted) -> None:
+    """By a signal that it cannot hear, in the middle of a search; the next design works."""
+    answer = scripted(
+        HELD
+        + """
+import os, signal
+first = fixture.design(held)
+killed = []
+def kill():
+    for entry in os.listdir("/proc"):
+        if entry.isdigit() and not killed:
+            try:
+                parent = open("/proc/%s/stat" % entry).read().rpartition(")")[2].split()[1]
+            except OSError:
+                continue
+            if int(parent) == os.getpid():
+                killed.append(int(entry))
+                os.kill(int(entry), signal.SIGKILL)
+said = said_by(lambda: fixture.design(held, wait=kill))
+kept = [held.State, len(held.Group), len(fixture.rows(held))]
+again = fixture.design(held)
+answered(first=first, killed=len(killed), said=said, kept=kept, again=again)
+"""
+    )
+    assert answer["killed"] == 1
+    assert answer["said"] == "refused: Workhold was ended before it had an answer: choose the command again."
+    assert answer["kept"] == [answer["first"], 8, 20]
+    assert answer["again"] == answer["first"]

@@ -62,6 +62,13 @@ def serve(
         list[str] | None,
         typer.Option(metavar="ADDRESS", help="A reverse proxy that says for whom it asks. May be repeated."),
     ] = None,
+    allow_origin: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ORIGIN",
+            help="A site whose pages may use the server, such as https://shop.example. May be repeated.",
+        ),
+    ] = None,
     ask_token: Annotated[
         bool, typer.Option("--ask-token", help="Let in only who has the address that is printed.")
     ] = False,
@@ -104,6 +111,7 @@ def serve(
     for proxy in trust_proxy or ():
         refuse_no_address(proxy)
     from workhold.web.guard import ServerLimits, usual_memory
+    from workhold.web.origins import checked_origin
     from workhold.web.serve import is_for_others, run_server
 
     most = usual_memory(figures["searches"]) if memory is None else int(limit_value("--memory", memory)) << 20
@@ -117,9 +125,10 @@ def serve(
 
             webbrowser.open(address)
 
+    origins = [checked_origin(one) for one in allow_origin or ()]
     token = token_urlsafe(TOKEN_BYTES) if ask_token else None
     limits = ServerLimits(memory_bytes=most, **figures)
-    run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare)
+    run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare, origins)
 
 
 def refuse_no_address(text: str) -> None:

@@ -8,7 +8,6 @@ from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.openapi.utils import get_openapi
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse, Response
@@ -17,43 +16,35 @@ from workhold.errors import InputError
 from workhold.version import __version__
 from workhold.web import fixture_routes, job_routes, part_routes
 from workhold.web.answers import place_in
+from workhold.web.description import described
 from workhold.web.forms import sentence_of
-from workhold.web.guard import Guard, Hosts, ServerLimits
+from workhold.web.guard import BASES, Guard, Hosts, ServerLimits
 from workhold.web.jobs import TooManyError
+from workhold.web.origins import Origins
 from workhold.web.pool import BusyError, FailedError, StoppedError
 from workhold.web.state import ServerState, state_of
 
 __all__ = ["create_app"]
 
-WRONG = {
-    "description": "What is wrong, in one sentence",
-    "content": {
-        "application/json": {
-            "schema": {
-                "type": "object",
-                "required": ["error", "place"],
-                "properties": {
-                    "error": {"type": "string"},
-                    "place": {
-                        "type": ["object", "null"],
-                        "properties": {"x": {"type": "number"}, "y": {"type": "number"}},
-                    },
-                },
-            }
-        }
-    },
-}
+VERSIONED = BASES[0]
+ABOUT = """Lengths are in mm, angles in degrees, forces in N.
+
+Addresses begin with `/api/v1`. Within this version keys and values may be added, and none goes or changes
+its meaning. The same is at `/api`, which is always the newest version.
+"""
 # What the libraries below say, in the words of this server.
 SENTENCES = {
     "Not Found": "There is nothing at this address.",
     "Method Not Allowed": "This cannot be done at this address.",
     "There was an error parsing the body": "The request is not valid JSON: send one object.",
 }
-STATUSES = ("400", "401", "404", "408", "409", "413", "429", "500", "503")
 
 
 def create_app(
-    limits: ServerLimits | None = None, hosts: Hosts | None = None, token: str | None = None
+    limits: ServerLimits | None = None,
+    hosts: Hosts | None = None,
+    token: str | None = None,
+    origins: Origins | None = None,
 ) -> FastAPI:
     """Makes the application.
 
@@ -62,6 +53,7 @@ def create_app(
     limits : how much it gives.
     hosts : names it may be called by; only those of this machine by default.
     token : a secret that every request must bring, or None.
+    origins : of other sites' pages that may use it; none by default.
     """
     limits = limits or ServerLimits()
 
@@ -76,24 +68,33 @@ def create_app(
         version=__version__,
         summary="Finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence "
         "and a stop.",
-        description="Lengths are in mm, angles in degrees, forces in N.",
+        description=ABOUT,
         lifespan=lifespan,
-        openapi_url="/api/openapi.json",
+        openapi_url=None,
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
         separate_input_output_schemas=False,
     )
-    app.include_router(part_routes.router)
-    app.include_router(job_routes.router)
-    app.include_router(fixture_routes.router)
+    for base in BASES:
+        for room in (part_routes, job_routes, fixture_routes):
+            app.include_router(room.router, prefix=base, include_in_schema=base == VERSIONED)
+        app.add_api_route(f"{base}/openapi.json", openapi, include_in_schema=False)
     app.add_api_route("/", page, methods=["GET", "HEAD"], include_in_schema=False)
     app.add_api_route("/method", method_page, methods=["GET", "HEAD"], include_in_schema=False)
     app.add_api_route("/static/{path:path}", static_file, methods=["GET", "HEAD"], include_in_schema=False)
     add_error_handlers(app)
-    app.add_middleware(Guard, hosts=hosts or Hosts(), limits=limits, token=token)
-    app.openapi = lambda: description(app)  # type: ignore[method-assign]
+    app.add_middleware(
+        Guard, hosts=hosts or Hosts(), limits=limits, token=token, origins=origins or Origins()
+    )
+    app.openapi = lambda: described(app)  # type: ignore[method-assign]
     return app
+
+
+async def openapi(request: Request) -> dict[str, Any]:
+    """Sends the description of the interface."""
+    server: FastAPI = request.app
+    return server.openapi()
 
 
 async def page(request: Request) -> Response:
@@ -161,24 +162,3 @@ def add_error_handlers(app: FastAPI) -> None:
     app.add_exception_handler(ClientDisconnect, left)
     # The server's log says what it was.
     app.add_exception_handler(Exception, fault)
-
-
-def description(app: FastAPI) -> dict[str, Any]:
-    """Makes the OpenAPI description, with this server's answers for errors."""
-    if app.openapi_schema is None:
-        schema = get_openapi(
-            title=app.title,
-            version=app.version,
-            summary=app.summary,
-            description=app.description,
-            routes=app.routes,
-            separate_input_output_schemas=False,
-        )
-        for operations in schema["paths"].values():
-            for operation in operations.values():
-                operation["responses"].pop("422", None)
-                operation["responses"] |= dict.fromkeys(STATUSES, WRONG)
-        for name in ("HTTPValidationError", "ValidationError"):
-            schema.get("components", {}).get("schemas", {}).pop(name, None)
-        app.openapi_schema = schema
-    return app.openapi_schema

@@ -37,7 +37,7 @@ from workhold.web.support_tasks import SupportsOrder
 
 __all__ = ["router"]
 
-router = APIRouter(prefix="/api/jobs/{name}/fixtures/{rank}")
+router = APIRouter(prefix="/jobs/{name}/fixtures/{rank}")
 
 Rank = Annotated[int, Path(ge=1, le=10**9)]
 UnitName = Literal["mm", "inch"]

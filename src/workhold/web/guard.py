@@ -19,7 +19,9 @@ from urllib.parse import parse_qs
 from attrs import define, field, frozen
 from starlette.exceptions import HTTPException
 
-__all__ = ["Guard", "Hosts", "ServerLimits", "usual_memory"]
+from workhold.web.origins import Origins
+
+__all__ = ["BASES", "Guard", "Hosts", "ServerLimits", "usual_memory"]
 
 # Memory of a search in bytes; the least with which one can work; and the share of the machine's that all
 # searches may take.
@@ -47,6 +49,7 @@ class ServerLimits:
     fixtures : kept of one search, the best ones.
     kept_jobs, kept_bytes : searches and bytes of their fixtures kept; the longest unused go first.
     life_seconds : after the last use of a search until it is forgotten.
+    left_seconds : after which a job that its client has left is cancelled, where that was asked.
     streams : streams of events at the same time.
     connections, client_connections : at the same time, in all and from one address.
     """
@@ -69,6 +72,7 @@ class ServerLimits:
     kept_jobs: int = 1_000
     kept_bytes: int = 1 << 30
     life_seconds: float = 3600.0
+    left_seconds: float = 10.0
     streams: int = 256
     connections: int = 1_024
     client_connections: int = 128
@@ -105,7 +109,9 @@ HEADERS = {
     b"permissions-policy": b"camera=(), geolocation=(), microphone=()",
 }
 READING = ("GET", "HEAD", "OPTIONS")
-UPLOADS = ("/api/parts", "/api/parts/survey", "/api/parts/shape")
+# Where the interface is: its version, and the present one for those who do not say.
+BASES = ("/api/v1", "/api")
+UPLOADS = tuple(f"{base}{path}" for base in BASES for path in ("/parts", "/parts/survey", "/parts/shape"))
 COOKIE = "workhold-token"
 
 
@@ -155,12 +161,14 @@ class Guard:
     hosts : names of the server.
     limits : of bytes and of the time a request may take to arrive.
     token : a secret that every request must bring, or None.
+    origins : of other sites' pages that may use it.
     """
 
     app: App
     hosts: Hosts
     limits: ServerLimits
     token: str | None = None
+    origins: Origins = field(factory=Origins)
     arriving: Counter[str] = field(factory=Counter, init=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -177,12 +185,19 @@ class Guard:
                 more = [(name, value) for name, value in HEADERS.items() if name not in present]
                 if is_api and b"cache-control" not in present:
                     more.append((b"cache-control", b"no-store"))
+                more += self.origins.shown(headers) if is_api else []
                 message["headers"] = [*message["headers"], *more]
             await send(message)
 
         refusal = self.refusal(scope, headers)
         if refusal is not None:
             await answer(send_guarded, *refusal)
+            return
+        if is_api and self.origins.is_preflight(scope["method"], headers):
+            # It brings no token: browsers send none before they have been let in.
+            may = self.origins.preflight(headers)
+            await send_guarded({"type": "http.response.start", "status": 204, "headers": may})
+            await send_guarded({"type": "http.response.body", "body": b""})
             return
         if self.token is not None and not brings(self.token, headers):
             await ask_for_token(send_guarded, scope, self.token)
@@ -218,7 +233,8 @@ class Guard:
             site = headers.get("sec-fetch-site", "same-origin")
             origin = headers.get("origin")
             strange = origin is not None and origin.partition("://")[2].lower() != host.lower()
-            if strange or site not in ("same-origin", "none"):
+            strange = strange or site not in ("same-origin", "none")
+            if strange and not self.origins.allows(headers):
                 return 403, "A page of another site may not change anything here."
             if headers.get("content-encoding", "identity").lower() != "identity":
                 return 415, "Send the request as it is, without compression."

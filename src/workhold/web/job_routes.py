@@ -6,9 +6,10 @@ import asyncio
 import json
 from collections.abc import AsyncIterator, Callable, Iterator
 from datetime import date
+from time import monotonic
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Header, Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
@@ -16,16 +17,18 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.result import Result
 from workhold.model.seating import length
 from workhold.statics.judging import unfit as unfit_of
+from workhold.web.answer_shapes import JobAddress, JobAnswer
 from workhold.web.answers import explanation_answer, rows_answer
 from workhold.web.families import PAPERS, FamilyForm, FamilyFound, FamilyPaper
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
+from workhold.web.guard import BASES
 from workhold.web.jobs import ServerJob
 from workhold.web.selection import Selection, angle_range
 from workhold.web.state import ServerState, address_of, at_desk, state_of
 
 __all__ = ["attachment", "found_job", "result_of_job", "router"]
 
-router = APIRouter(prefix="/api")
+router = APIRouter()
 
 # Seconds between two events of a stream at least, and at most.
 PAUSE, SILENCE = 0.1, 15.0
@@ -72,7 +75,16 @@ def result_of_job(job: ServerJob, revision: int | None = None, when_over: bool =
     return job.result
 
 
-async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm) -> JSONResponse:
+WhenLeft = Annotated[
+    Literal["keep", "cancel"],
+    Query(
+        description="whether the job goes on, or is cancelled, when nobody has followed its events or asked "
+        "for it for ten seconds"
+    ),
+]
+
+
+async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm, when_left: str) -> JSONResponse:
     """Checks a request and begins its job."""
     state = state_of(request)
     address = address_of(request)
@@ -81,24 +93,35 @@ async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm) -> J
     kind = {ExploreForm: "explore", FamilyForm: "family"}.get(type(form), "design")
     # A program's text is not kept with every job.
     asked = form.model_dump(exclude={"program": {"text": True, "tools": True}})
-    job = state.jobs.submit(asked, queries, address, kind)
-    url = f"/api/jobs/{job.name}"
+    sent = len(await request.body())
+    job = state.jobs.submit(asked, queries, address, kind, sent, when_left == "cancel")
+    url = f"{base_of(request)}/jobs/{job.name}"
     return JSONResponse({"job": job.name, "url": url}, 202, {"Location": url})
 
 
-@router.post("/jobs", status_code=202, summary="Search for every fixture")
-async def submit(request: Request, form: JobForm) -> Response:
+def base_of(request: Request) -> str:
+    """Returns the beginning of the addresses of the version that was asked."""
+    return next(base for base in BASES if request.scope["path"].startswith(f"{base}/"))
+
+
+BEGUN: dict[int | str, dict[str, Any]] = {202: {"model": JobAddress}}
+STATE: dict[int | str, dict[str, Any]] = {200: {"model": JobAnswer}}
+STATE_SO_FAR: dict[int | str, dict[str, Any]] = {202: {"model": JobAnswer}}
+
+
+@router.post("/jobs", status_code=202, summary="Search for every fixture", responses=BEGUN)
+async def submit(request: Request, form: JobForm, when_left: WhenLeft = "keep") -> Response:
     """Begins the search; its state and fixtures are at the address in the answer."""
-    return await begin(request, form)
+    return await begin(request, form, when_left)
 
 
-@router.post("/explore", status_code=202, summary="Compare toolkits")
-async def explore(request: Request, form: ExploreForm) -> Response:
+@router.post("/explore", status_code=202, summary="Compare toolkits", responses=BEGUN)
+async def explore(request: Request, form: ExploreForm, when_left: WhenLeft = "keep") -> Response:
     """Begins a comparison; the rows appear in the job's ``table``."""
-    return await begin(request, form)
+    return await begin(request, form, when_left)
 
 
-@router.get("/jobs/{name}", summary="State of a job")
+@router.get("/jobs/{name}", summary="State of a job", responses=STATE)
 async def state(request: Request, name: str) -> dict[str, Any]:
     """How far the job is, what it found, and what was asked for, without the text of a program."""
     job = found_job(request, name)
@@ -112,7 +135,12 @@ async def delete(request: Request, name: str) -> Response:
     return Response(status_code=204)
 
 
-@router.post("/jobs/{name}/cancel", status_code=202, summary="Stop a job and keep what it found")
+@router.post(
+    "/jobs/{name}/cancel",
+    status_code=202,
+    summary="Stop a job and keep what it found",
+    responses=STATE_SO_FAR,
+)
 async def cancel(request: Request, name: str) -> dict[str, Any]:
     """Stops the job, whose state becomes ``cancelled`` within two seconds or so."""
     job = found_job(request, name)
@@ -123,30 +151,59 @@ async def cancel(request: Request, name: str) -> dict[str, Any]:
 @router.get(
     "/jobs/{name}/events",
     summary="Follow a job",
-    responses={200: {"content": {"text/event-stream": {"schema": {"type": "string"}}}}},
+    responses={
+        200: {
+            "description": "Server-sent events",
+            "content": {"text/event-stream": {"schema": {"type": "string"}}},
+        },
+        204: {"description": "The caller has seen the last event: do not connect again"},
+    },
 )
-async def events(request: Request, name: str) -> Response:
-    """Server-sent events named ``state``, whose data is the state without the request, until the job ends."""
+async def events(
+    request: Request,
+    name: str,
+    last_event_id: Annotated[
+        str | None, Header(max_length=40, description="the ``id`` of the last event that the caller has seen")
+    ] = None,
+) -> Response:
+    """Server-sent events named ``state``, whose data is the state without the request, until the job ends.
+
+    Each has an ``id``. A caller who connects again with the last one in the header Last-Event-ID, as
+    browsers do by themselves, receives the state only if it has changed meanwhile. Every 15 seconds without
+    an event a comment is sent.
+    """
     server, job = state_of(request), found_job(request, name)
+    seen = seen_version(last_event_id)
+    if job.is_over and seen == job.version:
+        return Response(status_code=204)
     if server.streams >= server.limits.streams:
         raise HTTPException(
             503, "Too many streams of events are open: ask for the state now and then instead."
         )
-    return StreamingResponse(stream(server, job), media_type="text/event-stream")
+    return StreamingResponse(stream(server, job, seen), media_type="text/event-stream")
 
 
-async def stream(server: ServerState, job: ServerJob) -> AsyncIterator[str]:
-    """Yields the events of a job."""
+def seen_version(text: str | None) -> int | None:
+    """Reads the version of a job in the id of an event; None for what was never one.
+
+    >>> seen_version("12"), seen_version("-1"), seen_version(None)
+    (12, None, None)
+    """
+    return int(text) if text is not None and text.isascii() and text.isdigit() else None
+
+
+async def stream(server: ServerState, job: ServerJob, sent: int | None) -> AsyncIterator[str]:
+    """Yields the events of a job, but for the one that was sent before."""
     watcher = asyncio.Event()
     job.watchers.add(watcher)
     server.streams += 1
-    sent = -1
     try:
         while True:
             watcher.clear()
             if sent != job.version:
                 sent = job.version
-                yield f"event: state\ndata: {json.dumps(job.answer(), allow_nan=False)}\n\n"
+                data = json.dumps(job.answer(), allow_nan=False)
+                yield f"id: {sent}\nevent: state\ndata: {data}\n\n"
             if job.is_over:
                 return
             await asyncio.sleep(PAUSE)
@@ -160,6 +217,7 @@ async def stream(server: ServerState, job: ServerJob) -> AsyncIterator[str]:
     finally:
         server.streams -= 1
         job.watchers.discard(watcher)
+        job.used = monotonic()
 
 
 @router.get("/jobs/{name}/fixtures", summary="Fixtures of a job")
@@ -286,10 +344,12 @@ def family_of_job(request: Request, name: str) -> FamilyFound:
     return job.family
 
 
-@router.post("/families", status_code=202, summary="Search for the set-ups that hold many parts")
-async def submit_family(request: Request, form: FamilyForm) -> Response:
+@router.post(
+    "/families", status_code=202, summary="Search for the set-ups that hold many parts", responses=BEGUN
+)
+async def submit_family(request: Request, form: FamilyForm, when_left: WhenLeft = "keep") -> Response:
     """Begins the search; its state is at the address in the answer, and the curve below it at ``family``."""
-    return await begin(request, form)
+    return await begin(request, form, when_left)
 
 
 @router.get("/jobs/{name}/family", summary="The curve of a family")

@@ -41,6 +41,8 @@ NAME_BYTES = 16
 LISTING = 0.9
 OVER = ("done", "failed", "cancelled")
 ORDERS_KEPT, SEATINGS_KEPT = 8, 32
+# Bytes of memory for each byte of a request that is kept: it is kept as it came and as the query made of it.
+BYTES_KEPT = 16
 
 
 class TooManyError(BusyError):
@@ -58,6 +60,8 @@ class ServerJob:
     queries : the query, or those of a comparison and what their toolkits are called.
     address : who asked.
     kind : "design", "explore" for a comparison of toolkits, or "family" of several parts.
+    weight : about how many bytes of memory the request takes.
+    stops_when_left : whether the job is cancelled once nobody has asked for it or followed it for some time.
     shape : of the part, where its file was sent for it.
     """
 
@@ -66,6 +70,8 @@ class ServerJob:
     queries: tuple[NamedQuery, ...]
     address: str
     kind: str
+    weight: int = 0
+    stops_when_left: bool = False
     state: str = "queued"
     fraction: float = 0.0
     found: int = 0
@@ -100,8 +106,9 @@ class ServerJob:
 
     @property
     def size(self) -> int:
-        """About how many bytes the job keeps."""
-        kept = shape_size(self.shape)
+        """About how many bytes the job keeps: request, shape of the part, fixtures, and orders of the list."""
+        kept = self.weight + shape_size(self.shape)
+        kept += sum(found.index.nbytes + found.like.nbytes for found in self.orders.values())
         if self.result is None:
             return kept
         table = self.result.table
@@ -197,9 +204,15 @@ class Jobs:
         self.pool.refuse_more(address)
 
     def submit(
-        self, request: Mapping[str, Any], queries: tuple[NamedQuery, ...], address: str, kind: str
+        self,
+        request: Mapping[str, Any],
+        queries: tuple[NamedQuery, ...],
+        address: str,
+        kind: str,
+        sent_bytes: int = 0,
+        stops_when_left: bool = False,
     ) -> ServerJob:
-        """Begins a job.
+        """Begins a job; ``sent_bytes`` is the length of its request.
 
         Raises
         ------
@@ -207,11 +220,21 @@ class Jobs:
             See :meth:`refuse_more`.
         """
         self.refuse_more(address)
-        job = ServerJob(token_urlsafe(NAME_BYTES), request, queries, address, kind)
+        weight = sent_bytes * BYTES_KEPT
+        job = ServerJob(token_urlsafe(NAME_BYTES), request, queries, address, kind, weight, stops_when_left)
         self.by_name[job.name] = job
         job.runner = asyncio.create_task(self.run(job))
         self.make_room()
         return job
+
+    async def stop_when_left(self, job: ServerJob) -> None:
+        """Cancels a job once nobody has asked for it or followed it for as long as the limits say."""
+        while not job.is_over:
+            away = 0.0 if job.watchers else monotonic() - job.used
+            if away >= self.limits.left_seconds:
+                self.cancel(job)
+                return
+            await asyncio.sleep(self.limits.left_seconds - away)
 
     def begin(self, job: ServerJob) -> None:
         """Notes that a worker has begun with a job."""
@@ -232,6 +255,7 @@ class Jobs:
             report=lambda value: self.heard(job, value),
             begun=lambda: self.begin(job),
         )
+        leaving = asyncio.create_task(self.stop_when_left(job)) if job.stops_when_left else None
         try:
             outcome = await self.pool.run(job.task)
             if isinstance(outcome, Found):
@@ -247,6 +271,9 @@ class Jobs:
             job.state = "cancelled"
         except (BusyError, FailedError, InputError) as error:
             job.state, job.error = "failed", str(error)
+        finally:
+            if leaving is not None:
+                leaving.cancel()
         job.ended = monotonic()
         job.used = max(job.used, job.ended)
         job.changed()

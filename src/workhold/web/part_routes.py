@@ -20,7 +20,7 @@ from workhold.web.tasks import Upload
 
 __all__ = ["router"]
 
-router = APIRouter(prefix="/api")
+router = APIRouter()
 LONGEST_NAME = 120
 
 

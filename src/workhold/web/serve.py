@@ -17,6 +17,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from workhold.errors import InputError
 from workhold.web.app import create_app
 from workhold.web.guard import Hosts, ServerLimits
+from workhold.web.origins import Origins
 
 __all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
 
@@ -118,6 +119,7 @@ def run_server(
     token: str | None = None,
     listening: Callable[[str], None] | None = None,
     prepare: Callable[[], None] | None = None,
+    origins: Collection[str] = (),
 ) -> None:
     """Serves until interrupted.
 
@@ -130,6 +132,7 @@ def run_server(
     token : a secret that every request must bring, or None.
     listening : called with the page's address once it is there.
     prepare : called before the first worker is started, when the address is known to be free.
+    origins : of other sites' pages that may use it, as ``web.origins.checked_origin`` writes them.
 
     Raises
     ------
@@ -141,9 +144,12 @@ def run_server(
     if token is not None:
         shown += f"?token={token}"
     hosts = hosts_of(host, more_hosts)
-    server = make_server(
-        limits, hosts, lambda: None if listening is None else listening(shown), proxies, token
-    )
+
+    def heard() -> None:
+        if listening is not None:
+            listening(shown)
+
+    server = make_server(limits, hosts, heard, proxies, token, Origins(frozenset(origins)))
     try:
         if prepare is not None:
             prepare()
@@ -160,6 +166,7 @@ def make_server(
     listening: Callable[[], None],
     proxies: Collection[str] = (),
     token: str | None = None,
+    origins: Origins | None = None,
 ) -> Server:
     """Makes a server that does not run yet; parameters as for :func:`run_server`.
 
@@ -167,7 +174,7 @@ def make_server(
     """
     own = {"most": limits.client_connections, "trusted": frozenset(proxies), "open_connections": Counter()}
     config = uvicorn.Config(
-        create_app(limits, hosts, token),
+        create_app(limits, hosts, token, origins),
         http=type("Protocol", (PatientProtocol,), own),
         ws="none",
         lifespan="on",
