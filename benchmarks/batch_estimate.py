@@ -82,7 +82,8 @@ def measured_runs(length: int, presets: tuple[str, ...]) -> list[tuple[str, floa
             if not runs:
                 done(task)
             start = process_time()
-            done(task)
+            outcome = done(task)
+            assert not outcome.failure, outcome.failure
             about = len(part.faces), (x1 - x0, y1 - y0), vise.toolkit
             runs.append((*measures(*about), process_time() - start, answering_seconds(*about)))
     return runs

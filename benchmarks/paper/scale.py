@@ -33,9 +33,9 @@ QUICK_PRESETS = ("plate-20mm", "clamp-plate-20mm", "fence-20mm")
 # The load from which times by the clock say little on two processors.
 BUSY = 3.5
 HOUR, DAY = 3600.0, 86400.0
-# What we take as the end of what is useful: bytes of a page that a browser opens, of memory for who asks, of disk, and
+# What we take as the end of what is useful: bytes of memory for who asks, of disk, and
 # seconds before a run that goes on begins.
-PAGE, MEMORY, DISK, START = 200e6, 16e9, 1e12, 3600.0
+MEMORY, DISK, START = 16e9, 1e12, 3600.0
 
 
 def measure(data: dict[str, Any], quick: bool) -> Iterator[tuple[float, str]]:
@@ -84,16 +84,22 @@ def run_catalogue(data: dict[str, Any], folder: Path, count: int) -> Iterator[tu
     fewer = write_parts(folder / "fewer", max(count // TENTH, 1))
     known, few = run_batch(parts, folder / "one", 1), run_batch(fewer, folder / "two", 1)
     more = jobs - max(count // TENTH, 1) * len(TOOLKITS)
-    tables = [path for kind in ("results.*", "best.*") for path in (folder / "one").glob(kind)]
-    page = folder / "one" / "report.html"
+    # What a run has once is nothing in a large catalogue, so only growth counts; the page has a most of rows.
     data["each"] = {
         "processor": alone.processor / jobs,
         "record": sum(size for size, _ in records.values()) / jobs,
-        "page": page.stat().st_size / jobs,
-        "tables": sum(path.stat().st_size for path in tables) / jobs,
+        "tables": (grown_by(folder, "results.*") + grown_by(folder, "best.*")) / more,
         "memory": max(known.memory - few.memory, 0) / more,
         "known": max(known.processor - few.processor, 0.0) / more,
     }
+
+
+def grown_by(folder: Path, pattern: str) -> int:
+    """Bytes that files of the run over all parts have more than those of the run over some."""
+    all_parts, some = (
+        sum(path.stat().st_size for path in (folder / name).glob(pattern)) for name in ("one", "two")
+    )
+    return max(all_parts - some, 0)
 
 
 def kind_row(law: str, values: list[float]) -> dict[str, Any]:
@@ -141,7 +147,6 @@ def reckon(data: dict[str, Any], seconds: dict[str, list[float]], parts: int) ->
         "error": sqrt(sum(row["core_hours_error"] ** 2 for row in rows)),
         "records": jobs * each["record"],
         "tables": jobs * each["tables"],
-        "page": jobs * each["page"],
         "memory": jobs * each["memory"],
         "start_hours": jobs * each["known"] / HOUR,
         "mean": whole / len(tasks),
@@ -161,7 +166,6 @@ def breaking(data: dict[str, Any], kinds: int) -> Iterator[dict[str, Any]]:
     """Each bound, what a job takes of it, and the number of parts at which it is reached."""
     each = data["each"]
     for name, used, bound in (
-        ("the page of all first choices", each["page"], PAGE),
         ("memory of who asks", each["memory"], MEMORY),
         ("records on one disk", each["record"], DISK),
         ("the start of a run that goes on", each["known"], START),
@@ -259,14 +263,12 @@ def reckoned(figures: Figures) -> list[Block]:
         for k in figures.every("simulation")
     ]
     units = {
-        "page": (1e3, "kB"),
         "memory": (1.0, "bytes"),
         "records": (1e3, "kB"),
         "start": (1e-3, "ms"),
         "Dask": (1e-3, "ms"),
     }
     bounds = {
-        "page": (1e6, "MB"),
         "memory": (1e9, "GB"),
         "records": (1e12, "TB"),
         "start": (3600.0, "h"),

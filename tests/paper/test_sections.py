@@ -106,9 +106,9 @@ def test_words_are_escaped() -> None:
 
 def test_what_breaks_first_is_reckoned_from_what_a_search_takes() -> None:
     """The bound over what a search takes, over the searches of a part; what takes nothing never breaks."""
-    each = {"page": 2e4, "memory": 0.0, "record": 1e4, "known": 1e-3}
+    each = {"memory": 0.0, "record": 1e4, "known": 1e-3}
     told = {one["name"]: one["parts"] for one in scale.breaking({"each": each, "queue": {"dask": 4e-3}}, 2)}
-    assert told["the page of all first choices"] == pytest.approx(scale.PAGE / 2e4 / 2)
+    assert told["the start of a run that goes on"] == pytest.approx(scale.START / 1e-3 / 2)
     assert told["records on one disk"] == pytest.approx(5e7) and "memory of who asks" not in told
 
 
