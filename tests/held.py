@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 import workhold
 from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from workhold.fixels.flat_jaw import FlatJaw
     from workhold.fixels.plate import Plate
     from workhold.fixels.vise import OpeningVise, Vise
-    from workhold.model.fixture import Fixture, Peg, Pose
+    from workhold.model.fixture import Fixture, Peg
+    from workhold.model.pose import Pose
     from workhold.model.program import Program
     from workhold.model.query import Query
     from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
@@ -81,7 +82,7 @@ HOMES = {
     "Load": "workhold.model.requirements",
     "Peg": "workhold.model.fixture",
     "Plate": "workhold.fixels.plate",
-    "Pose": "workhold.model.fixture",
+    "Pose": "workhold.model.pose",
     "Program": "workhold.model.program",
     "Query": "workhold.model.query",
     "Restrictions": "workhold.model.requirements",

@@ -112,7 +112,7 @@ def test_sheet_of_the_second_side(run: Run, folder: Path) -> None:
     for wanted in (
         "Second set-up of the same part",
         "The part is turned over about the y axis of the first drawing, by half a turn.",
-        "Face 0 of this outline must not be touched: the first set-up cuts them (in the solid 3).",
+        "Face 0 of this outline must not be touched: the first set-up cuts face 3 of the solid.",
         "touched in both set-ups, in the first by its best fixture.",
         "supports in",
         "pegs above the plate 18.000 mm",

@@ -8,7 +8,8 @@ from random import Random
 import numpy as np
 
 from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
 
 QUARTER = tan(np.pi / 8)

@@ -13,7 +13,8 @@ from workhold.fixels.fence import Fence
 from workhold.fixels.plate import Plate
 from workhold.fixels.toolkit import Arrangement, Toolkit
 from workhold.fixels.vise import OpeningVise, Vise
-from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.pose import Pose
 from workhold.model.quality import FIGURES
 from workhold.model.requirements import Load
 from workhold.model.workpiece import Workpiece

@@ -8,7 +8,8 @@ from typing import TypeVar
 import numpy as np
 
 from workhold.fixels.plate import Plate
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
 
 WAYS = ("-x", "-y", "+x", "+y")

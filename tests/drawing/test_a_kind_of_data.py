@@ -20,7 +20,8 @@ from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import fixture_template, pin_list
 from workhold.fixels.setup_words import Datum, SetupWords
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.shown import shown
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE

@@ -14,7 +14,8 @@ from workhold.drawing import draw_fixture, draw_thumbnails
 from workhold.drawing.scene import text_width
 from workhold.errors import InputError
 from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
+from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
 
 Held = tuple[Fixture, Workpiece, Vise]

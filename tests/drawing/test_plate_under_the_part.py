@@ -12,7 +12,7 @@ from svg_reading import NAMESPACE, by_class, to_model
 
 from workhold.drawing import draw_fixture
 from workhold.files.dxf.writer import setup_dxf
-from workhold.model.fixture import Pose
+from workhold.model.pose import Pose
 from workhold.model.shown import Shown, shown
 from workhold.web.answers import carriers_answer
 

@@ -26,7 +26,8 @@ from workhold.drawing.sheet_facts import (
 from workhold.drawing.sheet_layout import standard_scale
 from workhold.fixels.carrier import Holes
 from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.requirements import Load
 from workhold.model.workpiece import Workpiece
 from workhold.statics.loads import load_cases

@@ -11,7 +11,7 @@ from strategies import outlines
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.upper_side import Mark, distinguishing_marks, marks_of, side_words
 from workhold.geometry.symmetry import is_own_mirror_image
-from workhold.model.fixture import Pose
+from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
 
 LENGTHS = LengthUnit.mm()

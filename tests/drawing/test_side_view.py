@@ -31,7 +31,8 @@ from workhold.drawing.sheet_heights import heights_of
 from workhold.drawing.side_view import WAYS, apart, side_view
 from workhold.errors import InputError
 from workhold.fixels.plate import Plate
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
 from workhold.units import INCH, MILLIMETRE, Unit
 

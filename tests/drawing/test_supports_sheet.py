@@ -188,7 +188,7 @@ def test_second_side_says_what_the_first_did() -> None:
         "Second set-up of the same part",
         "Second side up: −z of the file points up, z did before.",
         "The part is turned over about the y axis of the first drawing, by half a turn.",
-        "Faces 0 and 3 of this outline must not be touched: the first set-up cuts them (in the solid 4 and 7).",
+        "Faces 0 and 3 of this outline must not be touched: the first set-up cuts faces 4 and 7 of the solid.",
         "Face 2 of the solid is touched in both set-ups",
     ):
         assert wanted in words
@@ -202,7 +202,7 @@ def test_second_side_says_what_the_first_did() -> None:
     ]
     out_of_reach = FirstSide("-z", "z", "turned", (), (5,), (1, 2))
     assert side_up_words(SOLID.solid, out_of_reach)[1:] == [
-        "What the first set-up cuts (faces 5 of the solid) is not in reach of the pegs here.",
+        "What the first set-up cuts (face 5 of the solid) is not in reach of the pegs here.",
         "Faces 1 and 2 of the solid are touched in both set-ups, in the first by its best fixture.",
     ]
 

@@ -9,7 +9,8 @@ import pytest
 from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.pose import Pose
 from workhold.model.setup import contact_names, settings_of
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)

@@ -17,7 +17,8 @@ from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 from workhold.fixels.vise import OpeningVise, Vise
 from workhold.geometry.segment import Box
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.shown import Shown, placed_boxes, shown, shown_beside
 from workhold.model.workpiece import Workpiece
 

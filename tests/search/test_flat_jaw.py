@@ -20,7 +20,7 @@ from workhold import FlatJaw, InputError, Restrictions, Result, Workpiece, circl
 from workhold.contact.features import contact_features
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Segment
-from workhold.model.fixture import Pose
+from workhold.model.pose import Pose
 from workhold.search.explaining import explain
 
 TRUTHS = sorted((Path(__file__).parent.parent / "data" / "toolkits").glob("flat_*.json"))

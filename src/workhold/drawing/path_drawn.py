@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from workhold.drawing.annotation import Label, LabelPlacer, Place, around, leader_end
 from workhold.drawing.scene import GREY, Box, LengthUnit, Scene, View, number, text_width
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
 from workhold.model.moves import Moves, along
+from workhold.model.pose import Pose
 from workhold.model.program import Program
 from workhold.model.program_figures import tip_box, tool_figures
 from workhold.model.result import Result

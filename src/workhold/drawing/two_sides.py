@@ -39,16 +39,16 @@ def face_words(before: FirstSide) -> list[str]:
     """Sentences on faces that were cut before, and on those that both set-ups touch."""
     found = []
     cut = listed([str(number) for number in before.cut_of_solid]) if before.cut_of_solid else ""
+    cut_faces = f"face {cut}" if len(before.cut_of_solid) == 1 else f"faces {cut}"
     if before.cut:
         faces = listed([str(number) for number in before.cut])
         noun = "Face" if len(before.cut) == 1 else "Faces"
         found.append(
-            f"{noun} {faces} of this outline must not be touched: the first set-up cuts them (in the solid "
-            f"{cut})."
+            f"{noun} {faces} of this outline must not be touched: the first set-up cuts {cut_faces} of the solid."
         )
     elif before.cut_of_solid:
         found.append(
-            f"What the first set-up cuts (faces {cut} of the solid) is not in reach of the pegs here."
+            f"What the first set-up cuts ({cut_faces} of the solid) is not in reach of the pegs here."
         )
     else:
         found.append("The first set-up names no face that it cuts.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import atan, radians, tan
+from math import atan, tan
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +12,9 @@ from attrs import field, frozen
 from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.fixels.carrier import WALL, hole_name
-from workhold.geometry.segment import Arc, Line, Segment
-from workhold.geometry.symmetry import rotated
+from workhold.model.pose import Pose
 
-__all__ = ["Fixture", "Listed", "Pair", "Peg", "Pose"]
+__all__ = ["Fixture", "Listed", "Pair", "Peg"]
 
 
 @frozen
@@ -74,47 +73,6 @@ class Peg:
     def hole(self) -> str:
         """The hole's name: the carrier's letter, column letter, row number from 1, such as ``L-B3``."""
         return self.place or hole_name(self.carrier, self.column, self.row)
-
-
-@frozen
-class Pose:
-    """The map of a workpiece point q to R(theta) q + (x, y) in the vise frame; theta in degrees, x and y in
-    mm.
-
-    Points and directions are given by their coordinates, numbers or arrays of them.
-
-    Examples
-    --------
-    >>> pose = Pose(90.0, 40.0, 5.0)
-    >>> [round(float(v), 12) for v in (*pose.apply(3.0, 1.0), *pose.inverse.apply(39.0, 8.0))]
-    [39.0, 8.0, 3.0, 1.0]
-    """
-
-    theta_deg: float
-    x: float
-    y: float
-
-    @property
-    def inverse(self) -> Pose:
-        """The way back, from the vise frame to the workpiece's."""
-        x, y = rotated(-self.x, -self.y, -radians(self.theta_deg))
-        return Pose(-self.theta_deg, float(x), float(y))
-
-    def turn(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Directions of the workpiece as they point in the vise frame."""
-        return rotated(x, y, radians(self.theta_deg))
-
-    def apply(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Points of the workpiece, in mm, in the vise frame."""
-        turned_x, turned_y = self.turn(x, y)
-        return turned_x + self.x, turned_y + self.y
-
-    def carry(self, segment: Segment) -> Segment:
-        """A segment of the workpiece in the vise frame."""
-        if isinstance(segment, Line):
-            return Line(self.apply(*segment.start), self.apply(*segment.end))
-        middle = segment.mid_angle + radians(self.theta_deg)
-        return Arc(self.apply(*segment.center), segment.radius, middle, segment.half_sweep, segment.sign)
 
 
 @frozen

@@ -13,7 +13,8 @@ from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
 from workhold.model.clamps import ratios, working_forces
-from workhold.model.fixture import Fixture, Listed, Pair, Peg, Pose
+from workhold.model.fixture import Fixture, Listed, Pair, Peg
+from workhold.model.pose import Pose
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, known_figures_of
 from workhold.model.wall import ENDS
 from workhold.model.workpiece import Workpiece

@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 
 from workhold.delegates import delegate
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Pose
+from workhold.model.pose import Pose
 
 __all__ = [
     "CAGE_SHORT",

@@ -14,7 +14,8 @@ from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.errors import InputError
 from workhold.model.clamps import order_words
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
+from workhold.model.pose import Pose
 from workhold.model.seating import Seating
 from workhold.presenting.live_picture import LivePicture
 from workhold.seating.closing_simulation import simulate_closing

@@ -21,7 +21,8 @@ from workhold.drawing.panel import fixture_words
 from workhold.drawing.scene import Box, Scene, View, text_width
 from workhold.errors import InputError
 from workhold.geometry.segment import Point
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
+from workhold.model.pose import Pose
 from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.presenting.figure_words import figure_text, figures_shown, unit_of

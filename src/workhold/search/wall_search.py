@@ -36,8 +36,8 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.contact.rules import ROUNDING
 from workhold.listing.clamp_placement import axis_of
 from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_table
-from workhold.model.fixture import Pose
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.pose import Pose
 from workhold.model.query import Query
 from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
 from workhold.search.wall_contacts import (

@@ -22,7 +22,8 @@ from workhold.errors import InputError
 from workhold.kernels.base.distance import is_inside, outline_distances
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
 from workhold.kernels.seating.descent_paths import AT_SEAT, SAME_LEVEL
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
+from workhold.model.pose import Pose
 from workhold.model.seating import Seat
 from workhold.seating.closing import Closing
 from workhold.seating.join_tree import distances

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, FORCE, PEG, PIECE, SEPARATION
 from workhold.limits import thread_count
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
+from workhold.model.pose import Pose
 from workhold.model.result import Result
 from workhold.model.seating import Cage, Pass, Seat, SeatContact, Seating
 from workhold.model.workpiece import Workpiece

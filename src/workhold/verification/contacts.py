@@ -28,7 +28,7 @@ from attrs import field, frozen
 from flint import arb, arb_mat
 
 from workhold.fixels.pegs import Flat
-from workhold.model import fixture as model
+from workhold.model.pose import Pose
 from workhold.verification.ball_geometry import LineSide, Point, Side, cross, dot, least, root, turned
 from workhold.verification.tolerances import (
     FLAT,
@@ -71,7 +71,7 @@ class BallPose:
         return cls(theta, x, y, travels, theta.cos(), theta.sin())
 
     @classmethod
-    def written(cls, pose: model.Pose) -> BallPose:
+    def written(cls, pose: Pose) -> BallPose:
         """The pose of a file as the numbers that it is, without any travel."""
         return cls.of(arb(pose.theta_deg) * arb.pi() / 180, arb(pose.x), arb(pose.y), arb(0))
 

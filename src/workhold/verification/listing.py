@@ -29,7 +29,8 @@ from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
-from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.pose import Pose
 from workhold.model.quality import figures_in
 from workhold.model.query import Query
 from workhold.model.result import Result

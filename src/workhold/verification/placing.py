@@ -26,8 +26,8 @@ from math import radians
 
 from flint import arb, arb_mat, ctx
 
-from workhold.model import fixture as model
 from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.query import Query
 from workhold.model.requirements import Zone
 from workhold.model.workpiece import Workpiece
@@ -97,7 +97,7 @@ def degree() -> arb:
     return arb.pi() / 180
 
 
-def written_pose(written: model.Pose, travels: Sequence[float]) -> BallPose:
+def written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
     """All poses that agree with the file's, with travels in mm that agree with some likewise."""
     off = arb(0, AGREEMENT)
     theta = (written.theta_deg + off) * degree()
@@ -116,7 +116,7 @@ def gap_findings(touching: Sequence[tuple[str, BallContact, int]], around: BallP
 
 
 def proven_pose(
-    contacts: Sequence[BallContact], written: model.Pose, travels: Mapping[str, float]
+    contacts: Sequence[BallContact], written: Pose, travels: Mapping[str, float]
 ) -> tuple[BallPose | None, list[Finding]]:
     """The proven solution of the contact equations near the file's pose, if any, and what is wrong with it.
 

@@ -19,7 +19,8 @@ from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.fixels.carrier import WALL
-from workhold.model.fixture import Fixture, Pair, Peg, Pose
+from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.pose import Pose
 from workhold.model.quality import FIGURES, PROGRAM_FIGURE
 from workhold.verification.rules.travel import WAYS, clamp_place
 

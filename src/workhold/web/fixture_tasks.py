@@ -21,7 +21,8 @@ from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.seats import caption
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
+from workhold.model.pose import Pose
 from workhold.model.query import Query
 from workhold.model.recounted import ChosenSupports
 from workhold.model.result import Result

@@ -30,7 +30,8 @@ from workhold.errors import InputError
 from workhold.files.step.solids import Solid, read_solids
 from workhold.files.step.writer import setup_step, write_setup_step
 from workhold.fixels.vise import Vise
-from workhold.model.fixture import Fixture, Peg, Pose
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.pose import Pose
 from workhold.model.setup import part_zero
 from workhold.model.workpiece import Workpiece
 

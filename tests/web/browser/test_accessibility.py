@@ -14,7 +14,7 @@ from walking import Walk
 AXE = Path(__file__).parent / "data" / "axe.min.js"
 STATIC = files("workhold.web") / "static"
 # What shows bodies in three dimensions, and the library that draws them, as it came.
-OWN = ("edges.js", "glb-reading.js", "orbit.js", "plain-view.js", "space-view.js")
+OWN = ("edges.js", "glb-reading.js", "orbit.js", "plain-view.js", "playing.js", "space-view.js")
 LIBRARY = ("README.txt", "three-LICENSE.txt", "three.module.min.js")
 # Its unit, and which of its parts, are open.
 ASKING = {

@@ -27,7 +27,8 @@ from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.dowels import JawPlate, plate_places
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
+from workhold.model.pose import Pose
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.shown import MOST_HOLES, Shown, shown
 from workhold.model.workpiece import Workpiece

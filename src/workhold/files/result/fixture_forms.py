@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from workhold.errors import InputError
 from workhold.files.result.forms import FormPart, Head, Pair
-from workhold.model.fixture import Pose
+from workhold.model.pose import Pose
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.seating import Seating
 

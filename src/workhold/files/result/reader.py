@@ -33,8 +33,8 @@ from workhold.files.result.parts import (
 )
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Pose
 from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.pose import Pose
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION, PROGRAM_FIGURE
 from workhold.model.query import Query
 from workhold.model.result import Result

@@ -25,7 +25,7 @@ from workhold.files.step.reader import guarded, prepare
 from workhold.files.step.solids import along, read_solids, sub_shapes
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Point
-from workhold.model.fixture import Pose
+from workhold.model.pose import Pose
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 

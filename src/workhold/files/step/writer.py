@@ -26,7 +26,8 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.dowels import JawPlate, plate_places
-from workhold.model.fixture import Fixture, Pose
+from workhold.model.fixture import Fixture
+from workhold.model.pose import Pose
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.workpiece import Workpiece
 
