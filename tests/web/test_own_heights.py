@@ -62,6 +62,7 @@ def test_a_part_that_is_checked_keeps_its_outlines(server: RunningServer, part: 
     """A link holds them, and gets them back."""
     told = server.client.post("/api/parts/check", json=part).json()
     assert told["outlines"] == part["outlines"]
+    assert min(told["own_faces"]["clamp"]) == len(told["segments"])
 
 
 def test_what_cannot_be_is_refused(server: RunningServer, block: Path, part: dict[str, Any]) -> None:

@@ -20,7 +20,7 @@ from step_shapes import box, write_step
 
 from workhold import InputError, load, solids_in
 from workhold.files.part.survey import survey
-from workhold.files.step.body_names import shown_name
+from workhold.files.step.body_names import ProductPlace, name_of, shown_name
 
 BOXES = (box(60, 40, 10), box(20, 20, 5, (0, 0, 20)), box(12, 10, 5, (30, 0, 20)), box(8, 5, 5, (45, 0, 20)))
 
@@ -87,7 +87,7 @@ def test_bodies_of_one_product_are_listed(tmp_path: Path) -> None:
 @pytest.mark.parametrize("height", [None, 4.0])
 def test_a_solid_is_chosen_by_its_name(tmp_path: Path, height: float | None) -> None:
     """As it is written, else in any mixture of capitals, as its number chooses it; at any height of the pegs."""
-    path = bodies(tmp_path / "part.step", "base", "lug", "Lug", "eye")
+    path = bodies(tmp_path / "part.step", "base", "lug", "Lug", "Eye")
     for name, wide in (("base", 60), ("lug", 20), ("Lug", 12), ("EYE", 8), ("4", 8), (4, 8)):
         x0, _, x1, _ = load(path, part_number=name, peg_height=height).bounds
         assert x1 - x0 == pytest.approx(wide), name
@@ -140,3 +140,20 @@ def test_names_are_made_fit_to_be_shown() -> None:
         for name in ("=>[0:1:1:3]", "SOLID", "NAUO12", "7", "Open CASCADE STEP translator 8.0 1")
     ] == [""] * 5
     assert shown_name("Solid base") == "Solid base"
+
+
+def test_the_nearest_name_is_taken() -> None:
+    """The body's own among several of a product, else the product's; that of the whole assembly is none of a solid's."""
+
+    class Entity:
+        def __getattr__(self, name: str) -> Any:
+            return lambda *_: "boss" if name == "ToCString" else self
+
+    solid = box(1, 1, 1)
+    for names, count, wanted in (
+        (("machine", "machine", "the gear", "gear"), 1, "gear"),
+        (("machine", "machine", "the gear", "gear"), 2, "boss"),
+        (("machine", "machine", "", ""), 1, "boss"),
+        (("gear", "gear"), 1, "gear"),
+    ):
+        assert name_of(solid, ProductPlace(solid, names), count, Entity()) == wanted
