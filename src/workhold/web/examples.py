@@ -54,8 +54,8 @@ SVG = (
 # The beginning of one: a whole one would fill pages.
 NO_STEP = "ISO-10303-21;\nHEADER;\n"
 OF_NO_SOLID = {
-    "error": "plate.step: the part of this result was not read from a solid at the height of the pegs: design "
-    "it again from its STEP file to show its shape.",
+    "error": "plate.step: the part of this result was not read from a solid at the height of the pegs: "
+    "design it again from its STEP file to show its shape.",
     "place": None,
 }
 PROGRAM = {

@@ -106,7 +106,7 @@ class ServerJob:
 
     @property
     def size(self) -> int:
-        """About how many bytes the job keeps: request, shape of the part, fixtures, and orders of the list."""
+        """About how many bytes the job keeps: request, shape, fixtures, and orders of the list."""
         kept = self.weight + shape_size(self.shape)
         kept += sum(found.index.nbytes + found.like.nbytes for found in self.orders.values())
         if self.result is None:
