@@ -44,7 +44,8 @@ def face_words(before: FirstSide) -> list[str]:
         faces = listed([str(number) for number in before.cut])
         noun = "Face" if len(before.cut) == 1 else "Faces"
         found.append(
-            f"{noun} {faces} of this outline must not be touched: the first set-up cuts {cut_faces} of the solid."
+            f"{noun} {faces} of this outline must not be touched: the first set-up cuts {cut_faces} of the "
+            "solid."
         )
     elif before.cut_of_solid:
         found.append(

@@ -45,9 +45,7 @@ Array = NDArray[np.float64]
 AGREES = 1e-5
 # A share of the opening, by which less than the capture opening is less.
 LESS = 1e-6
-NO_PASS = (
-    "The pass at which its cage opens could not be settled: from where on the part is caught is not known."
-)
+NO_PASS = "The pass at which its cage opens could not be settled: from where on it is caught is not known."
 
 
 @define(eq=False)
