@@ -5,6 +5,7 @@ Their coincidences (concentric arcs, equal radii, a pitch that equals a dimensio
 
 from __future__ import annotations
 
+from random import Random
 from typing import Any
 
 import pytest
@@ -103,3 +104,11 @@ def test_fences_agree_with_a_slow_search(seed: int) -> None:
     result = design(part, fence)
     assert len(result) > 0
     assert seen_on_fence(result) == slow_fence(part, fence)
+
+
+def test_pegs_in_two_bores_nearly_as_far_apart_as_the_holes_are_decided() -> None:
+    """Two pegs 64.76 mm apart in bores 64 mm apart move far in a narrow range, where slopes are hardly bounded."""
+    link = Workpiece.from_loops("link", SHAPES["link"](Random(67)))
+    vise = Vise((12.7, 12.7), 4, 3.175, min_gap=12.7, body_radius=3.175)
+    result = design(link, vise, best=1)
+    assert result.proof is not None and result.proof.undecided == ()

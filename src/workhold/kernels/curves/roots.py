@@ -50,6 +50,8 @@ NARROWEST = 1e-8
 FARTHEST = 1e-6
 # A guard against endless work; what is left after so many splits of one pair is given as it is.
 MOST_SPLITS = 4096
+# Splits after which chords themselves are bounded, also where something is known of the slopes.
+MANY_SPLITS = 256
 STACK_DEPTH = 256
 MOST_ROOTS = 1 << 15
 # Rounding of an interpolated value in mm or radians, generously counted.
@@ -300,12 +302,16 @@ def crossings(
             steep = max(max(-low1, high1), max(-low2, high2)) * width > FARTHEST
             smallest = NARROWEST_DISC if steep else NARROWEST
             # Where nothing is known of a curve's slopes, as beside a tangency, its chords themselves are
-            # bounded.
-            if width <= WIDEST_DISC and not (isfinite(bottom1) and isfinite(top1)):
-                bottom1, top1 = disc_bounds(low, high, one, features, curves, mode)
-                smallest = NARROWEST_DISC
-            if width <= WIDEST_DISC and not (isfinite(bottom2) and isfinite(top2)):
-                bottom2, top2 = disc_bounds(low, high, two, features, curves, mode)
+            # bounded, and where so little is known that many splits have not helped.
+            blind1 = not (isfinite(bottom1) and isfinite(top1))
+            blind2 = not (isfinite(bottom2) and isfinite(top2))
+            if width <= WIDEST_DISC and (blind1 or splits >= MANY_SPLITS):
+                least, most = disc_bounds(low, high, one, features, curves, mode)
+                bottom1, top1 = (least, most) if blind1 else (max(bottom1, least), min(top1, most))
+            if width <= WIDEST_DISC and (blind2 or splits >= MANY_SPLITS):
+                least, most = disc_bounds(low, high, two, features, curves, mode)
+                bottom2, top2 = (least, most) if blind2 else (max(bottom2, least), min(top2, most))
+            if width <= WIDEST_DISC and (blind1 or blind2):
                 smallest = NARROWEST_DISC
             # Where the errors are the larger part of what is known, splitting gains nothing.
             doubt = 2.0 * (max(g1, q1) + max(g2, q2))
