@@ -81,31 +81,39 @@ def test_faces_are_named_by_clicking(scripted: Scripted) -> None:
     """No contact lies on a face to leave alone; a face that lies level is refused."""
     answer = scripted(
         """
-held = fixture.make(document, block, "z", "plate-20mm")
-import json
+import json, Part
+corners = [App.Vector(*corner) for corner in ((0, 0), (70, 0), (70, 45), (25, 60), (0, 35), (0, 0))]
+five = document.addObject("Part::Feature", "Five")
+five.Shape = Part.Face(Part.makePolygon(corners)).extrude(App.Vector(0, 0, 12))
+document.recompute()
+held = fixture.make(document, five, "z", "plate-20mm")
 def sides():
     found = json.loads(held.ResultText)["fixtures"]
     return sorted({peg["segment"] for one in found for peg in one["pegs"]})
 fixture.design(held)
 every = sides()
-path = solid.export(solid.shape_of(block), ".")
+path = solid.export(solid.shape_of(five), ".")
 numbers = {}
-for k, face in enumerate(block.Shape.Faces, 1):
+for k, face in enumerate(five.Shape.Faces, 1):
     try:
-        numbers["Face%d" % k] = solid.face_numbers(path, solid.shape_of(block), ["Face%d" % k], "z", [])[0]
+        numbers["Face%d" % k] = solid.face_numbers(path, solid.shape_of(five), ["Face%d" % k], "z", [])[0]
     except child.Refusal as refusal:
         numbers["Face%d" % k] = str(refusal)
 names = [name for name, number in numbers.items() if isinstance(number, list)]
-held.Avoid = [names[0]]
+held.Avoid = [names[3]]
 fixture.design(held)
-answered(every=every, numbers=numbers, left=sides(), axis=[solid.axis_of_face(f) for f in block.Shape.Faces])
+left, held.Avoid, held.Only = sides(), [], names[:3] + names[4:]
+fixture.design(held)
+answered(every=every, numbers=numbers, left=left, only=sides(), axis=[solid.axis_of_face(f) for f in block.Shape.Faces])
 """
     )
     named = [number for number in answer["numbers"].values() if isinstance(number, list)]
-    assert sorted(number for numbers in named for number in numbers) == [0, 1, 2, 3]
+    assert sorted(number for numbers in named for number in numbers) == [0, 1, 2, 3, 4]
     refused = [number for number in answer["numbers"].values() if isinstance(number, str)]
     assert len(refused) == 2 and all("nothing touches it anyway" in words for words in refused)
-    assert answer["every"] == [0, 1, 2, 3] and named[0][0] not in answer["left"]
+    assert answer["every"] == [0, 1, 2, 3, 4] and named[3][0] not in answer["left"]
+    # To touch the others only is the same as to leave that one alone.
+    assert answer["left"] and answer["only"] == answer["left"]
     assert sorted(answer["axis"]) == ["-x", "-y", "-z", "x", "y", "z"]
 
 
@@ -154,15 +162,17 @@ except child.Refusal as refusal:
     early = str(refusal)
 sent = cam.send(held)
 job = cam.job_of(held)
+linked = job.Fixture.Name
 job.PostProcessorOutputFile = App.ActiveDocument.Name and __import__("os").path.abspath("job.nc")
 answered(early=early, sent=sent, taken=cam.take_program(held), tools=open(held.Tools).read(),
-         near=fixture.rows(held)[0].get("program_clearance"))
+         linked=[linked, held.Name], near=fixture.rows(held)[0].get("program_clearance"))
 """
     )
     assert (tmp_path / "sheet.pdf").read_bytes().startswith(b"%PDF")
     assert (tmp_path / "second.png").read_bytes().startswith(b"\x89PNG")
     assert answer["early"].startswith("No job has this part as its model")
     assert answer["sent"].startswith("Job of Block has 8 bodies")
+    assert answer["linked"][0] == answer["linked"][1]
     assert answer["taken"].startswith("Fixture ")
     assert answer["tools"].startswith("tool,diameter\n1,")
     # From the first cut to the left side 12 mm, less the radius of the default end mill; holes are never nearer.
@@ -190,11 +200,21 @@ def go():
         panel.toolkit.setEditText("two-clamp-plate-20mm")
         panel.height.setProperty("quantity", App.Units.Quantity("8 mm"))
         panel.design()
+        # Numbers sort as numbers: the last of twenty is not the ninth.
+        panel.table.sortItems(0, QtCore.Qt.DescendingOrder)
+        panel.table.selectRow(0)
+        last = panel.rank()
+        panel.table.sortItems(0)
         panel.table.selectRow(1)
         panel.put_in()
         Gui.getMainWindow().grab().save(shot)
-        answered(up=held.Up, rows=panel.table.rowCount(), state=panel.state.text(), bodies=len(held.Group),
-                 picture=panel.picture.pixmap().width())
+        put_in, bodies = panel.state.text(), len(held.Group)
+        ball = document.addObject("Part::Sphere", "Ball")
+        document.recompute()
+        held.HeldPart = ball
+        panel.design()
+        answered(up=held.Up, rows=panel.table.rowCount(), state=put_in, bodies=bodies, last=last,
+                 ball=panel.state.text(), picture=panel.picture.pixmap().width())
     except BaseException:
         answered(fault=traceback.format_exc())
     finally:
@@ -206,7 +226,9 @@ QtCore.QTimer.singleShot(1000, go)
         QTWEBENGINE_DISABLE_SANDBOX="1",
     )
     assert answer["up"] == "z" and answer["rows"] == 20
-    assert answer["state"] == "Fixture 2 of 20." and answer["bodies"] == 8
+    assert answer["state"] == "Fixture 2 of 20." and answer["bodies"] == 8 and answer["last"] == 20
+    # What is no prism is said in the panel.
+    assert answer["ball"].startswith("Ball: ") and "upright" in answer["ball"]
     assert answer["picture"] == 420 and (tmp_path / "window.png").stat().st_size > 10_000
 
 
