@@ -186,6 +186,7 @@ class Remade:
     key: str
     task: Fatal
     states: list[str]
+    failures: list[Exception]
 
     @property
     def status(self) -> str:
@@ -194,22 +195,32 @@ class Remade:
     def add_done_callback(self, call: Callable[[Remade], None]) -> None:
         call(self)
 
-    def result(self) -> Outcome:
+    def result(self, timeout: float) -> Outcome:
+        """The record, after failures to fetch it: too late, or with a connection that ends."""
+        assert timeout > 0
+        if self.failures:
+            raise self.failures.pop(0)
         return Outcome(self.task.name, refusal_record("done again"), "")
 
 
 @pytest.mark.parametrize(
-    "states", [["finished"], ["lost", "lost", "finished"], ["pending", "lost", "finished"]]
+    ("states", "failures"),
+    [
+        (["finished"], []),
+        (["lost", "lost", "finished"], []),
+        (["pending", "lost", "finished"], []),
+        (["finished"], [TimeoutError(), ConnectionError()]),
+    ],
 )
 def test_what_is_lost_with_its_worker_before_it_is_fetched_is_made_again(
-    tmp_path: Path, states: list[str]
+    tmp_path: Path, states: list[str], failures: list[Exception]
 ) -> None:
     from workhold.batch.cluster import ClusterWorkers
 
     onlooker = Onlooker()
     queue = ClusterWorkers(onlooker)
     queue.client = SimpleNamespace(
-        submit=lambda call, task, store, key, pure: Remade(key, task, list(states)),
+        submit=lambda call, task, store, key, pure: Remade(key, task, list(states), list(failures)),
         nthreads=lambda: {"worker": 1},
         cancel=lambda futures: None,
         status="running",

@@ -254,7 +254,7 @@ BAD = [
     (("--threads", "0"), "--threads 0 is not a positive whole number"),
     (("--type", "III"), "--type 'III' is not known: give I, II or both"),
     (("--format", "xml"), "--format 'xml' is not known: give json, csv or npz"),
-    (("--part", "0"), "--part 0 is not a positive whole number"),
+    (("--part", "0"), "There is no part 0"),
     (("--join-tolerance", "wide"), "--join-tolerance 'wide' is not a length"),
     (("--unit", "furlong"), "'furlong'"),
     (("--colums", "3"), "No such option: --colums"),

@@ -160,7 +160,14 @@ def test_an_interrupted_run_leaves_a_report_that_says_so(tmp_path: Path) -> None
     """Ctrl-C ends the section at work, which is marked; what was whole before is in the report, and the rest is named."""
     command = [sys.executable, str(SCRIPT), "--quick", "--out", str(tmp_path)]
     command += only(("table-two", "engines", "proofs"))
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    # Whoever runs the tests in the background of a shell ignores the signal, and so would the script.
+    with subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as process:
         while process.poll() is None and not (tmp_path / "data" / "table-two.json").exists():
             sleep(0.02)
         os.kill(process.pid, signal.SIGINT)

@@ -108,7 +108,7 @@ def test_what_cannot_be_read_is_refused_in_the_words_of_the_page(
 def test_the_description_names_the_form(server: RunningServer) -> None:
     """OpenAPI has the address, the form with its parts, and the same form in a search."""
     told = server.client.get("/api/openapi.json").json()
-    assert "/api/programs" in told["paths"]
+    assert "/api/v1/programs" in told["paths"]
     forms = told["components"]["schemas"]
     assert {
         "text",

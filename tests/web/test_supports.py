@@ -193,7 +193,7 @@ def test_none_is_said_where_there_is_none(server: RunningServer, place: str) -> 
 def test_the_description_has_an_example(server: RunningServer, place: str) -> None:
     """The example of the description can be sent as it is."""
     description = server.client.get("/api/openapi.json").json()
-    assert "/api/jobs/{name}/fixtures/{rank}/supports" in description["paths"]
+    assert "/api/v1/jobs/{name}/fixtures/{rank}/supports" in description["paths"]
     assert description["components"]["schemas"]["SupportsForm"]["examples"] == [EXAMPLE]
     assert server.client.post(f"{place}/supports", json=EXAMPLE).json()["sets"]
 

@@ -32,6 +32,7 @@ USES = {
     "build123d": "Reads parts of build123d, and gives it fixtures as assemblies.",
     "batch": "Writes the tables of batch as Parquet, and finds the fewest set-ups of a family.",
     "tables": "Gives fixtures as tables of pandas and Arrow.",
+    "widget": "Steps through fixtures, pushes and closes them in a notebook.",
     "cluster": "Runs batch on a cluster of Dask.",
     "mcp": "Offers tools to an agent over the Model Context Protocol.",
 }

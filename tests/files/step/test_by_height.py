@@ -27,6 +27,7 @@ from workhold import Fence, Plate, Restrictions, Vise, Workpiece, design, load, 
 from workhold import open as workhold_open
 from workhold.cli.main import app
 from workhold.errors import InputError
+from workhold.files.part.survey import survey
 from workhold.files.step.by_height import HeightView, shapes_by_height
 from workhold.files.step.heights import StandingSolid, standing
 from workhold.files.step.regions import area_of, section
@@ -238,6 +239,15 @@ def test_axes_are_right_handed() -> None:
     assert over[:, 0].min() == pytest.approx(-30)
     under = shapes_by_height([marked], HeightView(axis="z", peg_height=3.0, head_room=0.0)).loops[0]
     assert [5.0, 4.0] in np.round(under[:, :2], 6).tolist()
+
+
+@pytest.mark.parametrize("height", [None, 8.0])
+def test_what_other_heights_offer_is_listed_whoever_names_one(tmp_path: Path, height: float | None) -> None:
+    """A flange over a foot: the table has a row below and one above the foot's top."""
+    flanged = fused(box(50, 30, 10), box(50, 40, 6, (0, -5, 10)))
+    path = write_step(tmp_path / "flanged.step", flanged)
+    loaded = survey(path, peg_height=height).loaded
+    assert loaded is not None and len({row.touchable for row in loaded.heights}) >= 2
 
 
 def pegs_touch(

@@ -206,6 +206,7 @@ def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawin
         if kind == "svg":
             from workhold.files.svg.reader import read_svg
 
+            taken.pop("layers", None)
             return read_svg(content, **{"unit": None, **taken})
     except InputError:
         pass

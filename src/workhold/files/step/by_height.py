@@ -287,13 +287,21 @@ def turned_up(chosen: Solid, view: HeightView) -> StandingSolid:
     return standing(along(chosen.shape, axis_named(view.axis)))
 
 
-def drawn(shape: Any, solid: StandingSolid, view: HeightView, *, is_advised: bool = True) -> HeightDrawing:
+def drawn(
+    shape: Any,
+    solid: StandingSolid,
+    view: HeightView,
+    *,
+    is_advised: bool = True,
+    has_table: bool = True,
+) -> HeightDrawing:
     """The outline of a solid, with remarks on what may be touched and on a height that offers more.
 
     Parameters
     ----------
     shape : the solid as the file has it.
-    is_advised : whether heights that help are named, for which many are looked at.
+    is_advised : whether a refusal names a height that helps, for which many are looked at.
+    has_table : whether what other heights offer is listed, for which many are looked at.
 
     Raises
     ------
@@ -316,7 +324,7 @@ def drawn(shape: Any, solid: StandingSolid, view: HeightView, *, is_advised: boo
     found = SolidOutline(axis, *sizes, ordered.bands, ordered.faces, **known_levels(solid))
     own = tuple(own_drawings(solid, view.heights, found))
     plain_prism = view.peg_height is None and is_prism(solid)
-    rows = height_table(solid, room, least) if is_advised and not plain_prism else []
+    rows = height_table(solid, room, least) if has_table and not plain_prism else []
     remarks = [] if plain_prism else height_remarks(outline, found, rows, ordered.feet)
     if any(band is None for band in ordered.bands):
         remarks += other_axis_remarks(shape, axis)

@@ -163,7 +163,7 @@ def shape_of_outline(
         if abs(found.height - height) > SAME_HEIGHT:
             continue
         with suppress(InputError):
-            own = drawn(solid.shape, found, HeightView(**view), is_advised=False)
+            own = drawn(solid.shape, found, HeightView(**view), is_advised=False, has_table=False)
             if is_same(loops, own.loops) and has_levels(levels, levels_of(own.solid)):
                 return *meshed(found.shape), kept(found.shape)
     raise InputError(
