@@ -36,6 +36,7 @@ def test_what_was_understood_is_told_and_drawn(walk: Walk) -> None:
     rows = page.locator("#program-tools tbody tr").all_inner_texts()
     assert [row.split()[:2] for row in rows] == [["T1", "10.00"], ["T3", "9.00"], ["T2", "8.00"]]
     assert "13–30" in rows[0] and "49–70" in rows[2]
+    walk.seen("#program-words:has-text('stays above pegs')")
     words = page.inner_text("#program-words")
     assert "61 moves" in words and "T1 stays above pegs 6.0 mm high" in words
     assert "Lines 8, 31, 43 and 71" in page.inner_text("#program-notes")
