@@ -198,6 +198,8 @@ def design(obj, cancel=None, wait=None):
             "The fixture that was chosen is not among the best {} any more: {}. "
             "The first of them is put in its place: {}.".format(len(fixtures), lost, names)
         )
+    if not json.loads(obj.ResultText)["complete"]:
+        obj.State += " The search was stopped before its end: there may be better ones."
     return obj.State
 
 

@@ -199,6 +199,8 @@ def go():
         panel = commands.shown_panel()
         panel.toolkit.setEditText("two-clamp-plate-20mm")
         panel.height.setProperty("quantity", App.Units.Quantity("8 mm"))
+        # That an earlier search was stopped does not stop the next one.
+        panel.cancel.set()
         panel.design()
         # Numbers sort as numbers: the last of twenty is not the ninth.
         panel.table.sortItems(0, QtCore.Qt.DescendingOrder)
@@ -349,3 +351,33 @@ answered(first=first, killed=len(killed), said=said, kept=kept, again=again)
     assert answer["said"] == "refused: Workhold was ended before it had an answer: choose the command again."
     assert answer["kept"] == [answer["first"], 8, 20]
     assert answer["again"] == answer["first"]
+
+
+def test_a_search_that_is_stopped_says_so(scripted: Scripted) -> None:
+    """At once nothing is found, and the fixture that there was stays; of a list that is not whole the state says so."""
+    answer = scripted(
+        HELD
+        + """
+import json, threading
+first = fixture.design(held)
+stop = threading.Event()
+said = said_by(lambda: fixture.design(held, cancel=stop, wait=stop.set))
+bodies = len(held.Group)
+whole = fixture.answer
+def partly(*words, **more):
+    seen = whole(*words, **more)
+    path = words[words.index("--out") + 1]
+    told = json.loads(path.read_text(encoding="utf-8"))
+    told["complete"] = False
+    path.write_text(json.dumps(told), encoding="utf-8")
+    return seen
+fixture.answer = partly
+answered(first=first, said=said, bodies=bodies, partly=fixture.design(held))
+"""
+    )
+    assert answer["first"] == "Fixture 1 of 20." and answer["bodies"] == 8
+    assert answer["said"].startswith("refused: ") or answer["said"].endswith("there may be better ones.")
+    assert (
+        answer["partly"]
+        == "Fixture 1 of 20. The search was stopped before its end: there may be better ones."
+    )
