@@ -87,6 +87,8 @@ $(INSTALLED): pyproject.toml constraints.txt $(SOURCES) | $(BIN)/python
 	    echo 'There is no linker (gcc or binutils) here, so kernels are compiled on first use, in half a minute.' && \
 	    $(INSTALL) -e '.[numba]'; \
 	fi
+	@# The tests are of these sources, not of the wheel that now stands in their place.
+	@rm -f $(VENV)/.installed-*
 	@touch $@
 
 $(VENV)/.installed-%: pyproject.toml constraints.txt | $(BIN)/python
