@@ -54,7 +54,7 @@ def built(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("built")
     source = folder / "source"
     left_out = shutil.ignore_patterns(
-        ".*", "*.so", "*.egg-info", "__pycache__", "build", "dist", "demo", "paper", "site"
+        ".*", "*.so", "*.egg-info", "__pycache__", "build", "dist", "demo", "site"
     )
     shutil.copytree(ROOT, source, ignore=left_out)
     program = "import sys; sys.path.insert(0, 'building'); import backend; backend.build_sdist(sys.argv[1])"
