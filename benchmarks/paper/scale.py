@@ -73,12 +73,10 @@ def run_catalogue(data: dict[str, Any], folder: Path, count: int) -> Iterator[tu
     data["load"] = os.getloadavg()[0]
     yield 0.65, "two workers, killed and resumed"
     data["killed"] = killed_and_resumed(parts, folder / "killed", len(records))
-    data["same_two"] = records_of(folder / "two") == records
-    data["same_killed"] = records_of(folder / "killed") == records
+    others = {name: records_of(folder / name) for name in ("two", "killed")}
+    data["same_two"], data["same_killed"] = others["two"] == records, others["killed"] == records
     data["unlike"] = sum(
-        records_of(folder / name).get(path) != told
-        for name in ("two", "killed")
-        for path, told in records.items()
+        found.get(path) != told for found in others.values() for path, told in records.items()
     )
     yield 0.9, "what is known"
     fewer = write_parts(folder / "fewer", max(count // TENTH, 1))
