@@ -32,7 +32,6 @@ from workhold.web.form import (
     Number,
     Point,
     of_address,
-    sentence_of,
 )
 from workhold.web.part_forms import WorkpieceForm
 from workhold.web.program_forms import ProgramForm
@@ -42,7 +41,6 @@ __all__ = [
     "JobForm",
     "LoadsForm",
     "asked_loads",
-    "sentence_of",
 ]
 
 

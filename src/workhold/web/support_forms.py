@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter
 
-from workhold.errors import InputError
 from workhold.model.support_request import SpatialLoad
 from workhold.web.form import (
     LARGEST,
@@ -20,7 +19,7 @@ from workhold.web.form import (
     Name,
     Number,
     Point,
-    sentence_of,
+    of_address,
 )
 
 __all__ = ["ChosenSupportsForm", "FirstSideForm", "SpatialLoadForm", "SupportsForm", "asked_of"]
@@ -117,10 +116,4 @@ def asked_of(form: type[Asked], name: str, text: str | None) -> Asked | None:
     InputError
         For anything else.
     """
-    if text is None:
-        return None
-    try:
-        return form.model_validate_json(text)
-    except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False)[0]
-        raise InputError(sentence_of({**first, "loc": ("query", name, *map(str, first["loc"]))})) from error
+    return None if text is None else of_address(TypeAdapter(form), name, text)

@@ -196,18 +196,17 @@ MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
 
 def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawing:
     """All that is drawn in a DXF or SVG file, nothing where it cannot be read, or holds no drawing."""
-    taken = {name: options[name] for name in ("unit", "layers", "fit") if options.get(name) is not None}
+    taken = {name: options.get(name) for name in ("unit", "fit")}
     try:
         kind = kind_of(path, content)
         if kind == "dxf":
             from workhold.files.dxf.reader import read_dxf
 
-            return read_dxf(path, content, **{"unit": None, "layers": None, **taken})
+            return read_dxf(path, content, layers=options.get("layers"), **taken)
         if kind == "svg":
             from workhold.files.svg.reader import read_svg
 
-            taken.pop("layers", None)
-            return read_svg(content, **{"unit": None, **taken})
+            return read_svg(content, **taken)
     except InputError:
         pass
     return Drawing(())

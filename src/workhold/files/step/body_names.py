@@ -148,4 +148,4 @@ def name_of(solid: Any, place: ProductPlace, count: int, process: Any) -> str:
     # The assembly of all says nothing about one of its solids.
     nearest = place.names[2:] or place.names
     of_product = next((name for name in reversed(nearest) if name), "")
-    return own or of_product if count > 1 or not of_product else of_product
+    return of_product if count == 1 and of_product else own or of_product
