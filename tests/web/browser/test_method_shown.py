@@ -165,6 +165,31 @@ def test_a_part_of_ones_own_is_taken(browser: Any, server: RunningServer) -> Non
     assert [line for line in shown.troubles if "400" not in line] == []
 
 
+def test_what_a_file_leaves_open_is_asked_once(browser: Any, server: RunningServer) -> None:
+    """A file with curves to fit is refused with the way to go, and its fitted part comes along from the other page."""
+    home = f"http://127.0.0.1:{server.address[1]}/"
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    shown = LessonPage(context.new_page(), f"{home}method")
+    page = shown.page
+    bow = {"name": "bow.svg", "mimeType": "image/svg+xml", "buffer": BOW}
+    page.set_input_files("#file", bow)
+    page.locator("#trouble", has_text="asks what a file leaves open").wait_for()
+    page.click("text=Find fixtures")
+    page.wait_for_selector("body[data-ready=true]")
+    page.set_input_files("#file", bow)
+    page.click('#file-asks [data-fit="0.05"]')
+    page.wait_for_selector("#faces button")
+    page.click("#show-method")
+    page.wait_for_selector('body[data-lesson="bow"]:not(.busy)')
+    assert page.input_value("#example") == ""
+    page.reload()
+    page.wait_for_selector('body[data-lesson="bow"]:not(.busy)')
+    context.close()
+    assert [line for line in shown.troubles if "400" not in line] == []
+
+
+BOW = b"""<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">
+<path d="M10 10H90C115 10 115 70 90 70H10Z"/></svg>"""
 PLATE = json.dumps(
     {
         "name": "part",

@@ -5,7 +5,7 @@
 import { ApiError, ask, send, surveyPart } from "./api.js";
 import { byId, make, show } from "./dom.js";
 import { outlinesOf } from "./own-outlines.js";
-import { state } from "./state.js";
+import { state, workpieceForm } from "./state.js";
 import { countText } from "./units.js";
 
 const POLL = 250;
@@ -105,7 +105,7 @@ async function search() {
     const read = entries.filter((entry) => entry.part);
     for (const { part, file } of read) await outlinesOf(part, { file, how: {} });
     if (mine !== latest) return;
-    const workpieces = read.map(({ name, part }) => ({ name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null, outlines: part.outlines ?? {} }));
+    const workpieces = read.map(({ name, part }) => workpieceForm(part, name));
     const asked = { workpieces, toolkit: state.toolkit, types: state.types, contact_margin: state.contactMargin, tolerance: state.tolerance };
     const begun = await send("families", asked);
     if (mine !== latest) {

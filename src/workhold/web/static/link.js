@@ -3,7 +3,7 @@
  *
  * A fragment never leaves the browser, so the server does not learn it.
  */
-import { state } from "./state.js";
+import { state, workpieceForm } from "./state.js";
 
 /** Keys of the state that a link carries. */
 const CARRIED = [
@@ -19,7 +19,7 @@ export function snapshot() {
   const { part, job, selected, pinned } = state;
   return {
     known: Object.fromEntries(CARRIED.map((key) => [key, state[key]])),
-    part: part && { name: part.name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null, outlines: part.outlines ?? {} },
+    part: part && workpieceForm(part),
     job: job?.job ?? null,
     searched: job !== null,
     rank: selected?.rank ?? null,

@@ -16,7 +16,7 @@ import { restore, setUpsPanel } from "./set-ups.js";
 import { spaceDialog } from "./space-dialog.js";
 import { programPanel, takeUpProgram } from "./program-panel.js";
 import { partDrawing, showView, stagePanel } from "./stage-panel.js";
-import { change, on, state } from "./state.js";
+import { change, on, state, workpieceForm } from "./state.js";
 import { supportsPanel } from "./supports-panel.js";
 import { takePanel } from "./take-panel.js";
 import { trialPanel } from "./trial-panel.js";
@@ -45,6 +45,16 @@ async function takeUpState() {
   await restore(kept);
 }
 
+/** Hand the part over to the page that explains the method: what a file left open is answered here, once. */
+function handOver() {
+  try {
+    if (state.part) sessionStorage.setItem("workhold-lesson", JSON.stringify(workpieceForm(state.part)));
+    else sessionStorage.removeItem("workhold-lesson");
+  } catch {
+    // A browser may have no room, or keep nothing: that page begins with an example then.
+  }
+}
+
 /** The next frame, or a tenth of a second where none is drawn. */
 function painted() {
   return new Promise((resolve) => {
@@ -62,6 +72,7 @@ async function begin() {
   partPanel({ drawing: partDrawing, onDraw: () => change({ view: "draw" }) });
   listenToSections();
   listenToKeys();
+  byId("show-method").addEventListener("click", handOver);
   writeGrids();
   on(["unit"], writeGrids);
   partDrawing.show();

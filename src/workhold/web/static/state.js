@@ -105,10 +105,15 @@ export function programRequest(program) {
   return { ...program };
 }
 
+/** A part as the server takes it, under its own name or another. @param {any} part */
+export function workpieceForm(part, name = part.name) {
+  return { name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null, outlines: part.outlines ?? {} };
+}
+
 /** What the server is asked to search. */
 export function request() {
   return {
-    workpiece: { name: state.part.name, loops: state.part.loops, departure: state.part.departure ?? 0, solid: state.part.solid ?? null, outlines: state.part.outlines ?? {} },
+    workpiece: workpieceForm(state.part),
     toolkit: state.toolkit,
     types: state.types,
     listing: state.listing,

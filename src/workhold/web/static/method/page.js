@@ -65,6 +65,15 @@ async function take(read) {
   }
 }
 
+/** The part that the page which finds fixtures handed over, or null. */
+function handedOver() {
+  try {
+    return JSON.parse(sessionStorage.getItem("workhold-lesson") ?? "null");
+  } catch {
+    return null;
+  }
+}
+
 /** Says what went wrong. */
 function tell(words) {
   trouble.textContent = words;
@@ -76,7 +85,10 @@ function takeFile(file) {
   const unit = document.getElementById("unit").value;
   const headers = { "X-Filename": encodeURIComponent(file.name), "Content-Type": "application/octet-stream" };
   chooser.value = "";
-  return take(() => asked(`parts${unit && `?unit=${unit}`}`, { method: "POST", body: file, headers }));
+  return take(() => asked(`parts${unit && `?unit=${unit}`}`, { method: "POST", body: file, headers }).catch((error) => {
+    if (error instanceof TypeError) throw error;
+    throw new Error(`${error.message} “Find fixtures” asks what a file leaves open; from there “How it works” brings the part here.`);
+  }));
 }
 
 /** Sets the page up. */
@@ -95,6 +107,11 @@ async function begin() {
   showLesson(EXAMPLES[0]);
   document.body.dataset.ready = "";
   if (!API) return;
+  const part = handedOver();
+  if (part) {
+    chooser.value = "";
+    take(async () => part);
+  }
   const file = document.getElementById("file");
   file.addEventListener("change", () => {
     if (file.files[0]) takeFile(file.files[0]);
