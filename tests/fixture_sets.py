@@ -116,8 +116,17 @@ Named = list[tuple[Listed, tuple[Any, float, tuple[float, float]]]]
 
 
 def missing(ours: list[Listed], expected: list[Listed], judge: Judge) -> list[Listed]:
-    """Expected fixtures that are not among ours and are not marginal; both are given for the judge's part and vise."""
-    return lost(named(ours, judge), named(expected, judge), judge)
+    """Expected fixtures that are not among ours and are not marginal; both are given for the judge's part and vise.
+
+    Only ours that lie as an expected one does, up to the half turn, are named: naming takes the time.
+    """
+    angles = np.array([fixture["pose"]["theta_deg"] for fixture in expected])
+    alike = [
+        fixture
+        for fixture in ours
+        if np.any(np.abs((angles - fixture["pose"]["theta_deg"] + 90.0) % 180.0 - 90.0) < 0.01)
+    ]
+    return lost(named(alike, judge), named(expected, judge), judge)
 
 
 def named(fixtures: list[Listed], judge: Judge) -> Named:

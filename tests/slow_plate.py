@@ -23,7 +23,7 @@ from workhold.geometry.loop import Face
 from workhold.geometry.segment import Line
 
 Array = NDArray[np.float64]
-STEPS = 1440
+STEPS = 5760
 # mm. A centre may be nearer to the part than the radius by this much.
 SLACK = 1e-7
 # mm. A contact this near to an end of its face may be listed or not (marginal).

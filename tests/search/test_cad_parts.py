@@ -97,13 +97,15 @@ def test_plates_agree_with_a_slow_search(
 
 
 @pytest.mark.parametrize(
-    "seed", [1, *(pytest.param(seed, marks=pytest.mark.prove) for seed in (2, 4, 5, 6, 7, 8, 9, 10))]
+    "seed", [1, 7, *(pytest.param(seed, marks=pytest.mark.prove) for seed in (2, 4, 5, 6, 8, 9, 10))]
 )
 def test_fences_agree_with_a_slow_search(seed: int) -> None:
+    """A row that grazes a bore (7) presses as the drawing has it, not as an arc's centre was rounded."""
     part, fence = cad_part(seed), Fence(pitch=20, peg_radius=3, wall_offset=11, clamp_radius=5, rows=4)
     result = design(part, fence)
     assert len(result) > 0
     assert seen_on_fence(result) == slow_fence(part, fence)
+    assert verify(result).proven == len(result)
 
 
 def test_pegs_in_two_bores_nearly_as_far_apart_as_the_holes_are_decided() -> None:

@@ -250,7 +250,7 @@ class WallSearch:
         grazes = two.swing > FORCES_OFF * push
         for k in np.flatnonzero((doubt > DOUBTFUL) | grazes).tolist():
             candidate = self.candidate(edge, one, two, locator, k)
-            sharp = reactions_on_fence(candidate, self.problem, self.plate, self.push, bool(grazes[k]))
+            sharp = reactions_on_fence(candidate, self.problem, self.plate, self.push)
             if sharp is not None:
                 null[k, :3], doubt[k] = sharp.taken, sharp.doubt
                 push[k] = sharp.push if grazes[k] else push[k]
