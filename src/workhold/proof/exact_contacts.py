@@ -24,6 +24,7 @@ from workhold.conventions import STRAIGHT
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X, REST_Y, SIGN, X, Y
 from workhold.kernels.base.given import Limits
 from workhold.model.clamps import LOCATORS
+from workhold.model.workpiece import Workpiece
 from workhold.proof.interval_newton import (
     PRECISIONS,
     BoxContacts,
@@ -33,19 +34,17 @@ from workhold.proof.interval_newton import (
 )
 from workhold.proof.narrowing import CandidateBox
 
-__all__ = ["SharpReactions", "exact_rows", "rounded", "sharp_reactions"]
+__all__ = ["SharpReactions", "drawn_circle", "exact_rows", "rounded", "sharp_reactions", "sides_of"]
 
 Vertex = tuple[float, float, float]
+Side = tuple[Vertex, Vertex]
 # mm and no unit. A row farther from the drawing is not of that face as it is drawn, such as that of a flat.
 SAME_ROW = 1e-9
 
 
 def exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
     """Rows (P, 12) of features for pegs of some radii in mm, as balls at the precision in force."""
-    sides: list[tuple[Vertex, Vertex]] = []
-    for loop in (loop for one in problem.workpiece.every_outline for loop in one.loops):
-        vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
-        sides += zip(vertices, vertices[1:] + vertices[:1], strict=True)
+    sides = [side for one in problem.workpiece.every_outline for side in sides_of(one)]
     runs = {face.number: face.segments for face in problem.workpiece.numbered.faces}
     out = []
     for feature, radius in zip(features, radii, strict=True):
@@ -54,26 +53,40 @@ def exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem
     return out
 
 
-def exact_row(
-    row: list[Any], run: Sequence[tuple[Vertex, Vertex]], radius: float, center: tuple[float, float]
-) -> list[Any]:
-    """The row of a face of several sides: a line from first start to last end, or the first arc's circle."""
-    (start, following), end = run[0], run[-1][1]
-    bulge, is_arc = start[2], row[IS_ARC] != 0.0
-    if is_arc != (abs(bulge) >= STRAIGHT):
-        return row
-    end = following if is_arc else end
+def sides_of(outline: Workpiece) -> list[Side]:
+    """The sides of an outline by number of segment: the vertex that each begins at, and the next one."""
+    out: list[Side] = []
+    for loop in outline.loops:
+        vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
+        out += zip(vertices, vertices[1:] + vertices[:1], strict=True)
+    return out
+
+
+def drawn_circle(side: Side) -> tuple[arb, arb, arb]:
+    """The centre and the radius in mm of the arc that a side is, from its vertices and its bulge."""
+    start, end = side
+    bulge = arb(start[2])
     dx, dy = arb(end[0]) - start[0], arb(end[1]) - start[1]
-    chord, made = (dx * dx + dy * dy).sqrt(), list(row)
+    aside = (1 - bulge * bulge) / (4 * bulge)
+    x, y = (arb(start[0]) + end[0]) / 2 - dy * aside, (arb(start[1]) + end[1]) / 2 + dx * aside
+    return x, y, (dx * dx + dy * dy).sqrt() * (1 + bulge * bulge) / (4 * abs(bulge))
+
+
+def exact_row(row: list[Any], run: Sequence[Side], radius: float, center: tuple[float, float]) -> list[Any]:
+    """The row of a face of several sides: a line from first start to last end, or the first arc's circle."""
+    (start, _), end = run[0], run[-1][1]
+    is_arc = row[IS_ARC] != 0.0
+    if is_arc != (abs(start[2]) >= STRAIGHT):
+        return row
+    made = list(row)
     made[REST_X] = made[REST_Y] = 0.0
     if is_arc:
-        square = arb(bulge) * bulge
-        aside = (1 - square) / (4 * arb(bulge))
-        made[X] = (arb(start[0]) + end[0]) / 2 - dy * aside - center[0]
-        made[Y] = (arb(start[1]) + end[1]) / 2 + dx * aside - center[1]
-        made[RADIUS] = chord * (1 + square) / (4 * abs(arb(bulge))) + row[SIGN] * arb(radius)
+        x, y, drawn = drawn_circle(run[0])
+        made[X], made[Y], made[RADIUS] = x - center[0], y - center[1], drawn + row[SIGN] * arb(radius)
         pairs = [(made[X], row[X]), (made[Y], row[Y]), (made[RADIUS], row[RADIUS])]
     else:
+        dx, dy = arb(end[0]) - start[0], arb(end[1]) - start[1]
+        chord = (dx * dx + dy * dy).sqrt()
         made[AXIS_X], made[AXIS_Y] = dx / chord, dy / chord
         along = made[AXIS_X] * (row[X] + arb(center[0]) - start[0]) + made[AXIS_Y] * (
             row[Y] + arb(center[1]) - start[1]

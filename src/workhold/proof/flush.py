@@ -13,12 +13,14 @@ from attrs import frozen
 from flint import arb, ctx
 
 from workhold.contact.problem import Problem
-from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
+from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN, STRAIGHT
+from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Carrier
-from workhold.geometry.hull import HullEdge
+from workhold.geometry.hull import HullEnd
 from workhold.kernels.base.feature import HALF_EXTENT, HIGH_SLACK, LOW_SLACK, SIGN
+from workhold.model.workpiece import Workpiece
 from workhold.proof.deciding import BALLS
-from workhold.proof.exact_contacts import SharpReactions, exact_rows, rounded
+from workhold.proof.exact_contacts import SharpReactions, drawn_circle, exact_rows, rounded, sides_of
 
 __all__ = [
     "Candidate",
@@ -146,7 +148,7 @@ def sharp_place(
     None where they do not meet.
     """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
-        start, tangent, _ = line_of(problem.workpiece.hull_edges[edge], problem.workpiece.center)
+        start, tangent, _ = line_of(edge, problem.workpiece)
         level = arb(plate.offset[1]) + arb(plate.pitch[1]) * row
         (drawn,) = exact_rows([feature], [problem.frame.standing.peg_radius], problem)
         contact = touched(drawn, start, tangent, level, False, branch)
@@ -173,8 +175,7 @@ def contacts_of(
     candidate: Candidate, problem: Problem, plate: Carrier
 ) -> tuple[arb, Contact, Contact] | None:
     """The hull edge's length, and locator's and clamp's contacts (:func:`touched`); None where one misses."""
-    edge = problem.workpiece.hull_edges[candidate.edge]
-    start, tangent, wall = line_of(edge, problem.workpiece.center)
+    start, tangent, wall = line_of(candidate.edge, problem.workpiece)
     level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
     radii = problem.frame.standing.peg_radius, problem.frame.moving.peg_radius
     rows = exact_rows(candidate.features, radii, problem)
@@ -212,19 +213,28 @@ def reactions_on_fence(
         return rounded([force * a[1] + b[1] - last, last, force], -(b[0] * push[0] + b[1] * push[1]))
 
 
-def line_of(edge: HullEdge, center: tuple[float, float]) -> tuple[Point, Point, arb]:
-    """Start of a hull edge about a center, unit vector along it, and its length."""
-    one, other = edge.start, edge.end
-    dx = arb(other.center[0]) - arb(one.center[0])
-    dy = arb(other.center[1]) - arb(one.center[1])
+def line_of(number: int, workpiece: Workpiece) -> tuple[Point, Point, arb]:
+    """Start of a hull edge about the workpiece's center, unit vector along it, and its length, as drawn."""
+    edge, center = workpiece.hull_edges[number], workpiece.center
+    (x, y, radius), (x1, y1, other) = (drawn_end(end, workpiece) for end in (edge.start, edge.end))
+    dx, dy = x1 - x, y1 - y
     # The common tangent of two circles on whose left both lie; a corner is a circle of radius 0.
-    across = arb(one.radius) - arb(other.radius)
+    across = radius - other
     square = dx * dx + dy * dy
     length = (square - across * across).sqrt()
     tx, ty = (length * dx - across * dy) / square, (across * dx + length * dy) / square
-    x = arb(one.center[0]) - arb(center[0]) + one.radius * ty
-    y = arb(one.center[1]) - arb(center[1]) - one.radius * tx
-    return (x, y), (tx, ty), length
+    return (x - center[0] + radius * ty, y - center[1] - radius * tx), (tx, ty), length
+
+
+def drawn_end(end: HullEnd, workpiece: Workpiece) -> tuple[arb, arb, arb]:
+    """Centre and radius in mm of an end of a hull edge: its arc as drawn, or a corner, of radius 0."""
+    rounded_once = arb(end.center[0]), arb(end.center[1]), arb(end.radius)
+    if end.radius == 0.0:
+        return rounded_once
+    own, _ = workpiece.outline_of(WALL)
+    side = sides_of(own)[own.outer_faces[end.faces[0]].segments[0]]
+    # An arc may be a run of chords in the drawing.
+    return drawn_circle(side) if abs(side[0][2]) >= STRAIGHT else rounded_once
 
 
 def touched(

@@ -1,7 +1,7 @@
 """Whether two pegs of one lattice press a part that lies flush on a wall, in balls.
 
-Everything is derived once more from the hull edge's corners and arcs, the rows of the features and the
-lattice. Their doubles are taken as exact numbers, and digits are added until the verdict is certain.
+Everything is derived once more from the hull edge's corners and arcs, the outline's vertices and bulges and
+the lattice. Their doubles are taken as exact numbers, and digits are added until the verdict is certain.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from flint import arb, ctx
 from workhold.contact.problem import Problem
 from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN
 from workhold.proof.deciding import BALLS
+from workhold.proof.exact_contacts import exact_rows
 from workhold.proof.flush import PRECISIONS, BallFeature, Contact, Point, half_chord, in_wall_frame, line_of
 
 __all__ = ["LatticePair", "SharpPair", "verdict_on_pair"]
@@ -89,8 +90,9 @@ def judged(contacts: tuple[arb, Contact, Contact], problem: Problem) -> tuple[bo
 
 def contacts_of(pair: LatticePair, problem: Problem) -> tuple[arb, Contact, Contact] | None:
     """Returns the hull edge's length and both contacts: centre, normal, distances to ends; None on a miss."""
-    start, tangent, wall = line_of(problem.workpiece.hull_edges[pair.edge], problem.workpiece.center)
-    rows = [in_wall_frame(problem.rows[k].tolist(), start, tangent) for k in pair.features]
+    start, tangent, wall = line_of(pair.edge, problem.workpiece)
+    radii = [problem.frame.moving.peg_radius] * 2
+    rows = [in_wall_frame(row, start, tangent) for row in exact_rows(pair.features, radii, problem)]
     pitch = problem.toolkit.moving.pitch
     shift = tuple(arb(one) * int(k) for one, k in zip(pitch, pair.step, strict=True))
     (x, y), (u, v) = (row.middle for row in rows)
