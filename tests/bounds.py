@@ -13,7 +13,7 @@ import numpy as np
 from slow_fence import distances
 from workhold import Result, Workpiece
 from workhold.fixels.carrier import WALL
-from workhold.geometry.segment import Arc
+from workhold.geometry.segment import Arc, Line
 from workhold.model.fixture import Fixture, Peg
 
 __all__ = ["WITHIN", "avoids", "clear_of_box", "clear_of_circle", "keeps_margin", "lies_within"]
@@ -22,6 +22,8 @@ Box = tuple[float, float, float, float]
 WITHIN = 1e-9
 # mm. Roundings of a place in a fixture.
 ROUNDING = 1e-11
+# mm. What is no farther from a fence lies on it.
+FLAT = 1e-7
 STEPS = 30
 
 
@@ -95,12 +97,31 @@ def clear_of_circle(
 
 
 def avoids(fixture: Fixture, result: Result, faces: tuple[int, ...], within: float = WITHIN) -> bool:
-    """Whether each peg touches a face that is none of some, be it at a joint with one of them."""
+    """Whether each peg touches a face that is none of some, be it at a joint with one of them, and so does a fence."""
     left = [face.segment for face in result.workpiece.faces if face.number not in faces]
-    return all(
+    return fence_avoids(fixture, result, faces) and all(
         min(distances(np.array([center]), face)[0] for face in left) <= radius_of(peg, result) + within
         for peg, center in places_in_part(fixture)
     )
+
+
+def fence_avoids(fixture: Fixture, result: Result, faces: tuple[int, ...]) -> bool:
+    """Whether a fence, if there is one, touches a face that is none of some at both ends of its contact.
+
+    Where a face lies along the fence it is that face that is touched, not the other one of its corner.
+    """
+    segments = {face.number: face.segment for face in result.workpiece.faces}
+    lying = {
+        number
+        for number, one in segments.items()
+        if isinstance(one, Line) and all(abs(fixture.pose.apply(*p)[1]) < FLAT for p in (one.start, one.end))
+    }
+    for end in (peg for peg in fixture.pegs if peg.carrier == WALL):
+        point = np.array([fixture.pose.inverse.apply(end.x, 0.0)])
+        touched = {number for number, one in segments.items() if distances(point, one)[0] < FLAT}
+        if (touched & lying or touched) <= set(faces):
+            return False
+    return True
 
 
 def lies_within(fixture: Fixture, angles: tuple[float, float], within: float = WITHIN) -> bool:

@@ -249,3 +249,13 @@ def test_the_algebra_takes_the_same_bounds() -> None:
     query = Query(drawn(L), Vise(pitch=20, columns=2, peg_radius=3), contact_margin=1.0)
     fast, slow = answer(query), answer_by_algebra(query)
     assert len(fast) > 0 and identities(fast) == identities(slow)
+
+
+@pytest.mark.parametrize("kit", ["vise", "plate"])
+def test_a_margin_counts_at_the_far_end_of_what_a_zone_leaves(kit: str) -> None:
+    """A zone leaves a millimetre of a side at its corner: no contact there is a millimetre inside, however near the cut."""
+    loop: Loop = [(0, 0), (60, 0), (60, 34), (0, 34)]
+    result, _ = assert_kept(loop, kit, both(box(4, 32, 11, 39), margin(1)))
+    assert len(result) > 0
+    if kit == "vise":
+        assert identities(answer_by_algebra(result.query)) == identities(result)

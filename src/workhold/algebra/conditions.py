@@ -84,10 +84,10 @@ def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> B
     off = (center - rows[..., X] - 1j * rows[..., Y]) * (rows[..., AXIS_X] - 1j * rows[..., AXIS_Y])
     straight = rows[..., IS_ARC] == 0.0
     parameter = np.where(straight, off.real, np.angle(off))
-    inside = (rows[..., HALF_EXTENT] - np.abs(parameter)) * np.where(straight, 1.0, rows[..., RADIUS])
-    whole = ~straight & (rows[..., HALF_EXTENT] >= pi)
-    slack = np.where(parameter > 0.0, rows[..., HIGH_SLACK], rows[..., LOW_SLACK])
-    return np.asarray(whole | (inside >= margin - slack - 2.0 * radius))
+    unit, half = np.where(straight, 1.0, rows[..., RADIUS]), rows[..., HALF_EXTENT]
+    ends = (half - parameter) * unit + rows[..., HIGH_SLACK], (half + parameter) * unit + rows[..., LOW_SLACK]
+    whole = ~straight & (half >= pi)
+    return np.asarray(whole | (np.minimum(*ends) >= margin - 2.0 * radius))
 
 
 def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float) -> Array:

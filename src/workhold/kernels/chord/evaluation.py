@@ -200,8 +200,10 @@ def end_slack(row: Array, x: float, y: float) -> float:
     """
     if row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi:
         return inf
-    s = parameter_on(row, x, y)
-    return distance_to_end(row, s) + (row[HIGH_SLACK] if s > 0.0 else row[LOW_SLACK])
+    s, half = parameter_on(row, x, y), row[HALF_EXTENT]
+    scale = 1.0 if row[IS_ARC] == 0.0 else row[RADIUS]
+    # Where a zone cut the feature, the farther end may be the one whose margin is broken.
+    return min((half - s) * scale + row[HIGH_SLACK], (half + s) * scale + row[LOW_SLACK])
 
 
 @inner
