@@ -10,7 +10,7 @@ from pathlib import Path
 
 import FreeCAD as App
 
-__all__ = ["PREFERENCES", "Refusal", "answer", "command", "run", "use"]
+__all__ = ["PREFERENCES", "Refusal", "answer", "command", "forget", "run", "use"]
 
 PREFERENCES = "User parameter:BaseApp/Preferences/Mod/Workhold"
 # Variables with which FreeCAD points its own Python at its own libraries.
@@ -70,6 +70,11 @@ def use(path):
             App.ParamGet(PREFERENCES).SetString("Command", str(place))
             return str(place)
     raise Refusal("There is no command workhold in {}: choose an environment that has it.".format(path))
+
+
+def forget():
+    """Chooses no command: the one that is found counts again."""
+    App.ParamGet(PREFERENCES).RemString("Command")
 
 
 def run(*words, cancel=None, wait=None):

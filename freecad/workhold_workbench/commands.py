@@ -7,7 +7,7 @@ import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
 from . import cam, child, fixture
-from .solid import axis_of_face
+from .solid import axis_of_face, body_of, shape_of
 
 __all__ = ["FixtureView", "register", "shown_panel"]
 
@@ -62,7 +62,7 @@ def say(sentence):
 
 
 def selected_part():
-    """The selected body and the axis of its selected face, else z.
+    """The selected body and the axis of the document that its selected face looks along, else z.
 
     Raises
     ------
@@ -71,9 +71,10 @@ def selected_part():
     """
     for chosen in Gui.Selection.getSelectionEx():
         if getattr(chosen.Object, "Shape", None) is not None and chosen.Object.Shape.Solids:
+            part = body_of(chosen.Object)
             faces = [name for name in chosen.SubElementNames if name.startswith("Face")]
-            up = axis_of_face(chosen.Object.Shape.getElement(faces[0])) if faces else "z"
-            return chosen.Object, up
+            up = axis_of_face(shape_of(part).getElement(faces[0])) if faces else "z"
+            return part, up
     raise child.Refusal("Select a body, or the face of it that lies up, and choose the command again.")
 
 
@@ -192,7 +193,14 @@ class Environment(Command):
         """Asks for it."""
         path, _ = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), "The command workhold")
         if path:
-            child.use(path)
+            used = child.use(path)
+            said = child.run("--version").strip()
+            if not said.startswith("workhold"):
+                child.forget()
+                raise child.Refusal(
+                    "{} is not workhold: choose the file workhold of an environment that has it.".format(used)
+                )
+            say("{} answers from {}.".format(said, used))
 
 
 COMMANDS = (Design, Redesign, SendToCam, TakeProgram, Sheet, Environment)

@@ -15,7 +15,9 @@ import Part
 
 from .child import Refusal, answer, run
 from .compat import paint
+from .recognition import marks_of, rank_in
 from .solid import export, face_numbers, foot_height, placing, shape_of, signature
+from .thumbnails import MOST_DRAWN, keep_thumbnails
 
 __all__ = ["Fixture", "choose", "design", "fixture_of", "make", "rows", "save_picture", "save_sheet"]
 
@@ -59,12 +61,17 @@ PROPERTIES = (
     ("App::PropertyString", "State", "Fixture", "What is known of the fixture"),
     ("App::PropertyString", "ResultText", "Hidden", "The result of the search"),
     ("App::PropertyString", "HeldBy", "Hidden", "Toolkit and axis of the result"),
+    ("App::PropertyString", "Marks", "Hidden", "What the fixture that was chosen last is known by"),
     ("App::PropertyString", "Signature", "Hidden", "Numbers that change when the part does"),
+    ("App::PropertyFileIncluded", "Glance", "Hidden", "Thumbnails of the first choices, or the nearest miss"),
+    ("App::PropertyString", "Glanced", "Hidden", "Which choices these are, and where they stand"),
 )
+HIDDEN = tuple(name for _, name, group, _ in PROPERTIES if group == "Hidden")
 AXIS_NAMES = ["z", "-z", "x", "-x", "y", "-y"]
 # How far down the list a fixture that was chosen before is looked for.
 MOST_SEARCHED = 5000
 LOST = "in these holes nothing holds the part as it is now"
+LOST_BY_WISH = "in these holes nothing holds the part with what is asked now"
 CHANGED = "The part has changed: design again."
 
 
@@ -83,7 +90,7 @@ class Fixture:
                 obj.addProperty(kind, name, group, words)
                 if name == "Up":
                     obj.Up = AXIS_NAMES
-        for name in ("ResultText", "HeldBy", "Signature"):
+        for name in HIDDEN:
             obj.setEditorMode(name, 2)
         obj.setEditorMode("State", 1)
 
@@ -99,8 +106,9 @@ class Fixture:
             except Refusal as refusal:
                 obj.State = str(refusal)
                 return
-            if not same:
+            if not same and obj.State != CHANGED:
                 obj.State = CHANGED
+                App.Console.PrintWarning("{}: {}\n".format(obj.Label, CHANGED))
 
     # Nothing is kept besides the properties; older versions of FreeCAD ask by the first two names.
     def __getstate__(self):
@@ -155,8 +163,13 @@ def asked(obj, path, shape):
     return words
 
 
-def design(obj, cancel=None, wait=None):
+def design(obj, cancel=None, wait=None, pictures=False):
     """Searches for fixtures, and puts the one that was chosen before, or else the first, into the document.
+
+    Parameters
+    ----------
+    cancel, wait : as of :func:`workhold_workbench.child.run`.
+    pictures : whether the first choices are drawn, too.
 
     Returns
     -------
@@ -170,28 +183,33 @@ def design(obj, cancel=None, wait=None):
     if obj.HeldPart is None:
         raise Refusal("The fixture holds no part: choose one.")
     held_by = "{} {}".format(obj.Toolkit, obj.Up)
-    before = chosen_holes(obj) if obj.HeldBy == held_by else None
+    marks = obj.Marks if obj.HeldBy == held_by else ""
     shape = shape_of(obj.HeldPart)
     lost = ""
     with tempfile.TemporaryDirectory() as folder:
         path = export(shape, folder, obj.HeldPart.Label)
         result = Path(folder) / "result.json"
         words = asked(obj, path, shape)
-        seen = answer("design", path, *words, "--best", obj.Best, "--out", result, cancel=cancel, wait=wait)
+        drawing = ("--list", MOST_DRAWN, "--draw", folder) if pictures else ()
+        wanted = (*words, "--best", obj.Best, "--out", result, *drawing)
+        seen = answer("design", path, *wanted, cancel=cancel, wait=wait)
         obj.ResultText = result.read_text(encoding="utf-8")
-        if before and before not in every_hole(obj.ResultText):
+        keep_thumbnails(obj, Path(folder), seen["fixtures"])
+        fixtures = json.loads(obj.ResultText)["fixtures"]
+        rank = rank_in(fixtures, marks) if marks else None
+        if marks and fixtures and rank is None:
             more = ("--best", MOST_SEARCHED, "--out", result, "--force")
             answer("design", path, *words, *more, cancel=cancel, wait=wait)
-            longer = every_hole(result.read_text(encoding="utf-8"))
-            lost = "it is number {} now".format(longer.index(before) + 1) if before in longer else LOST
+            lower = rank_in(json.loads(result.read_text(encoding="utf-8"))["fixtures"], marks)
+            gone = LOST_BY_WISH if signature(shape) == obj.Signature else LOST
+            lost = gone if lower is None else "it is number {} now".format(lower)
     obj.Signature, obj.HeldBy = signature(shape), held_by
-    fixtures = json.loads(obj.ResultText)["fixtures"]
     if not fixtures:
         clear(obj)
-        obj.State = "No fixture: {}".format(" ".join(seen["notes"]) or "nothing holds the part.")
+        obj.Marks = marks
+        obj.State = "No fixture. {}".format(" ".join(seen["notes"]) or "nothing holds the part.")
         return obj.State
-    holes = every_hole(obj.ResultText)
-    choose(obj, holes.index(before) + 1 if before in holes else 1)
+    choose(obj, rank or 1)
     if lost:
         names = " ".join(peg["hole"] for peg in seen["fixtures"][0]["pegs"])
         obj.State = (
@@ -201,25 +219,6 @@ def design(obj, cancel=None, wait=None):
     if not json.loads(obj.ResultText)["complete"]:
         obj.State += " The search was stopped before its end: there may be better ones."
     return obj.State
-
-
-def every_hole(text):
-    """What tells the fixtures of a result apart, in the order of the list."""
-    return [holes_of(fixture) for fixture in json.loads(text)["fixtures"]]
-
-
-def holes_of(fixture):
-    """What tells one fixture from another when dimensions change: kind, direction, and holes with their jaws."""
-    pegs = [(peg.get("jaw"), peg.get("column"), peg.get("row")) for peg in fixture["pegs"]]
-    return [fixture["type"], fixture.get("direction"), pegs]
-
-
-def chosen_holes(obj):
-    """The holes of the fixture that stands in the document; None where there is none."""
-    if not obj.ResultText:
-        return None
-    fixtures = json.loads(obj.ResultText)["fixtures"]
-    return holes_of(fixtures[obj.Chosen - 1]) if 0 < obj.Chosen <= len(fixtures) else None
 
 
 def rows(obj):
@@ -270,7 +269,7 @@ def choose(obj, rank):
     for name, body in bodies[1:]:
         body.Placement = place.multiply(body.Placement)
         add_body(obj, name, body)
-    obj.Chosen = rank
+    obj.Chosen, obj.Marks = rank, marks_of(fixtures[rank - 1])
     obj.State = "Fixture {} of {}.{}".format(rank, len(fixtures), note)
     obj.purgeTouched()
 

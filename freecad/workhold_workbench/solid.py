@@ -11,6 +11,7 @@ from .child import Refusal, answer
 __all__ = [
     "AXES",
     "axis_of_face",
+    "body_of",
     "export",
     "face_numbers",
     "foot_height",
@@ -24,6 +25,15 @@ AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
 NEAR = 1e-6
 # In mm: a box of a shape with round faces is a little too large.
 NEAR_HEIGHT = 1e-2
+
+
+def body_of(obj):
+    """The body that an object is a feature of, such as a pad; the object itself where it is in none.
+
+    A click on a face selects the feature that is seen. A fixture holds the body, which later features change.
+    """
+    group = getattr(obj, "getParentGeoFeatureGroup", lambda: None)()
+    return group if group is not None and group.isDerivedFrom("PartDesign::Body") else obj
 
 
 def shape_of(part):
@@ -146,7 +156,13 @@ def face_numbers(path, shape, names, axis, words):
     every = sorted({face["number"] for face in seen["faces"]})
     numbers = set()
     for name in names:
-        face = shape.getElement(name)
+        try:
+            face = shape.getElement(name)
+        except Exception:
+            # FreeCAD 0.20 raises what is no class of Python's own.
+            face = None
+        if not isinstance(face, Part.Face):
+            raise Refusal("The part has no face {} as it is now: choose the faces again.".format(name))
         index = min(
             range(len(read.Faces)), key=lambda k: (read.Faces[k].CenterOfMass - face.CenterOfMass).Length
         )

@@ -94,6 +94,11 @@ def test_part_that_no_three_supports_hold_up(tmp_path: Path, run: Run) -> None:
     shown = run("supports", path, "1", "--thickness", "10")
     assert shown.exit_code == 0 and "No three supports hold the part" in shown.stdout
     assert "room for a pad of radius 4.000 mm" in " ".join(shown.stdout.split())
+    # Where a file of bodies is asked for, there is nothing to write, and the sentence is the error.
+    asked = run("supports", path, "1", "--thickness", "10", "--glb", tmp_path / "kite.glb")
+    assert asked.exit_code == 2 and not (tmp_path / "kite.glb").exists()
+    assert "error: no three supports hold the part" in asked.stderr
+    assert "room for a pad of radius 4.000 mm" in " ".join(asked.stderr.split())
 
 
 def test_search_with_supports(run: Run, tmp_path: Path) -> None:

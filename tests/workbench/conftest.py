@@ -44,6 +44,11 @@ def said_by(work):
     except child.Refusal as refusal:
         return "refused: " + str(refusal)
 
+def marks(held):
+    # Kind, directions and holes of the fixture that stands in the document, and how the part is turned.
+    holes, angle = json.loads(held.Marks)
+    return [holes, round(angle)]
+
 def distances(held):
     return {{one.Label: round(one.Shape.distToShape(held.HeldPart.Shape)[0], 6) for one in held.Group}}
 """

@@ -110,3 +110,21 @@ def test_only_one_file_asks_for_the_version() -> None:
         for name in ("PathScripts", "Path.Main", "ShapeColor", "ShapeAppearance", "PySide2", "PySide6"):
             assert name not in text, path
         assert "int(QtGui" not in text, path
+
+
+def test_a_fixture_is_known_by_its_holes_and_how_the_part_lies(compat: Any) -> None:
+    """Turned by half a turn in the same holes is another one; a few degrees are not."""
+    recognition = importlib.import_module("workhold_workbench.recognition")
+
+    def one(
+        angle: float, row: int = 1, kind: str = "clamp2", ways: tuple[str, str] = ("-x", "-y")
+    ) -> dict[str, Any]:
+        pegs = [{"column": 0, "row": row}, {"jaw": "left", "column": 1, "row": 0}]
+        return {"type": kind, "directions": list(ways), "pegs": pegs, "pose": {"theta_deg": angle}}
+
+    marks = recognition.marks_of(one(178.0))
+    listed = [one(357.0), one(190.0), one(-179.0), one(178.0, row=2), one(178.0, ways=("-x", "y"))]
+    assert recognition.rank_in(listed, marks) == 3
+    assert recognition.rank_in(listed[:2], marks) == 2
+    assert recognition.rank_in([one(357.0), *listed[3:], one(178.0, kind="clamp")], marks) is None
+    assert recognition.rank_in([], marks) is None

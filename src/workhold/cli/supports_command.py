@@ -177,6 +177,11 @@ def supports(
         from workhold.model.recounted import ChosenSupports
         from workhold.presenting.assembly import Assembly, shape_in
 
+        if not found.triples:
+            from workhold.supports.why_none import why_none
+
+            why = why_none(found, shown)
+            raise InputError(f"{why[:1].lower()}{why[1:]}")
         best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
         assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
         write_bodies(assembly, models, shown)
