@@ -250,7 +250,7 @@ def choose(obj, rank):
     if not 1 <= rank <= len(fixtures):
         raise Refusal("There is no fixture {} in the list: design first.".format(rank))
     shape = shape_of(obj.HeldPart)
-    pose = fixtures[rank - 1]["pose"]
+    chosen = fixtures[rank - 1]
     with tempfile.TemporaryDirectory() as folder:
         result, assembly = Path(folder) / "result.json", Path(folder) / "setup.step"
         result.write_text(obj.ResultText, encoding="utf-8")
@@ -264,14 +264,30 @@ def choose(obj, rank):
             run("sheet", result, rank, "-o", assembly)
         bodies = read_bodies(assembly)
     clear(obj)
+    dx, dy = moved_on(chosen["pegs"], bodies)
+    pose = {**chosen["pose"], "x": chosen["pose"]["x"] + dx, "y": chosen["pose"]["y"] + dy}
     place = placing(shape, obj.Up, pose)
     # The first body is the part as a prism; the document has the part itself.
     for name, body in bodies[1:]:
         body.Placement = place.multiply(body.Placement)
         add_body(obj, name, body)
-    obj.Chosen, obj.Marks = rank, marks_of(fixtures[rank - 1])
+    obj.Chosen, obj.Marks = rank, marks_of(chosen)
     obj.State = "Fixture {} of {}.{}".format(rank, len(fixtures), note)
     obj.purgeTouched()
+
+
+def moved_on(pegs, bodies):
+    """How far in mm the set-up of an assembly stands from that of the list, along x and y of the toolkit.
+
+    With supports all may stand a few holes further on, so that each hole is there.
+    """
+    peg = next((one for one in pegs if "column" in one and "row" in one), None)
+    body = next((body for name, body in bodies if name.startswith(("peg ", "locator "))), None)
+    if peg is None or body is None:
+        return 0.0, 0.0
+    center = body.BoundBox.Center
+    # In whole micrometres: a box of a round body is a little off.
+    return round(center.x - peg["x"], 3), round(center.y - peg["y"], 3)
 
 
 def read_bodies(path):
@@ -283,9 +299,14 @@ def read_bodies(path):
 
 
 def add_body(obj, name, shape):
-    """Adds a body to the group."""
+    """Adds a body to the group, under its name, or with the fixture's where another fixture has one of that name.
+
+    FreeCAD would make them differ by a number, and A2001 is no hole.
+    """
+    taken = obj.Document.getObjectsByLabel(name)
     body = obj.Document.addObject("Part::Feature", "Body")
-    body.Label, body.Shape = name, shape
+    body.Label = "{} of {}".format(name, obj.Label) if taken else name
+    body.Shape = shape
     obj.addObject(body)
     if App.GuiUp:
         what = name.split()[0]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 import pytest
 
 import workhold
 from workhold.errors import InputError
+from workhold.model.recounted import ChosenSupports
 from workhold.presenting import stepping
 
 WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
@@ -64,6 +66,40 @@ def test_what_cannot_be_is_said_in_the_widget(widget: Any) -> None:
     assert widget.answer["forces"] == [] and widget.answer["words"]
     widget.force = [12.0, 9.0, 150.0, 240.0]
     assert widget.answer["holds"] is True
+
+
+def test_supports_show_in_the_holes_that_the_sheet_names() -> None:
+    """In this vise all stands a column further left with supports; one of the right jaw moves with it."""
+    pytest.importorskip("anywidget", reason="the extra 'widget' is not installed")
+    corners = [(0, 0), (90, 0), (100, 30), (60, 70), (20, 64)]
+    five = workhold.Workpiece.from_points("five", corners)
+    result = workhold.design(five, workhold.Vise(pitch=20, columns=2, peg_radius=3), best=3)
+    widget = result.widget(supports={"thickness": 12, "best": 2})
+    chosen = ChosenSupports.of(result[0].supports(12, best=2))
+    holes = [pad.hole for pad in chosen.pads]
+    assert f"Supports in {', '.join(holes)}; the clamp on top presses at (" in widget.picture["title"]
+    picture = widget.picture["svg"]
+    assert picture.count('class="support"') == 3 and picture.count('class="top-clamp"') == 1
+    pegs = [peg.hole for peg in chosen.recounted.fixture.pegs]
+    assert pegs != [peg.hole for peg in result[0].pegs]
+    assert all(f">{name}<" in picture for name in holes + pegs)
+    moving = "".join(re.findall(r'<g class="moves".*?</g>', picture, re.DOTALL))
+    assert moving.count('class="support"') == sum(hole.startswith("R-") for hole in holes) > 0
+    # Forces are of the same pegs, and so are the words of the closing.
+    widget.force = [40.0, 30.0, 150.0, 240.0]
+    assert [one["hole"] for one in widget.answer["forces"]] == pegs
+    widget.asked_closing = 1
+    assert f"S = {chosen.recounted.fixture.jaw_separation:.3f} mm" in widget.closing["words"]
+    assert 'class="support"' not in result.widget().picture["svg"]
+
+
+def test_supports_that_cannot_be_had_are_a_sentence() -> None:
+    pytest.importorskip("anywidget", reason="the extra 'widget' is not installed")
+    widget = RESULT.widget(supports={"thickness": 12})
+    assert "No three supports hold the part" in widget.picture["title"]
+    assert 'class="support"' not in widget.picture["svg"]
+    with pytest.raises(InputError, match="how thick the part is"):
+        RESULT.widget(supports={})
 
 
 def test_a_closing_is_answered(widget: Any) -> None:

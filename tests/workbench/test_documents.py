@@ -170,6 +170,40 @@ answered(held=held.HeldPart.Name, itself=solid.body_of(block).Name, first=first,
     assert abs(answer["plate"][0] - answer["low"][1]) < 1e-3
 
 
+def test_with_supports_all_bodies_stand_about_the_part(scripted: Scripted, tmp_path: Path) -> None:
+    """Also where the set-up stands a column further on than in the list; no two bodies have one name."""
+    (tmp_path / "two.toml").write_text(
+        'kind = "vise"\nunit = "mm"\npitch = 20\ncolumns = 2\npeg_radius = 3\n'
+    )
+    answer = scripted(
+        """
+corners = [App.Vector(*corner) for corner in ((0, 0), (90, 0), (100, 30), (60, 70), (20, 64), (0, 0))]
+five = document.addObject("Part::Feature", "Five")
+five.Shape = Part.Face(Part.makePolygon(corners)).extrude(App.Vector(0, 0, 12))
+five.Placement.Base = App.Vector(300, -40, 8)
+document.recompute()
+held = []
+for supports in (False, True):
+    held.append(fixture.make(document, five, "z", "two.toml"))
+    held[-1].Supports, held[-1].Best = supports, 1
+    fixture.design(held[-1])
+plain, with_supports = held
+answered(state=with_supports.State, shared=[shared(one) for one in held], near=[distances(one) for one in held])
+"""
+    )
+    assert answer["state"] == "Fixture 1 of 1."
+    for volumes in answer["shared"]:
+        assert set(volumes.values()) == {0.0}, volumes
+    for near in answer["near"]:
+        touching = {
+            name: far for name, far in near.items() if name.startswith(("peg", "support", "clamp on top"))
+        }
+        assert len(touching) in (4, 8) and set(touching.values()) == {0.0}, near
+    plain, with_supports = answer["near"]
+    assert "peg L-B1" in plain and "peg L-A1" in with_supports
+    assert not set(plain) & set(with_supports) and "left jaw of Fixture001" in with_supports
+
+
 def test_the_first_choices_are_kept_as_pictures(scripted: Scripted) -> None:
     """One for each that differs from those before it, on one sheet; the document keeps them."""
     answer = scripted(

@@ -13,7 +13,7 @@ from workhold.drawing.scene import Box, Scene, View, text_width
 from workhold.geometry.segment import Point
 from workhold.model.recounted import ChosenSupports
 
-__all__ = ["SUPPORT", "PlannedSupports", "draw_pad", "draw_supports", "draw_tip"]
+__all__ = ["SUPPORT", "PlannedSupports", "draw_pad", "draw_supports", "draw_tip", "draw_triangle", "size_of"]
 
 SUPPORT = "#1b6e3c"
 # A sign is at least so large, page units.
@@ -116,11 +116,16 @@ def draw_supports(scene: Scene, supports: PlannedSupports, view: View) -> None:
     """Draws the triangle of the supports, their pads, and the tip of the clamp on top."""
     group = scene.group("supports", view)
     corners = [view(place) for place in supports.places]
-    for one, other in pairwise([*corners, corners[0]]):
-        group.line([one, other], SUPPORT, 1.1, stroke_dasharray="9 3 2 3", **{"class": "support-triangle"})
+    draw_triangle(group, corners)
     for at in corners:
         draw_pad(group, at, size_of(supports.pad_radius, view))
     draw_tip(group, view(supports.clamp), size_of(supports.tip_radius, view))
+
+
+def draw_triangle(scene: Scene, corners: Sequence[Point]) -> None:
+    """Draws the triangle of three supports, given on the page."""
+    for one, other in pairwise([*corners, corners[0]]):
+        scene.line([one, other], SUPPORT, 1.1, stroke_dasharray="9 3 2 3", **{"class": "support-triangle"})
 
 
 def draw_pad(scene: Scene, at: Point, radius: float = 7.0) -> None:

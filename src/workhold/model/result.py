@@ -169,6 +169,7 @@ class Result:
         usual: float = 200.0,
         jaw_force: float | None = None,
         jaw: str | float = "screw",
+        supports: Mapping[str, Any] | None = None,
     ) -> Any:
         """A widget for notebooks that steps through the fixtures, lets a force push the part, and closes.
 
@@ -180,13 +181,16 @@ class Result:
         usual : size in N of a force whose arrow has the usual length.
         jaw_force : with which what moves presses, in N; as much as is needed if None.
         jaw : "screw", "constant", or how many times as stiff as one contact it is.
+        supports : keywords of :meth:`Fixture.supports`, such as ``{"thickness": 12}``, to show the best three
+            supports of each fixture with the clamp on top; None for none.
 
         Raises
         ------
         InputError
             For a result without a fixture, and values that cannot be.
         """
-        return delegate("result_widget")(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw)
+        asked = {"usual": usual, "jaw_force": jaw_force, "jaw": jaw, "supports": supports}
+        return delegate("result_widget")(self, rank, **asked)
 
     def why_none(self) -> Any:
         """Why there is no fixture: what each rule takes away, the nearest miss, and what would help.

@@ -9,7 +9,7 @@ keyframe : one moment of closing: how far the part is turned, in degrees, and sh
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import atan2, ceil, cos, degrees, hypot, isfinite, radians, sin
 from typing import Any
 
@@ -23,9 +23,12 @@ from workhold.errors import InputError
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
+from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Load
 from workhold.model.result import Result
+from workhold.model.support_triples import Supports
 from workhold.presenting.figure_words import figure_text, figures_shown, unit_of
+from workhold.presenting.live_supports import draw_set, set_words
 from workhold.presenting.notebook import fixture_title
 from workhold.statics.loads import jaw_words, load_cases
 from workhold.units import MILLIMETRE
@@ -99,6 +102,7 @@ class LivePicture:
     result, fixture : of which it is one.
     bench, view : what shows of it, and the map from mm to the page.
     usual : size in N of the push whose arrow is :data:`USUAL` page units long.
+    under : what stands under the part, to show as well; None for nothing.
     """
 
     result: Result
@@ -106,15 +110,28 @@ class LivePicture:
     bench: Bench
     view: View
     usual: float
+    under: Supports | None = None
 
     @classmethod
-    def of(cls, result: Result, index: int, usual: float) -> LivePicture:
-        """The picture of the fixture of an index."""
+    def of(
+        cls, result: Result, index: int, usual: float, asked: Mapping[str, Any] | None = None
+    ) -> LivePicture:
+        """The picture of the fixture of an index.
+
+        Parameters
+        ----------
+        asked : of supports, as keywords of :meth:`workhold.Fixture.supports`; None for none.
+        """
         fixture = result[index]
+        under = None if asked is None else fixture.supports(**{"best": 1, **asked})
+        if under is not None and under.triples:
+            # With supports all may stand further on, so that each hole is there.
+            stands = ChosenSupports.of(under).recounted.fixture
+            fixture = fixture if stands.pegs == fixture.pegs else evolve(stands, seating=None)
         bench = bench_of(fixture, result.workpiece, result.toolkit)
         width, height = PAGE
         view = View.fitting(bench.extent, Box(RIM, RIM, width - RIM, height - RIM))
-        return cls(result, fixture, bench, view, usual)
+        return cls(result, fixture, bench, view, usual, under)
 
     @property
     def title(self) -> str:
@@ -125,7 +142,8 @@ class LivePicture:
         set_to = ", ".join(
             f"{one.sign} = {MILLIMETRE.text(one.length)}" for one in settings_of(self.fixture, toolkit)
         )
-        return f"{fixture_title(self.fixture)}. {fixture_words(self.fixture, toolkit)}; {set_to}."
+        under = "" if self.under is None else f" {set_words(self.under)}"
+        return f"{fixture_title(self.fixture)}. {fixture_words(self.fixture, toolkit)}; {set_to}.{under}"
 
     @property
     def figures(self) -> list[list[str]]:
@@ -162,6 +180,13 @@ class LivePicture:
         for clamp in bench.shown.clamps:
             draw_push(self.group_for(scene, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0)
         ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
+        if self.under is not None and self.under.triples:
+            draw_set(
+                scene,
+                ChosenSupports.of(self.under),
+                view,
+                lambda pad: self.group_for(scene, ways.get(pad.carrier)),
+            )
         ways |= {one.carrier.name: one.clamping for one in bench.shown.clamps}
         for number in bench.placed:
             peg = self.fixture.pegs[number]

@@ -6,6 +6,7 @@ notebook, and shows without Python. Where widgets are not known, the fixture's H
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
@@ -41,6 +42,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
     usual : size in N of a force whose arrow has the usual length.
     jaw_force : in N; None for as much as is needed.
     jaw : "screw", "constant", or how many times as stiff as one contact it is.
+    supports : keywords of :meth:`workhold.Fixture.supports` to show its best set of three; None for none.
 
     Raises
     ------
@@ -70,6 +72,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         usual: float = 200.0,
         jaw_force: float | None = None,
         jaw: str | float = "screw",
+        supports: Mapping[str, Any] | None = None,
     ) -> None:
         if not len(result):
             raise InputError("there is no fixture to show: result.why_none() says why.")
@@ -77,7 +80,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
             raise InputError(f"there is no fixture {rank}: {len(result)} are listed.")
         if not 0 < usual < float("inf"):
             raise InputError(f"a usual force of {usual:g} N cannot be used: give one above 0.")
-        self.result, self.usual, self.jaw = result, usual, jaw
+        self.result, self.usual, self.jaw, self.supports = result, usual, jaw, supports
         jaw_stiffness(jaw)
         super().__init__(rank=rank, count=len(result), jaw_force=jaw_force or 0.0)
         self.show()
@@ -93,7 +96,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
 
     def show(self, _: Any = None) -> None:
         """Draws the fixture of the rank, with the force that is tried out."""
-        self.live = LivePicture.of(self.result, self.rank - 1, self.usual)
+        self.live = LivePicture.of(self.result, self.rank - 1, self.usual, self.supports)
         with self.hold_sync():
             self.picture = {
                 "svg": self.live.svg(),
