@@ -90,10 +90,12 @@ def test_a_job_that_is_followed_or_asked_for_goes_on(impatient: RunningServer) -
                 break
         assert not job.is_over
         before = monotonic()
+    impatient.wait_until(lambda: not job.watchers)
+    # It was in use until the connection was gone, and the time counts from there; its end would be a later use.
+    used = job.used
+    assert job.ended is None and used >= before
     impatient.wait_until(lambda: job.is_over)
     assert job.state == "cancelled"
-    # It was in use until the connection was gone, and the time counts from there.
-    assert job.used >= before
     url = impatient.submit(LONG, "/api/v1/jobs?when_left=cancel")
     asked_for = impatient.state_when(url, lambda state: state["seconds"] > 3 * LEFT)
     assert asked_for["state"] in ("running", "listing")

@@ -216,8 +216,8 @@ async def stream(server: ServerState, job: ServerJob, sent: int | None) -> Async
                 return
     finally:
         server.streams -= 1
-        job.watchers.discard(watcher)
         job.used = monotonic()
+        job.watchers.discard(watcher)
 
 
 @router.get("/jobs/{name}/fixtures", summary="Fixtures of a job")
