@@ -87,9 +87,9 @@ def test_a_job_that_is_followed_or_asked_for_goes_on(impatient: RunningServer) -
     ):
         for line in stream.iter_lines():
             if line.startswith("data: ") and json.loads(line.removeprefix("data: "))["seconds"] > 3 * LEFT:
+                before = monotonic()
                 break
         assert not job.is_over
-        before = monotonic()
     impatient.wait_until(lambda: not job.watchers)
     # It was in use until the connection was gone, and the time counts from there; its end would be a later use.
     used = job.used
