@@ -8,11 +8,18 @@ const TOOLKIT = { kind: "vise", pitch: [10, 10], columns: 2, peg_radius: 3 }; //
 const [drawing, server] = process.argv.slice(2);
 const workhold = new Workhold(server, process.env.WORKHOLD_TOKEN);
 
+let told = "";
+
+/** Print a state, unless its words are those of the one before. */
+function tell(state) {
+  const now = `${state.state}: ${state.found} fixtures`;
+  if (now !== told) console.error(now);
+  told = now;
+}
+
 try {
   const part = await workhold.read(await readFile(drawing), basename(drawing));
-  const { job, rows } = await workhold.design(part, TOOLKIT, (state) =>
-    console.error(`${state.state}: ${state.found} fixtures`),
-  );
+  const { job, rows } = await workhold.design(part, TOOLKIT, tell);
   for (const row of rows) console.log(words(row));
   if (rows.length) {
     const sheet = await workhold.sheet(job, 1);

@@ -59,8 +59,12 @@ def main(drawing, server="http://127.0.0.1:8000"):
         sys.exit(survey["error"])
     part = {key: survey["part"][key] for key in ("name", "loops", "departure")}
     begun = json.load(ask(server, "/api/v1/jobs?when_left=cancel", {"workpiece": part, "toolkit": TOOLKIT}))
+    told = ""
     for state in states(server, begun["url"]):
-        print(f"{state['state']}: {state['found']} fixtures", file=sys.stderr)
+        words = f"{state['state']}: {state['found']} fixtures"
+        if words != told:
+            print(words, file=sys.stderr)
+        told = words
     if state["state"] != "done":
         sys.exit(state["error"] or "The search was cancelled.")
     choices = json.load(ask(server, begun["url"] + "/fixtures?" + urlencode({"limit": 3})))

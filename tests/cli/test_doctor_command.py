@@ -61,10 +61,10 @@ def test_every_extra_is_looked_at(installation: None, monkeypatch: pytest.Monkey
     monkeypatch.setattr(compiling, "LIBRARY", None)
     found = findings()
     assert found["numba"] == ("numba 0.68.1", None)
-    assert found["batch"] == ("scipy 1.2, older than 1.13", "pip install 'workhold[batch]'")
+    assert found["batch"] == ("scipy 1.2, older than 1.13", "pip install 'scipy>=1.13'")
     assert found["tables"] == ("pyarrow 26.0, numba 0.68.1", None)
     assert found["cluster"] == ("fsspec of another package", None)
-    assert found["mcp"] == ("mcp missing", "pip install 'workhold[mcp]'")
+    assert found["mcp"] == ("mcp missing", "pip install mcp")
     assert found["step"] == ("cadquery-ocp-novtk 8.0.1 does not load", "apt install libgl1")
     assert found["build123d"][0].startswith("not known")
 
@@ -75,7 +75,7 @@ def test_the_report_is_read_by_people(installation: None) -> None:
     lines = outcome.stdout.splitlines()
     assert max(map(len, lines)) <= 80
     assert "To add what is missing:" in lines
-    assert "  mcp: pip install 'workhold[mcp]'" in lines
+    assert "  mcp: pip install mcp" in lines
 
 
 def test_what_is_missing_is_red_on_a_terminal(installation: None) -> None:

@@ -86,6 +86,7 @@ def cadquery(monkeypatch: pytest.MonkeyPatch) -> None:
         ("-y", "-y"),
         ((0, 0, -3), "-z"),
         (SimpleNamespace(direction=(1.0, 1e-12, 0.0)), "x"),
+        (SimpleNamespace(z_dir=(0.0, 0.0, -1.0)), "-z"),
         (SimpleNamespace(zDir=SimpleNamespace(toTuple=lambda: (0.0, -1.0, 0.0))), "-y"),
     ],
 )

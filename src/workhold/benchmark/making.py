@@ -140,7 +140,7 @@ def load_arrow() -> tuple[Any, Any]:
         import pyarrow
         import pyarrow.parquet
     except ImportError as error:
-        raise InputError("Parquet needs pyarrow: pip install 'workhold[batch]', or ask for JSON.") from error
+        raise InputError("Parquet needs pyarrow: pip install 'pyarrow>=18', or ask for JSON.") from error
     return pyarrow, pyarrow.parquet
 
 

@@ -132,7 +132,13 @@ def extras(is_built: bool) -> Iterator[InstallationRow]:
             continue
         found = [state_of(name, least) for name, least in asked.get(extra, [])]
         lacking = [state for state, is_usable in found if not is_usable]
-        remedy = f"pip install 'workhold[{extra}]'" if lacking else None
+        # By the libraries' own names, which are found wherever this copy of workhold came from.
+        wanted = [
+            name if least == "0" else f"'{name}>={least}'"
+            for (name, least), (_, is_usable) in zip(asked.get(extra, []), found, strict=True)
+            if not is_usable
+        ]
+        remedy = f"pip install {' '.join(wanted)}" if lacking else None
         if extra == "step" and found and (fault := step_fault()):
             lacking, remedy = lacking or [f"{found[0][0]} does not load"], fault
         states = lacking or [state for state, _ in found]

@@ -47,7 +47,7 @@ def from_build123d(part: Any, up: Any = "z", **choices: Any) -> Workpiece:
     Parameters
     ----------
     part : a solid, part, sketch, face or builder.
-    up : what points up in the set-up: an ``Axis`` or vector along an axis, or its name, such as "-z".
+    up : what points up in the set-up: an ``Axis``, ``Plane`` or vector along an axis, or its name, such as "-z".
     choices : more of :func:`workhold.load`, such as ``name`` and ``peg_height``.
 
     Raises
@@ -88,13 +88,13 @@ def axis_name(up: Any) -> str:
     """
     if isinstance(up, str):
         return axis_named(up)
-    vector = getattr(up, "direction", getattr(up, "zDir", up))
+    vector = next((getattr(up, name) for name in ("direction", "zDir", "z_dir") if hasattr(up, name)), up)
     to_tuple = getattr(vector, "toTuple", None)
     try:
         x, y, z = map(float, to_tuple() if to_tuple else vector)
     except (TypeError, ValueError) as error:
         raise InputError(
-            f"{type(up).__name__} is no direction: give an axis, a vector, or a name such as '-z'."
+            f"{type(up).__name__} is no direction: give an axis, a plane, a vector, or a name such as '-z'."
         ) from error
     length = max(abs(x), abs(y), abs(z))
     for direction, name in AXES.items():
