@@ -33,6 +33,8 @@ OPTIONS = (
 )
 # What is said of a child that the system or somebody else has ended.
 ENDED = "Workhold was ended before it had an answer: choose the command again."
+# What is said of the part's body in a file of the set-up, which is not shown: the document has the part itself.
+OF_NO_CONCERN = "the part is drawn as a prism of its outline"
 
 
 class Refusal(Exception):
@@ -123,7 +125,8 @@ def run(*words, cancel=None, wait=None):
         lines = [line for line in error.splitlines() if "error: " in line] or error.splitlines()[-1:]
         raise Refusal(in_words_of_the_panel(lines[-1].split("error: ", 1)[-1].strip() if lines else ENDED))
     for line in error.splitlines():
-        App.Console.PrintMessage(line + "\n")
+        if OF_NO_CONCERN not in line:
+            App.Console.PrintMessage(line + "\n")
     return said["stdout"].decode("utf-8", "replace")
 
 
