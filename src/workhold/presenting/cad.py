@@ -47,7 +47,7 @@ def from_build123d(part: Any, up: Any = "z", **choices: Any) -> Workpiece:
     Parameters
     ----------
     part : a solid, part, sketch, face or builder.
-    up : what points up in the set-up: an ``Axis``, a ``Plane``, a vector along an axis, or a name such as "-z".
+    up : what points up: an ``Axis``, a ``Plane`` or a vector along an axis, or a name such as "-z".
     choices : more of :func:`workhold.load`, such as ``name`` and ``peg_height``.
 
     Raises
