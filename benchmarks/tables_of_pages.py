@@ -91,7 +91,14 @@ def good_tables(data: Mapping[str, Any]) -> dict[str, str]:
     families = dict.fromkeys(row["family"] for row in data["seating"])
     seated = [(name, [row for row in data["seating"] if row["family"] == name]) for name in families]
     out["capture openings"] = table_of(
-        ["", "sets", "by the rule, mm", "widest of the precise, mm", "wider by the list", "wider by the rule"],
+        [
+            "",
+            "sets",
+            "by the rule, mm",
+            "widest of the precise, mm",
+            "wider by the list",
+            "wider by the rule",
+        ],
         [seated_row(name, rows) for name, rows in (*seated, ("all", data["seating"]))],
     )
     return out
