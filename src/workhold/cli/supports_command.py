@@ -223,41 +223,66 @@ def runs_of(numbers: Sequence[int]) -> str:
 
 
 def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> tuple[Supports, ...]:
-    """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them."""
-    from workhold.model.support_request import SupportRequest
-    from workhold.supports.listing import supports_of_best
+    """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them.
+
+    They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
+    """
     from workhold.supports.notes import flat_faces_notes
-    from workhold.supports.why_none import why_none
+    from workhold.supports.sizes import supported_by_size
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
         return ()
-    request = SupportRequest.of(result.workpiece, thickness, toolkit=result.toolkit)
-    found = supports_of_best(fixtures, result.query, request, each=1)
+    found, usual = supported_by_size(fixtures, result.query, thickness)
     with_loads = result.query.is_loaded
     table = Table((">rank", "supports", *columns_of(unit, with_loads)))
     for rank, one in enumerate(found, 1):
         if one.triples:
             table.add_row(str(rank), *row_of(one.triples[0], unit, with_loads))
     bare = [rank for rank, one in enumerate(found, 1) if not one.triples]
-    pad, tip = unit.text(request.pad_radius), unit.text(request.tip_radius)
-    held = (
-        f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
-    )
-    none = [f"Under {runs_of(bare)} no three hold the part."] if bare else []
-    if bare:
-        none.append(f"Under {bare[0]}: {why_none(found[bare[0] - 1], unit)}")
+    notes = size_notes(found, usual, bare, unit)
     best = [triple for one in found for triple in one.triples]
     print_tables(
         "",
         *([table] if table.rows else []),
-        held,
-        *none,
+        *notes,
         *before_first(best),
         *flat_faces_notes(result.workpiece, KEEP_OFF),
         stream=stream,
     )
     return found
+
+
+def size_notes(
+    found: Sequence[Supports], usual: Sequence[Supports], bare: Sequence[int], unit: Unit
+) -> list[str]:
+    """Says of which sizes the supports of some fixtures are, and why some have none.
+
+    Parameters
+    ----------
+    found, usual : of each fixture in order; those that are listed, and those of the usual sizes.
+    bare : ranks of those without supports among the listed ones.
+    """
+    from workhold.supports.why_none import why_none
+
+    pad, tip = unit.text(found[0].request.pad_radius), unit.text(found[0].request.tip_radius)
+    if len(bare) == len(found):
+        larger = unit.text(usual[0].request.pad_radius)
+        sizes = f"pads of radius {pad}" if found is usual else f"pads of radius {larger} down to {pad}"
+        return [
+            f"Under {runs_of(bare)} no three hold the part, with {sizes}.",
+            f"Under {bare[0]}, with the {'usual' if found is usual else 'least'}: {why_none(found[0], unit)}",
+        ]
+    notes = [
+        f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
+    ]
+    if bare:
+        notes.append(f"Under {runs_of(bare)} no three hold the part.")
+    if found is not usual:
+        notes.append(f"Larger ones hold the part under none of these, so under 1: {why_none(usual[0], unit)}")
+    elif bare:
+        notes.append(f"Under {bare[0]}: {why_none(found[bare[0] - 1], unit)}")
+    return notes
 
 
 def before_first(listed: Sequence[Triple]) -> list[str]:

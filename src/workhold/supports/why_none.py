@@ -15,6 +15,7 @@ from attrs import evolve
 from workhold.model.support_triples import Supports
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.listing import SupportSearch
+from workhold.supports.sizes import SMALLER
 from workhold.units import Unit
 
 __all__ = ["why_none"]
@@ -71,8 +72,13 @@ def few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
         )
     # Rounded down, so that a pad of the radius that is said fits.
     enough = floor(spare[2] * 100) / 100
-    if enough <= 0.0:
-        return f"{pad}; smaller pads would help, or another fixture."
+    least = SMALLER[-1][0]
+    if enough < min(least, request.pad_radius):
+        turned = "" if found.query.workpiece.solid is None else ", another side up"
+        return (
+            f"{pad}, and no three have it for pads of radius {unit.text(least)}; a finer pitch would "
+            f"help{turned}, or another fixture."
+        )
     return f"{pad}; three have it for pads of radius {unit.text(enough)}."
 
 
