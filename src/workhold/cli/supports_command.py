@@ -16,6 +16,7 @@ from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_out
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.spatial_loads import spatial_load
+from workhold.cli.support_sizes import size_notes, smaller_sizes
 from workhold.cli.supports_friction import friction_words, with_friction
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
@@ -137,16 +138,17 @@ def supports(
         "inside": optional_length("--inside", inside, shown),
         "reach": [lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
     }
+    usual = SupportRequest.of(
+        result.workpiece,
+        high,
+        pad_radius=optional_length("--pad-radius", pad_radius, shown),
+        tip_radius=optional_length("--tip-radius", tip_radius, shown),
+        toolkit=result.toolkit,
+    )
     request = evolve(
-        SupportRequest.of(
-            result.workpiece,
-            high,
-            pad_radius=optional_length("--pad-radius", pad_radius, shown),
-            tip_radius=optional_length("--tip-radius", tip_radius, shown),
-            toolkit=result.toolkit,
-        ),
+        usual,
         band=None if band is None else lengths("--band", band, ":", 2, shown),
-        bottom_zones=[zone(text, shown) for text in keep_out_below or ()],
+        bottom_zones=[*usual.bottom_zones, *(zone(text, shown) for text in keep_out_below or ())],
         top_zones=[zone(text, shown) for text in keep_out_above or ()],
         point=None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
         **{name: value for name, value in own.items() if value is not None},
@@ -154,20 +156,29 @@ def supports(
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in load] if load else None
     every, written = out is not None, [path for path in (out, glb, step) if path is not None]
+    sizes = [request]
+    if all(one is None for one in (pad_radius, tip_radius, pad_margin, inside)):
+        sizes += smaller_sizes(request, result, high)
     with (
         ask_to_stop("the best of what was looked at is kept") as cancel,
         progress_bar("Looking for supports", "of 1 fixture") as show,
     ):
-        found = supports_of(
-            result[rank - 1],
-            result.query,
-            request,
-            loads,
-            closing,
-            None if every else count,
-            cancel=cancel,
-            progress=lambda fraction: show(fraction, 0),
-        )
+        for one in sizes:
+            found = supports_of(
+                result[rank - 1],
+                result.query,
+                one,
+                loads,
+                closing,
+                None if every else count,
+                cancel=cancel,
+                progress=lambda fraction: show(fraction, 0),
+            )
+            if found.triples or found.stopped:
+                break
+    if found.triples and found.request.pad_radius < request.pad_radius:
+        pad, tip = shown.text(found.request.pad_radius), shown.text(found.request.tip_radius)
+        print_remark(f"the usual sizes find no place: the pads have a radius of {pad}, the tip one of {tip}.")
     helped = with_friction(found, count, coefficient)
     if out is not None:
         from workhold.files.supports.writer import write_supports
@@ -204,24 +215,6 @@ def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: 
     return high
 
 
-def runs_of(numbers: Sequence[int]) -> str:
-    """Rising numbers in words, three and more that follow one another as a range.
-
-    Examples
-    --------
-    >>> runs_of([1, 3, 4, 6, 7, 8, 20])
-    '1, 3, 4, 6 to 8, 20'
-    """
-    runs: list[list[int]] = []
-    for number in numbers:
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    words = (f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
-    return ", ".join(words)
-
-
 def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> tuple[Supports, ...]:
     """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them.
 
@@ -251,38 +244,6 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
         stream=stream,
     )
     return found
-
-
-def size_notes(
-    found: Sequence[Supports], usual: Sequence[Supports], bare: Sequence[int], unit: Unit
-) -> list[str]:
-    """Says of which sizes the supports of some fixtures are, and why some have none.
-
-    Parameters
-    ----------
-    found, usual : of each fixture in order; those that are listed, and those of the usual sizes.
-    bare : ranks of those without supports among the listed ones.
-    """
-    from workhold.supports.why_none import why_none
-
-    pad, tip = unit.text(found[0].request.pad_radius), unit.text(found[0].request.tip_radius)
-    if len(bare) == len(found):
-        larger = unit.text(usual[0].request.pad_radius)
-        sizes = f"pads of radius {pad}" if found is usual else f"pads of radius {larger} down to {pad}"
-        return [
-            f"Under {runs_of(bare)} no three hold the part, with {sizes}.",
-            f"Under {bare[0]}, with the {'usual' if found is usual else 'least'}: {why_none(found[0], unit)}",
-        ]
-    notes = [
-        f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
-    ]
-    if bare:
-        notes.append(f"Under {runs_of(bare)} no three hold the part.")
-    if found is not usual:
-        notes.append(f"Larger ones hold the part under none of these, so under 1: {why_none(usual[0], unit)}")
-    elif bare:
-        notes.append(f"Under {bare[0]}: {why_none(found[bare[0] - 1], unit)}")
-    return notes
 
 
 def before_first(listed: Sequence[Triple]) -> list[str]:

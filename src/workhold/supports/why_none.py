@@ -31,7 +31,9 @@ def why_none(found: Supports, unit: Unit) -> str:
 
 def reason(found: Supports, unit: Unit) -> str:
     """What is in the way, and what would help."""
-    request, toolkit = found.request, found.query.toolkit
+    request, toolkit, solid = found.request, found.query.toolkit, found.query.workpiece.solid
+    if solid is not None and solid.lies_on_no_face and request.bottom is None:
+        return "the part lies on no level face under which a pad could stand; another side up would help."
     bottom = SupportSearch(found.query, request, ()).bottom
     holes = holes_under(found.fixture, toolkit, bottom, request)
     if found.positions < 3:
