@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from workhold.cli.table import Table
-from workhold.model.solid import FileSolid, HeightRow
+from workhold.model.solid import FileSolid, HeightRow, other_way_up
 from workhold.model.workpiece import Workpiece
 from workhold.units import Unit
 
@@ -72,8 +72,7 @@ def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -
     others = [row for row in rows if not row.low < solid.peg_height <= row.high and row.touchable > 0]
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
     named = [f"--peg-height {unit.number(row.high)}" for row in longest]
-    turned = solid.axis.removeprefix("-") if solid.axis.startswith("-") else f"-{solid.axis}"
-    offers = f"its other side up (--axis={turned}): workhold features shows what each of them offers."
+    offers = f"its other side up (--axis={other_way_up(solid.axis)}): workhold features shows what each of them offers."
     if not named:
         return [f"What may help is {offers}"]
     return [f"What may help is another outline, that of {', '.join(named)}, or {offers}"]

@@ -12,13 +12,22 @@ from workhold.errors import InputError
 from workhold.limits import real
 from workhold.model.requirements import Zone, polygon_zone
 
-__all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline"]
+__all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
 
 # The directions of a file that can point up.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 Band = tuple[float, float]
 # Loops of vertices x, y (mm) and bulge.
 Loops = tuple[tuple[tuple[float, ...], ...], ...]
+
+
+def other_way_up(axis: str) -> str:
+    """The axis that points up where the part lies on its other side.
+
+    >>> other_way_up("z"), other_way_up("-x")
+    ('-z', 'x')
+    """
+    return axis[1:] if axis.startswith("-") else f"-{axis}"
 
 
 def bands_of(values: Iterable[Any]) -> tuple[Band | None, ...]:
