@@ -72,7 +72,8 @@ def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -
     others = [row for row in rows if not row.low < solid.peg_height <= row.high and row.touchable > 0]
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
     named = [f"--peg-height {unit.number(row.high)}" for row in longest]
-    offers = f"its other side up (--axis={other_way_up(solid.axis)}): workhold features shows what each of them offers."
+    turned = other_way_up(solid.axis)
+    offers = f"its other side up (--axis={turned}): workhold features shows what each of them offers."
     if not named:
         return [f"What may help is {offers}"]
     return [f"What may help is another outline, that of {', '.join(named)}, or {offers}"]

@@ -218,7 +218,7 @@ def holes_of(setup: SetUp) -> list[str]:
 
 
 def heights_words(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
-    """At which heights carriers with heights of their own touch, where the parts are solids."""
+    """Says at which heights carriers with heights of their own touch, where the parts are solids."""
     toolkit = setup.standing.member.query.toolkit
     if all(one.member.query.workpiece.solid is None for one in setup.holdings):
         return

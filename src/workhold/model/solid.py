@@ -158,7 +158,7 @@ class SolidOutline:
         return bool(self.top) and not self.bottom
 
     def pads_kept_off(self, bounds: tuple[float, float, float, float]) -> tuple[Zone, ...]:
-        """What pads are kept off of an outline of some bounds (x0, y0, x1, y1) in mm: nothing, or all of it."""
+        """What pads are kept off of an outline of bounds (x0, y0, x1, y1) in mm: nothing, or all of it."""
         if not self.lies_on_no_face:
             return ()
         x0, y0, x1, y1 = bounds
