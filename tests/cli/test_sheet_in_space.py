@@ -180,7 +180,10 @@ def test_no_supports_are_said_to_be_none(run: Run, folder: Path) -> None:
     words = ("design", "small.json", *KIT, "--best", 3, "--supports", "--thickness", 9)
     shown = run(*words, "--sheet", "a.pdf", "--out", "r.json")
     assert shown.exit_code == 0, shown.stderr
-    assert "no three supports of the usual sizes hold the part, so the sheet has none." in shown.stderr
+    assert (
+        "no three supports hold the part under any of the best, so the sheet has none: another side up"
+        in shown.stderr
+    )
     assert "Supports and the clamp on top" not in words_in("a.pdf")
     assert "+9.000 top of the part" in words_in("a.pdf")
     shown = run("sheet", "r.json", 1, "-o", "b.pdf", "--supports", "--thickness", 9)
@@ -189,6 +192,23 @@ def test_no_supports_are_said_to_be_none(run: Run, folder: Path) -> None:
         and "under fixture 1 no three supports" in shown.stderr
         and not Path("b.pdf").exists()
     )
+
+
+def test_smaller_pads_stand_where_the_usual_ones_do_not(run: Run, folder: Path) -> None:
+    """The table says which sizes and why; the sheets of design and of the fixture have the same."""
+    loop = [[0, 0, 0], [90, 2, 0], [88, 21, 0], [1, 20, 0]]
+    Path("slim.json").write_text(json.dumps({"name": "slim", "units": "mm", "loops": [loop]}))
+    words = ("design", "slim.json", *KIT, "--best", 30, "--supports", "--thickness", 9)
+    shown = run(*words, "--sheet", "a.pdf", "--out", "r.json")
+    assert shown.exit_code == 0, shown.stderr
+    assert "Pads of radius 3.000 mm and a tip of radius 4.000 mm" in shown.stdout
+    assert "Larger ones hold the part under none of these" in shown.stdout
+    rank = int(shown.stdout.split("The setup sheet of fixture ")[1].split()[0])
+    assert f"fixture 1 has no such supports: the sheet is of fixture {rank}." in shown.stderr
+    assert f"\n   {rank}   " in shown.stdout.split("supports   clamp at")[1]
+    assert "round pads Ø 6 mm" in words_in("a.pdf") and "its round tip Ø 8 mm" in words_in("a.pdf")
+    assert run("sheet", "r.json", rank, "-o", "b.pdf", "--supports", "--thickness", 9).exit_code == 0
+    assert words_in("b.pdf") == words_in("a.pdf")
 
 
 def test_pegs_of_a_program_are_as_high_above_the_part_as_on_its_supports(run: Run, folder: Path) -> None:

@@ -12,6 +12,7 @@ from typer.testing import Result as Outcome
 import workhold
 from workhold import Plate, Workpiece
 from workhold.cli.spatial_loads import spatial_load
+from workhold.model.solid import SolidOutline
 from workhold.units import MILLIMETRE
 
 Run = Callable[..., Outcome]
@@ -93,12 +94,12 @@ def test_part_that_no_three_supports_hold_up(tmp_path: Path, run: Run) -> None:
     workhold.save(workhold.design(kite, Plate(pitch=20, peg_radius=3), best=1), path)
     shown = run("supports", path, "1", "--thickness", "10")
     assert shown.exit_code == 0 and "No three supports hold the part" in shown.stdout
-    assert "room for a pad of radius 4.000 mm" in " ".join(shown.stdout.split())
+    assert "room for a pad of radius 2.000 mm, and fewer than three" in " ".join(shown.stdout.split())
     # Where a file of bodies is asked for, there is nothing to write, and the sentence is the error.
     asked = run("supports", path, "1", "--thickness", "10", "--glb", tmp_path / "kite.glb")
     assert asked.exit_code == 2 and not (tmp_path / "kite.glb").exists()
     assert "error: no three supports hold the part" in asked.stderr
-    assert "room for a pad of radius 4.000 mm" in " ".join(asked.stderr.split())
+    assert "room for a pad of radius 2.000 mm, and fewer than three" in " ".join(asked.stderr.split())
 
 
 def test_search_with_supports(run: Run, tmp_path: Path) -> None:
@@ -203,3 +204,18 @@ def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run:
         assert refused.exit_code == 2 and sentence in refused.stderr
     bare = run(*words[:5], "--friction", "0.2")
     assert bare.exit_code == 2 and "--friction is asked of loads, of which there are none" in bare.stderr
+
+
+def test_no_pad_stands_under_a_solid_that_lies_on_no_face(tmp_path: Path, run: Run) -> None:
+    """Nor where other places are kept out too; smaller sizes have their own distance inside the triangle."""
+    loop = [(0.0, 0.0, 0.0), (90.0, 2.0, 0.0), (88.0, 21.0, 0.0), (1.0, 20.0, 0.0)]
+    path = tmp_path / "slim.json"
+    for bottom in ([], [loop]):
+        solid = SolidOutline("z", 9.0, 9.0, 0.5, 1.0, [(0.0, 9.0)] * 4, bottom=bottom, top=[loop])
+        part = Workpiece.from_loops("slim", [loop], solid=solid)
+        workhold.save(workhold.design(part, Plate(pitch=20, peg_radius=3), best=30), path)
+        shown = [run("supports", path, n, "--keep-out-below", "circle=0,0,1") for n in range(1, 31)]
+        held = [one for one in shown if "clamp at mm" in one.stdout]
+        assert bool(held) is bool(bottom)
+        smaller = "the usual sizes find no place: the pads have a radius of 3.000 mm, the tip one of 4.000 mm"
+        assert not bottom or any(smaller in one.stderr for one in held)

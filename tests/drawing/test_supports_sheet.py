@@ -5,10 +5,12 @@ from __future__ import annotations
 from math import ceil, hypot
 
 import pytest
+from attrs import evolve
 from space_examples import HEIGHT, NAMES, SOLID, chosen, printed, result_of, sheet
 from svg_reading import by_class, texts, to_model
 
-from body_examples import BLOCK
+from body_examples import BLOCK, TOOLKITS
+from workhold import Workpiece, design
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.supports_block import counting_words
 from workhold.drawing.two_sides import side_up_words
@@ -16,6 +18,7 @@ from workhold.model.first_side import FirstSide
 from workhold.model.hardware import hardware_of
 from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import part_zero
+from workhold.model.solid import SolidOutline
 from workhold.units import INCH, MILLIMETRE
 
 WITH = [name for name in NAMES if chosen(name) is not None]
@@ -156,6 +159,36 @@ def test_hardware_is_counted(name: str) -> None:
         diameter = "–" if one.diameter is None else f"{one.diameter:.6g}"
         length = "–" if one.length is None else f"{one.length:.3f}"
         assert f"{one.count} {one.name} {diameter} {length}" in words
+
+
+@pytest.mark.parametrize("name", ["plate", "vise", "fence", "two clamps"])
+@pytest.mark.parametrize(("high", "said"), [(8.5, True), (21.9, True), (22.5, False)])
+def test_pegs_as_high_as_the_part_may_be_as_short_as_they_press(name: str, high: float, said: bool) -> None:
+    """Where nobody chose their height; a length that is as good is told, if it is shorter by 2 mm or more."""
+    assert SOLID.solid is not None
+    bands = [None if band is None else (band[0], high) for band in SOLID.solid.bands]
+    tall = evolve(SOLID, solid=evolve(SOLID.solid, peg_height=HEIGHT, bands=bands))
+    text = printed(sheet(design(tall, TOOLKITS[name], best=1)))
+    peg = TOOLKITS[name].plates[0].peg
+    words = f"No {peg} presses above {high:.3f} mm, so {peg}s of {high + 10:.3f} mm do as well."
+    assert (words in text) is said and ("do as well" in text) is said
+    chosen_height = evolve(tall, solid=evolve(tall.solid, peg_height=HEIGHT - 0.5))
+    assert "do as well" not in printed(sheet(design(chosen_height, TOOLKITS[name], best=1)))
+
+
+def test_a_part_that_lies_on_no_face_is_said_to_do_so() -> None:
+    """And a part that would fit turned over is told apart by the file's axis, as its sides may differ."""
+    assert SOLID.solid is not None
+    words = "The part lies on no level face: hold it level"
+    assert words not in printed(sheet(result_of("plate")))
+    round_below = evolve(SOLID, solid=evolve(SOLID.solid, bottom=[]))
+    assert words in printed(sheet(design(round_below, TOOLKITS["plate"], best=1)))
+    square = [(0.0, 0.0, 0.0), (60.0, 0.0, 0.0), (60.0, 44.0, 0.0), (0.0, 44.0, 0.0)]
+    own = SolidOutline("-z", 20.0, 20.0, 0.5, 1.0, [(0.0, 20.0)] * 4)
+    text = printed(
+        sheet(design(Workpiece.from_loops("box", [square], solid=own), TOOLKITS["two clamps"], best=1))
+    )
+    assert "Turned over, the part would fit the same pegs: make sure that −z of the file points up." in text
 
 
 def test_holes_with_other_names_are_said_to_be_so() -> None:

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from family_parts import shop_parts
-from workhold import Plate, Query, Vise, Workpiece, answer
+from workhold import InputError, Plate, Query, Vise, Workpiece, answer
 from workhold.family.family import Asked, family_of
 from workhold.family.members import RANKINGS, other_side, zero_of_other_side
 from workhold.family.patterns import holes_of
 from workhold.model.quality import LOAD_REACTION, LOCATION_ERROR
 from workhold.model.requirements import Load, Restrictions, circle_zone
 from workhold.model.setup import PartZero, part_zero
+from workhold.model.solid import SolidOutline
 from workhold.verification.verify import Judge
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
@@ -87,6 +88,30 @@ def test_the_zero_is_the_same_point_of_the_part() -> None:
     assert turned.zero.point == pytest.approx(zero_of_other_side(part_zero(LEVER)).point)
     assert turned.name == "lever, side 2"
     assert Asked("lever", lever_query(Restrictions()), zero=zero).turned_over.zero == other
+
+
+def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
+    """Its faces to avoid are those of the same faces of the solid; zones and zero are mirrored as those of drawings."""
+    toolkit = Plate(pitch=10, peg_radius=3)
+    here, there = (
+        [(0, 0, 0), (62, 0, 0), (62, 31, 0), (0, 38, 0)],
+        [(-62, 0, 0), (0, 0, 0), (0, 38, 0), (-62, 31, 0)],
+    )
+    bands = [(0.0, 30.0)] * 4
+    solid = SolidOutline("z", 30, 30, 0.5, 1, bands, [(7,), (8,), (9, 5), (6,)])
+    turned = SolidOutline("-z", 30, 30, 0.5, 1, bands, [(7,), (6,), (5,), (8,)])
+    part, other = (
+        Workpiece.from_loops("part", [loop], solid=one) for loop, one in ((here, solid), (there, turned))
+    )
+    asked = Restrictions(avoid=(2, 3), zones=[circle_zone(70.0, 11.0, 5.0)])
+    query = Query(part, toolkit, restrictions=asked, ranking=RANKINGS[1])
+    side = Asked("part", query, zero=part_zero(part, "corner")).lying_as(other)
+    assert (side.name, side.query.workpiece.name) == ("part, side 2", "part, side 2")
+    assert side.query.workpiece.solid == turned and side.query.restrictions.avoid == (1, 2)
+    assert side.query.restrictions.zones[0].loop[:, 0].min() == pytest.approx(-75.0)
+    assert side.zero is not None and side.zero.point == (0.0, 0.0)
+    with pytest.raises(InputError, match="give both sides as parts of their own"):
+        other_side(query)
 
 
 def test_both_sides_share_pins() -> None:

@@ -10,6 +10,7 @@ from sheet_reading import collisions, page_of, words_of
 from svg_reading import by_class, texts
 
 from family_parts import shop_parts
+from own_heights import STEM, stepped
 from workhold import Plate, Query, Vise
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.family.family import Asked, Family, family_of
@@ -167,3 +168,18 @@ def test_what_is_not_proven_is_told_in_the_curve(families: dict[str, Family]) ->
     lost = tuple(evolve(point, loss=float("inf")) for point in family.points)
     nothing = Family(family.toolkit, family.figure, family.members, (), lost, family.table)
     assert "No number of set-ups" in " ".join(texts(draw_curve(nothing)))
+
+
+def test_heights_of_their_own_are_told_where_solids_are_held() -> None:
+    """Of every set-up, in the unit of the sheet; nothing of them where nothing is a solid."""
+    toolkit = Plate(pitch=10, peg_radius=3, columns=8, rows=8, clamp_heights=(12.7, 25.4))
+    solid, prism = stepped({"clamp": ((12.7, 25.4), STEM)}), shop_parts(1)[0]
+    for parts, said in (([solid], True), ([prism], False), ([solid, prism], True)):
+        asked = [Asked(part.name, Query(part, toolkit, ranking=RANKINGS[1])) for part in parts]
+        family = family_of(asked, threads=1)
+        plan = family.plans[0]
+        pages = draw_setups(plan, family.figure, DAY, INCH)
+        for page in pages:
+            words = "lamp: touch between 0.5000 and 1.0000 in above the plane on which the parts lie."
+            assert any(words in text for text in texts(page)) is said
+            assert not collisions(page) and on_page(page)

@@ -13,6 +13,7 @@ from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of
 from workhold.supports.notes import flat_faces_notes
+from workhold.supports.why_none import why_none
 from workhold.units import unit_named
 from workhold.web.support_tasks import notes_of as notes_of_page
 
@@ -60,3 +61,23 @@ def test_nothing_is_said_of_what_is_not_there(found: Supports) -> None:
     known = evolve(part, solid=evolve(part.solid, bottom=[BASE]))
     (note,) = flat_faces_notes(known, ("a", "b"))
     assert "at its top," in note and note.endswith("off the rest with b.")
+
+
+def test_no_pad_stands_under_a_part_that_lies_on_no_face() -> None:
+    """A level face on top and none below: no support, whoever asks and whatever else is kept out, and why."""
+    part = stepped({})
+    assert part.solid is not None
+    lying = evolve(part, solid=evolve(part.solid, bottom=[], top=[BASE]))
+    known = evolve(part, solid=evolve(part.solid, bottom=[BASE], top=[BASE]))
+    toolkit = workhold.Plate(pitch=10, peg_radius=3)
+    for workpiece, held in ((lying, False), (known, True)):
+        result = workhold.design(workpiece, toolkit, best=1)
+        corner = workhold.circle_zone(0, 0, 1)
+        for asked in ({}, {"bottom_zones": [corner]}):
+            found = result[0].supports(best=1, pad_radius=2, tip_radius=2, **asked)
+            assert bool(found.triples) is held, asked
+        assert result[0].supports(best=1, pad_radius=2, tip_radius=2, bottom=[BASE]).triples
+    found = workhold.design(lying, toolkit, best=1)[0].supports(best=1, pad_radius=2)
+    assert "the part lies on no level face under which a pad could stand" in why_none(found, unit_named("mm"))
+    (note,) = flat_faces_notes(lying, ("a", "b"))
+    assert note.endswith("no support can stand under it: turn another side up.")

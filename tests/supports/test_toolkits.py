@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import workhold
-from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise, Workpiece
+from own_heights import STEM, stepped
+from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise, Workpiece, design
 from workhold.files.supports.reader import read_supports
 from workhold.files.supports.writer import write_supports
 from workhold.model.support_request import SpatialLoad, SupportRequest
@@ -102,3 +105,15 @@ def test_faces_that_meet_and_the_top_of_a_boss_are_faces_of_their_own() -> None:
         1.0,
     ]
     assert room_on([floor, inside, pocket[1], around], [], points[0]) == -3.5
+
+
+def test_a_file_of_supports_has_the_outlines_of_carriers(tmp_path: Path) -> None:
+    """A clamp with heights of its own touches the outline that is written; the file is read back and proven."""
+    toolkit = Plate(pitch=10, peg_radius=3, clamp_heights=(11.0, 18.0))
+    part = stepped({"clamp": ((11.0, 18.0), STEM)})
+    held = design(part, toolkit, best=10).supports(best=10, pad_radius=2, tip_radius=2)
+    found = next(one for one in held if one.triples)
+    write_supports(found, tmp_path / "s.json")
+    assert read_supports(tmp_path / "s.json").query.workpiece.outlines == part.outlines
+    judged = verify_supports_file(tmp_path / "s.json")
+    assert judged.faults == () and judged.proven == len(found.triples)

@@ -37,6 +37,14 @@ def test_smaller_pads_that_are_said_to_help_leave_three_holes() -> None:
     assert asked(evolve(request, pad_radius=radius + 0.011)).positions < 3
 
 
+def test_pads_too_small_to_be_any_are_not_said_to_help() -> None:
+    """Where three holes have room for less than the least pads only, another pitch or fixture is what helps."""
+    request = evolve(case("bracketL").request, pad_margin=14.0)
+    sentence = why_none(asked(request), MILLIMETRE)
+    assert "no three have it for pads of radius 2.000 mm; a finer pitch would help, or another" in sentence
+    assert asked(evolve(request, pad_radius=0.1)).positions >= 3
+
+
 @pytest.mark.parametrize(
     ("change", "columns", "words"),
     [

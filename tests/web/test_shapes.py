@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -115,3 +116,21 @@ def test_what_has_no_such_shape_is_refused(
     assert "Only a search" in refused(
         sent(server, file, "/api/parts/shape", job=compared.rpartition("/")[2]), 409
     )
+
+
+def test_a_part_is_named_after_the_file_that_was_sent_and_its_solid(
+    server: RunningServer, tmp_path: Path
+) -> None:
+    """The server keeps the file under another name, which is never shown."""
+    path = write_step(tmp_path / "machine part.step", fused(box(60, 40, 10), box(20, 20, 5, (0, 0, 20))))
+    names = iter(("base", "lug"))
+    named = re.sub(
+        r"MANIFOLD_SOLID_BREP\(''", lambda _: f"MANIFOLD_SOLID_BREP('{next(names)}'", path.read_text()
+    )
+    path.write_text(named)
+    for part, called in (("lug", "lug of machine part"), ("1", "base of machine part")):
+        answer = sent(server, path, "/api/parts", part=part)
+        assert answer.status_code == 200, answer.text
+        assert answer.json()["name"] == called
+    alone = write_step(tmp_path / "alone.step", box(60, 40, 10))
+    assert sent(server, alone, "/api/parts").json()["name"] == "alone"

@@ -95,7 +95,7 @@ def write_fixture(
     supported: bool,
     unit: Unit,
 ) -> None:
-    """Writes the fixture of a rank as GLB and STEP files, on the best supports of the usual sizes if wanted.
+    """Writes the fixture of a rank as GLB and STEP files, on the best supports if wanted.
 
     Parameters
     ----------

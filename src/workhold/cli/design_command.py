@@ -151,7 +151,8 @@ def design(
         from workhold.cli.warming import begin_compiling, compile_kernels
 
         second = begin_compiling()
-    workpiece = machined.reading(part, reading).load(part, toolkit.heights).workpiece
+    loaded = machined.reading(part, reading).load(part, toolkit.heights)
+    workpiece = loaded.workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
     asked["restrictions"] = without_faces_cut(asked["restrictions"], workpiece, words.not_on_faces_cut_in)
     thickness = machined.thickness if supports or machined.program is None else None
@@ -197,7 +198,12 @@ def design(
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":
-        explain_none(result, workers, folder, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout)
+        from workhold.cli.solid_tables import other_heights
+        from workhold.cli.table import print_tables
+
+        stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
+        explain_none(result, workers, folder, shown, stream)
+        print_tables(*other_heights(workpiece, loaded.heights, shown), stream=stream)
     elif folder is not None:
         draw_pictures(result, folder, out, shown)
     if sheet is not None:

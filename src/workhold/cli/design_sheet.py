@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 __all__ = ["first_sheet", "refuse_sheet", "report_sheet"]
 
 PAPER = (".pdf", ".svg", ".png")
-# So many of the best are asked for supports.
-MOST_ASKED = 20
+# So many of the best are asked for supports, a millisecond each.
+MOST_ASKED = 200
 
 
 def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | None, force: bool) -> None:
@@ -111,22 +111,33 @@ def first_sheet(
 def first_supported(
     result: Result, ranks: list[int], thickness: float, supported: Sequence[Supports]
 ) -> tuple[int, ChosenSupports | None]:
-    """The first of some fixtures that three supports hold up, and these; the first one where none has any."""
+    """The first of some fixtures that three supports hold up, and these; the first one where none has any.
+
+    Supports that are known already go before others, and larger pads before smaller ones.
+    """
     from workhold.model.recounted import ChosenSupports
+    from workhold.supports.sizes import requests_by_size
 
     query = result.query
+    # The table is for the jaw force that the loads ask for.
+    known = dict(enumerate(supported, 1)) if query.jaw_force is None else {}
     for rank in ranks:
-        # The table is for the jaw force that the loads ask for.
-        known = supported[rank - 1] if query.jaw_force is None and rank <= len(supported) else None
-        if known is None:
-            supports = supports_under(result, rank, thickness, None, query.jaw_force)
-        else:
-            supports = ChosenSupports.of(known) if known.triples else None
-        if supports is not None:
-            if rank != ranks[0]:
-                print_remark(
-                    f"fixture {ranks[0]} has no supports of the usual sizes: the sheet is of fixture {rank}."
-                )
-            return rank, supports
-    print_remark("no three supports of the usual sizes hold the part, so the sheet has none.")
+        if rank in known and known[rank].triples:
+            return rank, said_to_be_there(rank, ranks[0], ChosenSupports.of(known[rank]))
+    for request in requests_by_size(result.workpiece, thickness, result.toolkit):
+        for rank in ranks:
+            chosen = supports_under(result, rank, request, None, query.jaw_force)
+            if chosen is not None:
+                return rank, said_to_be_there(rank, ranks[0], chosen)
+    print_remark(
+        "no three supports hold the part under any of the best, so the sheet has none: another side up "
+        "(--axis) or a finer pitch may help, or parallels under it instead."
+    )
     return ranks[0], None
+
+
+def said_to_be_there(rank: int, first: int, chosen: ChosenSupports) -> ChosenSupports:
+    """Supports under a fixture, with a remark where it is not the first one."""
+    if rank != first:
+        print_remark(f"fixture {first} has no such supports: the sheet is of fixture {rank}.")
+    return chosen

@@ -266,9 +266,7 @@ def family(
     for name in outputs:
         refuse_output(name, inputs, force)
     types = None if type_ == EVERY_TYPE else type_
-    members, left_out = asked_of(jobs, toolkit, tolerance, types, zero)
-    if both_sides:
-        members = [side for one in members for side in (one, one.turned_over)]
+    members, left_out = asked_of(jobs, toolkit, tolerance, types, zero, both_sides=both_sides)
     if not members:
         raise InputError(f"none of the parts can be used: {left_out[0].name}: {left_out[0].reason}")
     start = perf_counter()

@@ -266,9 +266,19 @@ def called_by(name: str, names: list[str]) -> str:
 
 
 def asked_of(
-    jobs: list[FamilyPart], toolkit: Toolkit, tolerance: Tolerance | None, types: str | None, zero: str | None
+    jobs: list[FamilyPart],
+    toolkit: Toolkit,
+    tolerance: Tolerance | None,
+    types: str | None,
+    zero: str | None,
+    *,
+    both_sides: bool = False,
 ) -> tuple[list[Asked], list[LeftOut]]:
     """Makes the query of each part that can be read, and lists the parts that cannot.
+
+    Parameters
+    ----------
+    both_sides : make a second one of each part turned over; the file of a solid is read again for it.
 
     Raises
     ------
@@ -278,10 +288,11 @@ def asked_of(
     from hashlib import sha256
 
     from workhold.family.family import Asked, LeftOut
-    from workhold.family.members import RANKINGS
+    from workhold.family.members import OTHER_SIDE, RANKINGS
     from workhold.files.part_list import read_listed
     from workhold.model.query import Query
     from workhold.model.setup import part_zero
+    from workhold.model.solid import other_way_up
 
     usual = RANKINGS[toolkit.travels]
     members, left_out = [], []
@@ -303,5 +314,16 @@ def asked_of(
             at = part_zero(workpiece, zero, unit)
         except InputError as error:
             raise InputError(f"{job.name}: {error}") from error
-        members.append(Asked(job.name, Query(workpiece, toolkit, types, **asked), str(path), digest, at))
+        one = Asked(job.name, Query(workpiece, toolkit, types, **asked), str(path), digest, at)
+        members.append(one)
+        if not both_sides:
+            continue
+        if workpiece.solid is None:
+            members.append(one.turned_over)
+            continue
+        read = read_listed(job.listed, **{**options, "axis": other_way_up(workpiece.solid.axis)})
+        if read.loaded is None:
+            left_out.append(LeftOut(f"{job.name}, {OTHER_SIDE}", str(path), read.refusal.rstrip(".")))
+        else:
+            members.append(one.lying_as(read.loaded.workpiece))
     return members, left_out

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from workhold.model.recounted import ChosenSupports
     from workhold.model.requirements import Load
     from workhold.model.result import Result
+    from workhold.model.support_request import SupportRequest
 
 __all__ = ["chosen_of_file", "chosen_supports", "first_side_of", "is_of_supports", "supports_under"]
 
@@ -47,27 +48,23 @@ def chosen_of_file(
 def supports_under(
     result: Result,
     rank: int,
-    thickness: float | None,
+    request: SupportRequest,
     loads: Sequence[Load] | None,
     jaw_force: float | None,
 ) -> ChosenSupports | None:
-    """The best three supports of the usual sizes under a fixture; None where no three hold the part.
+    """The best three supports of some sizes under a fixture; None where no three hold the part.
 
     A jaw force under which a load would lift the part off a peg is left out: the sheet warns of it anyway.
 
     Raises
     ------
     InputError
-        Where nobody knows how thick the part is, and for more holes than can be looked at.
+        For more holes than can be looked at.
     """
     from workhold.model.recounted import ChosenSupports
-    from workhold.model.support_request import SupportRequest
     from workhold.supports.acting import WeakJawError
     from workhold.supports.listing import supports_of
 
-    if thickness is None and result.workpiece.solid is None:
-        raise InputError("how thick the part is, is not known: give --thickness.")
-    request = SupportRequest.of(result.workpiece, thickness, toolkit=result.toolkit)
     try:
         found = supports_of(result[rank - 1], result.query, request, loads, jaw_force, best=1)
     except WeakJawError:
@@ -82,20 +79,25 @@ def chosen_supports(
     loads: Sequence[Load] | None,
     jaw_force: float | None,
 ) -> ChosenSupports:
-    """The best three supports of the usual sizes under a fixture.
+    """The best three supports under a fixture, of the usual sizes or else of smaller ones.
 
     Raises
     ------
     InputError
         Where there are none, and where nobody knows how thick the part is.
     """
-    chosen = supports_under(result, rank, thickness, loads, jaw_force)
-    if chosen is None:
-        raise InputError(
-            f"under fixture {rank} no three supports of the usual sizes hold the part: list others with "
-            "workhold supports and its --out, or leave --supports out."
-        )
-    return chosen
+    from workhold.supports.sizes import requests_by_size
+
+    if thickness is None and result.workpiece.solid is None:
+        raise InputError("how thick the part is, is not known: give --thickness.")
+    for request in requests_by_size(result.workpiece, thickness, result.toolkit):
+        chosen = supports_under(result, rank, request, loads, jaw_force)
+        if chosen is not None:
+            return chosen
+    raise InputError(
+        f"under fixture {rank} no three supports hold the part: see workhold supports with its --pad-radius, "
+        "--tip-radius and --out, or leave --supports out."
+    )
 
 
 def first_side_of(result: Result, rank: int, before: str) -> FirstSide:

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from workhold.cli.table import Table
-from workhold.model.solid import FileSolid, HeightRow
+from workhold.model.solid import FileSolid, HeightRow, other_way_up
 from workhold.model.workpiece import Workpiece
 from workhold.units import Unit
 
-__all__ = ["band_table", "height_table", "solid_table"]
+__all__ = ["band_table", "height_table", "other_heights", "solid_table"]
+
+# So many other heights of the pegs are named.
+MOST_NAMED = 3
 
 
 def solid_table(solids: Sequence[FileSolid], unit: Unit) -> Table:
@@ -54,3 +57,23 @@ def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
         lengths = (row.low, row.high, row.border, row.touchable, row.band)
         table.add_row(*(unit.number(length) for length in lengths))
     return [table]
+
+
+def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
+    """What may help where pegs as high as these hold a solid nowhere: other heights, and the other side up.
+
+    Parameters
+    ----------
+    rows : what other heights of the pegs offer; those with more to touch are named first.
+    """
+    solid = workpiece.solid
+    if solid is None:
+        return []
+    others = [row for row in rows if not row.low < solid.peg_height <= row.high and row.touchable > 0]
+    longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
+    named = [f"--peg-height {unit.number(row.high)}" for row in longest]
+    turned = other_way_up(solid.axis)
+    offers = f"its other side up (--axis={turned}): workhold features shows what each of them offers."
+    if not named:
+        return [f"What may help is {offers}"]
+    return [f"What may help is another outline, that of {', '.join(named)}, or {offers}"]

@@ -16,6 +16,7 @@ from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_out
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.spatial_loads import spatial_load
+from workhold.cli.support_sizes import size_notes, smaller_sizes
 from workhold.cli.supports_friction import friction_words, with_friction
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
@@ -137,16 +138,17 @@ def supports(
         "inside": optional_length("--inside", inside, shown),
         "reach": [lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
     }
+    usual = SupportRequest.of(
+        result.workpiece,
+        high,
+        pad_radius=optional_length("--pad-radius", pad_radius, shown),
+        tip_radius=optional_length("--tip-radius", tip_radius, shown),
+        toolkit=result.toolkit,
+    )
     request = evolve(
-        SupportRequest.of(
-            result.workpiece,
-            high,
-            pad_radius=optional_length("--pad-radius", pad_radius, shown),
-            tip_radius=optional_length("--tip-radius", tip_radius, shown),
-            toolkit=result.toolkit,
-        ),
+        usual,
         band=None if band is None else lengths("--band", band, ":", 2, shown),
-        bottom_zones=[zone(text, shown) for text in keep_out_below or ()],
+        bottom_zones=[*usual.bottom_zones, *(zone(text, shown) for text in keep_out_below or ())],
         top_zones=[zone(text, shown) for text in keep_out_above or ()],
         point=None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
         **{name: value for name, value in own.items() if value is not None},
@@ -154,20 +156,29 @@ def supports(
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in load] if load else None
     every, written = out is not None, [path for path in (out, glb, step) if path is not None]
+    sizes = [request]
+    if all(one is None for one in (pad_radius, tip_radius, pad_margin, inside)):
+        sizes += smaller_sizes(request, result, high)
     with (
         ask_to_stop("the best of what was looked at is kept") as cancel,
         progress_bar("Looking for supports", "of 1 fixture") as show,
     ):
-        found = supports_of(
-            result[rank - 1],
-            result.query,
-            request,
-            loads,
-            closing,
-            None if every else count,
-            cancel=cancel,
-            progress=lambda fraction: show(fraction, 0),
-        )
+        for one in sizes:
+            found = supports_of(
+                result[rank - 1],
+                result.query,
+                one,
+                loads,
+                closing,
+                None if every else count,
+                cancel=cancel,
+                progress=lambda fraction: show(fraction, 0),
+            )
+            if found.triples or found.stopped:
+                break
+    if found.triples and found.request.pad_radius < request.pad_radius:
+        pad, tip = shown.text(found.request.pad_radius), shown.text(found.request.tip_radius)
+        print_remark(f"the usual sizes find no place: the pads have a radius of {pad}, the tip one of {tip}.")
     helped = with_friction(found, count, coefficient)
     if out is not None:
         from workhold.files.supports.writer import write_supports
@@ -209,55 +220,30 @@ def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: 
     return high
 
 
-def runs_of(numbers: Sequence[int]) -> str:
-    """Rising numbers in words, three and more that follow one another as a range.
-
-    Examples
-    --------
-    >>> runs_of([1, 3, 4, 6, 7, 8, 20])
-    '1, 3, 4, 6 to 8, 20'
-    """
-    runs: list[list[int]] = []
-    for number in numbers:
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    words = (f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
-    return ", ".join(words)
-
-
 def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> tuple[Supports, ...]:
-    """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them."""
-    from workhold.model.support_request import SupportRequest
-    from workhold.supports.listing import supports_of_best
+    """Prints which three supports hold up the best fixtures of a result best, if any do, and returns them.
+
+    They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
+    """
     from workhold.supports.notes import flat_faces_notes
-    from workhold.supports.why_none import why_none
+    from workhold.supports.sizes import supported_by_size
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
         return ()
-    request = SupportRequest.of(result.workpiece, thickness, toolkit=result.toolkit)
-    found = supports_of_best(fixtures, result.query, request, each=1)
+    found, usual = supported_by_size(fixtures, result.query, thickness)
     with_loads = result.query.is_loaded
     table = Table((">rank", "supports", *columns_of(unit, with_loads)))
     for rank, one in enumerate(found, 1):
         if one.triples:
             table.add_row(str(rank), *row_of(one.triples[0], unit, with_loads))
     bare = [rank for rank, one in enumerate(found, 1) if not one.triples]
-    pad, tip = unit.text(request.pad_radius), unit.text(request.tip_radius)
-    held = (
-        f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
-    )
-    none = [f"Under {runs_of(bare)} no three hold the part."] if bare else []
-    if bare:
-        none.append(f"Under {bare[0]}: {why_none(found[bare[0] - 1], unit)}")
+    notes = size_notes(found, usual, bare, unit)
     best = [triple for one in found for triple in one.triples]
     print_tables(
         "",
         *([table] if table.rows else []),
-        held,
-        *none,
+        *notes,
         *before_first(best),
         *flat_faces_notes(result.workpiece, KEEP_OFF),
         stream=stream,

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from workhold.drawing.panel import TextColumn
+from workhold.drawing.sheet_heights import SheetHeights
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
+from workhold.fixels.contacts import CLAMP_TIP
 from workhold.model.dowels import fit_words
 from workhold.model.hardware import HardwareItem, hardware_of
 
 __all__ = ["hardware_items", "write_hardware"]
+
+# Pegs that could be shorter by less than this, in mm, are left as they are.
+SHORTER = 2.0
 
 
 def hardware_items(sheet: Sheet) -> list[HardwareItem]:
@@ -53,3 +58,24 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
         f"{lengths.words(heights.plate_thickness)} in the {plate.noun}{heights.sure('plate_thickness')}"
     )
     column.paragraph(f"Length of a {plate.peg}: {' + '.join(parts)}.", NOTE)
+    pressed = pressed_up_to(sheet, heights)
+    if pressed is not None:
+        shorter = lengths.words(pressed + heights.supported_by + heights.plate_thickness)
+        words = f"No {plate.peg} presses above {lengths.words(pressed)}"
+        column.paragraph(f"{words}, so {plate.peg}s of {shorter} do as well.", NOTE)
+
+
+def pressed_up_to(sheet: Sheet, heights: SheetHeights) -> float | None:
+    """The height in mm above which no peg presses, where pegs are as high as the part and need not be.
+
+    Shorter pegs press on all that they did, and stand in the way of less.
+    """
+    solid, carriers = sheet.workpiece.solid, {one.name: one for one in sheet.toolkit.carriers}
+    if solid is None or heights.peg_top < solid.height or any(one.heights for one in carriers.values()):
+        return None
+    tops = [
+        band[1] if band is not None else heights.peg_top
+        for peg, band in zip(sheet.fixture.pegs, heights.bands, strict=True)
+        if carriers[peg.carrier].contact is not CLAMP_TIP
+    ]
+    return max(tops) if tops and max(tops) < heights.peg_top - SHORTER else None

@@ -10,6 +10,8 @@ from workhold.model.solid import SolidOutline
 
 __all__ = ["side_up_words", "write_side_up"]
 
+ON_NO_FACE = "The part lies on no level face: hold it level, on vee blocks or packing, while it is clamped."
+
 
 def write_side_up(column: TextColumn, sheet: Sheet) -> None:
     """Writes which side of the solid is up, and which of its faces the set-up before cut or located on."""
@@ -18,6 +20,8 @@ def write_side_up(column: TextColumn, sheet: Sheet) -> None:
     heading(column, "Which side is up" if before is None else "Second set-up of the same part")
     for words in side_up_words(solid, before):
         column.paragraph(words, BODY)
+    if solid.lies_on_no_face:
+        column.paragraph(ON_NO_FACE, BODY)
 
 
 def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:

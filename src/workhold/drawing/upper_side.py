@@ -138,6 +138,11 @@ def distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
 def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
     """Sentences on which side is up in a fixture and how to see it."""
     if is_own_mirror_image([face.segment for face in workpiece.faces]):
+        if workpiece.solid is not None:
+            up = workpiece.solid.axis.replace("-", "−")
+            return (
+                f"Turned over, the part would fit the same pegs: make sure that {up} of the file points up."
+            )
         return (
             "The outline is its own mirror image: either side up looks alike and lies in the same pegs. If "
             "the sides differ, mark the upper one first."

@@ -29,6 +29,7 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.quality import FIGURES, Figure, figure_number
 from workhold.model.query import Query
 from workhold.model.setup import PartZero, part_zero, settings_of
+from workhold.model.workpiece import Workpiece
 from workhold.search.design import answer
 from workhold.version import __version__
 
@@ -58,10 +59,20 @@ class Asked:
 
     @property
     def turned_over(self) -> Asked:
-        """The other side of the part."""
+        """The other side of a part that is a drawing."""
+        return self.lying_as(None)
+
+    def lying_as(self, read: Workpiece | None) -> Asked:
+        """The other side of the part, of a solid as its file was read for it.
+
+        Raises
+        ------
+        InputError
+            See :func:`workhold.family.members.other_side`.
+        """
         zero = part_zero(self.query.workpiece) if self.zero is None else self.zero
         name = f"{self.name}, {OTHER_SIDE}"
-        return evolve(self, name=name, query=other_side(self.query), zero=zero_of_other_side(zero))
+        return evolve(self, name=name, query=other_side(self.query, read), zero=zero_of_other_side(zero))
 
 
 @frozen

@@ -155,13 +155,17 @@ def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
     return out
 
 
-def other_side(query: Query) -> Query:
+def other_side(query: Query, read: Workpiece | None = None) -> Query:
     """The query for the part turned over; angles in the vise stay as they are.
+
+    Parameters
+    ----------
+    read : the other side of a solid, as its file was read with the opposite axis up; None of a drawing.
 
     Raises
     ------
     InputError
-        For an outline at the height of pegs, which the other side does not have.
+        For an outline at the height of pegs alone, which the other side does not have.
 
     Examples
     --------
@@ -172,20 +176,26 @@ def other_side(query: Query) -> Query:
     >>> turned.workpiece.name, turned.workpiece.loops[0][:, 0].tolist(), turned.restrictions.avoid
     ('wedge, side 2', [0.0, -10.0, -40.0], (1,))
     """
-    part, asked = query.workpiece, query.restrictions
-    if part.solid is not None:
+    part, asked, called = query.workpiece, query.restrictions, f"{query.workpiece.name}, {OTHER_SIDE}"
+    if read is not None:
+        workpiece = evolve(read, name=called)
+        avoid = read.numbered.segments_under(part.numbered.faces_over(asked.avoid))
+    elif part.solid is not None:
         raise InputError(
             f"{part.name} is an outline at the height of pegs, and on its other side it has another: give "
             "both sides as parts of their own."
         )
-    loops = [mirrored(loop) for loop in part.loops]
-    numbers = segment_numbers(part)
+    else:
+        loops = [mirrored(loop) for loop in part.loops]
+        workpiece = Workpiece.from_loops(called, loops, departure=part.departure)
+        numbers = segment_numbers(part)
+        # A number that no face has is refused where the part as it is drawn is asked for.
+        avoid = [numbers.get(number, number) for number in asked.avoid]
     return evolve(
         query,
-        workpiece=Workpiece.from_loops(f"{part.name}, {OTHER_SIDE}", loops, departure=part.departure),
+        workpiece=workpiece,
         restrictions=Restrictions(
-            # A number that no face has is refused where the part as it is drawn is asked for.
-            avoid=[numbers.get(number, number) for number in asked.avoid],
+            avoid=avoid,
             zones=[zone_of(mirrored(zone.loop).tolist()) for zone in asked.zones],
             angles=asked.angles,
         ),

@@ -205,7 +205,8 @@ def new_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) ->
     scene = Scene.page(LANDSCAPE, heading)
     group = scene.group("heading")
     group.text((EDGE, EDGE + 12), heading, 26, bold=True)
-    lines = [f"Pegs in {', '.join(holes_of(setup))}.", *moves_words(setup, before)]
+    lines = [f"Pegs in {', '.join(holes_of(setup))}.", *heights_words(setup, titles.lengths)]
+    lines += moves_words(setup, before)
     for k, line in enumerate(lines):
         group.text((EDGE, EDGE + 42 + 20 * k), shortened(line, LINE, LANDSCAPE[0] - 2 * EDGE), LINE)
     return scene
@@ -214,6 +215,18 @@ def new_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) ->
 def holes_of(setup: SetUp) -> list[str]:
     """The names of the holes of a set-up, and of the lines of its clamps."""
     return [peg.hole for peg in setup.standing.fixture.placed]
+
+
+def heights_words(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
+    """Says at which heights carriers with heights of their own touch, where the parts are solids."""
+    toolkit = setup.standing.member.query.toolkit
+    if all(one.member.query.workpiece.solid is None for one in setup.holdings):
+        return
+    for elements, (low, high) in {
+        one.elements: one.heights for one in toolkit.carriers if one.heights
+    }.items():
+        heights = f"{lengths.number(low)} and {lengths.words(high)}"
+        yield f"{elements.capitalize()}: touch between {heights} above the plane on which the parts lie."
 
 
 def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:

@@ -10,14 +10,24 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import real
+from workhold.model.requirements import Zone, polygon_zone
 
-__all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline"]
+__all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
 
 # The directions of a file that can point up.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 Band = tuple[float, float]
 # Loops of vertices x, y (mm) and bulge.
 Loops = tuple[tuple[tuple[float, ...], ...], ...]
+
+
+def other_way_up(axis: str) -> str:
+    """The axis that points up where the part lies on its other side.
+
+    >>> other_way_up("z"), other_way_up("-x")
+    ('-z', 'x')
+    """
+    return axis[1:] if axis.startswith("-") else f"-{axis}"
 
 
 def bands_of(values: Iterable[Any]) -> tuple[Band | None, ...]:
@@ -141,6 +151,19 @@ class SolidOutline:
             top=workpiece.get("top") or (),
             top_heights=workpiece.get("top_heights") or (),
         )
+
+    @property
+    def lies_on_no_face(self) -> bool:
+        """Whether its level faces are known, and none of them is one on which it lies."""
+        return bool(self.top) and not self.bottom
+
+    def pads_kept_off(self, bounds: tuple[float, float, float, float]) -> tuple[Zone, ...]:
+        """What pads are kept off of an outline of bounds (x0, y0, x1, y1) in mm: nothing, or all of it."""
+        if not self.lies_on_no_face:
+            return ()
+        x0, y0, x1, y1 = bounds
+        around = [(x0 - 1, y0 - 1), (x1 + 1, y0 - 1), (x1 + 1, y1 + 1), (x0 - 1, y1 + 1)]
+        return (polygon_zone(around),)
 
     @property
     def untouchable(self) -> frozenset[int]:

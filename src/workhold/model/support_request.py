@@ -314,6 +314,7 @@ class SupportRequest:
             bottom=None if solid is None else solid.bottom or None,
             top=None if solid is None else solid.top or None,
             top_heights=None if solid is None else solid.top_heights or None,
+            bottom_zones=() if solid is None else solid.pads_kept_off(workpiece.bounds),
             pad_margin=0.0 if pads.pad_margin is None else pads.pad_margin,
             inside=tip_radius if clamp.inside is None else clamp.inside,
             reach=clamp.reach,

@@ -43,8 +43,12 @@ def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]
     keep_off : as of :func:`listing_notes`.
     """
     solid = workpiece.solid
+    if solid is None:
+        return []
+    if solid.lies_on_no_face:
+        return ["The part lies on no level face, so no support can stand under it: turn another side up."]
     names = ("bottom", "top")
-    lacking = [] if solid is None else [k for k, name in enumerate(names) if not getattr(solid, name)]
+    lacking = [k for k, name in enumerate(names) if not getattr(solid, name)]
     if not lacking:
         return []
     sides = " and ".join(names[k] for k in lacking)

@@ -15,6 +15,7 @@ from attrs import evolve
 from workhold.model.support_triples import Supports
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.listing import SupportSearch
+from workhold.supports.sizes import SMALLER
 from workhold.units import Unit
 
 __all__ = ["why_none"]
@@ -30,7 +31,9 @@ def why_none(found: Supports, unit: Unit) -> str:
 
 def reason(found: Supports, unit: Unit) -> str:
     """What is in the way, and what would help."""
-    request, toolkit = found.request, found.query.toolkit
+    request, toolkit, solid = found.request, found.query.toolkit, found.query.workpiece.solid
+    if solid is not None and solid.lies_on_no_face and request.bottom is None:
+        return "the part lies on no level face under which a pad could stand; another side up would help."
     bottom = SupportSearch(found.query, request, ()).bottom
     holes = holes_under(found.fixture, toolkit, bottom, request)
     if found.positions < 3:
@@ -71,8 +74,13 @@ def few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
         )
     # Rounded down, so that a pad of the radius that is said fits.
     enough = floor(spare[2] * 100) / 100
-    if enough <= 0.0:
-        return f"{pad}; smaller pads would help, or another fixture."
+    least = SMALLER[-1][0]
+    if enough < min(least, request.pad_radius):
+        turned = "" if found.query.workpiece.solid is None else ", another side up"
+        return (
+            f"{pad}, and no three have it for pads of radius {unit.text(least)}; a finer pitch would "
+            f"help{turned}, or another fixture."
+        )
     return f"{pad}; three have it for pads of radius {unit.text(enough)}."
 
 

@@ -77,7 +77,9 @@ class SupportsJudge:
     def __attrs_post_init__(self) -> None:
         inverse = self.fixture.pose.inverse
         pegs = np.array([inverse.apply(peg.x, peg.y) for peg in self.fixture.pegs])
-        segments = {face.number: face.segment for face in self.query.workpiece.numbered.faces}
+        # Of a file without its solid, segments that continue one line are one face.
+        faces = self.query.workpiece.numbered.faces
+        segments = {number: face.segment for face in faces for number in face.segments}
         pushes = []
         for peg, place in zip(self.fixture.pegs, pegs, strict=True):
             if peg not in self.fixture.placed:

@@ -91,7 +91,7 @@ def request_of(asked: SupportsOrder) -> SupportRequest:
     return evolve(
         usual,
         band=form.band,
-        bottom_zones=[zone_of(loop) for loop in form.bottom_zones],
+        bottom_zones=[*usual.bottom_zones, *map(zone_of, form.bottom_zones)],
         top_zones=[zone_of(loop) for loop in form.top_zones],
         point=form.point,
         **{name: value for name, value in own.items() if value is not None},

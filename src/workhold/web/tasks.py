@@ -263,7 +263,7 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
     from workhold.web.answers import part_answer
     from workhold.web.part_forms import checked_part
 
-    part, stem = loaded.workpiece, upload.name.rpartition(".")[0]
+    part, sent_as = loaded.workpiece, upload.name.rpartition(".")[0] or upload.name
     checked_size = checked_part(
         part.name,
         part.loops,  # type: ignore[arg-type]
@@ -271,7 +271,9 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
         part.departure,
         part.solid,
     )
-    name = stem or upload.name if part.name == path.stem else part.name
+    name = sent_as if part.name == path.stem else part.name
+    if loaded.solids and name.endswith(f" of {path.stem}"):
+        name = name.removesuffix(path.stem) + sent_as
     whole = evolve(checked_size, name=name or "part", outlines=part.outlines)
     return part_answer(whole, loaded.remarks)
 

@@ -94,6 +94,22 @@ def test_a_solid_is_chosen_by_its_name(tmp_path: Path, height: float | None) -> 
     assert load(path, part_number="lug", section=2).bounds == load(path, part_number=2, section=2).bounds
 
 
+def test_a_part_is_named_after_its_solid_too(tmp_path: Path) -> None:
+    """Whichever way it was read and chosen; one of no name, of the file's own, or alone, after the file only."""
+    path, eye = bodies(tmp_path / "part.step", "base", "lug", "", "Part"), "base of part"
+    views = ({}, {"peg_height": 4.0}, {"section": 2.0})
+    assert [load(path, **view).name for view in views] == [eye] * 3
+    named = {"BASE": eye, "2": "lug of part", 2: "lug of part", 3: "part", 4: "Part of part"}
+    assert {one: load(path, part_number=one).name for one in named} == named
+    other = bodies(tmp_path / "base.step", "base", "lug", "Lug", "Eye")
+    assert load(other).name == "base"
+    assert [load(other, part_number=one).name for one in ("lug", "Lug")] == ["lug of base", "Lug of base"]
+    assert load(path, name="mine").name == "mine"
+    assert load(write_step(tmp_path / "one.step", BOXES[0])).name == "one"
+    own = load(path, part_number="lug", heights={"clamp": (1.0, 4.0)}).outlines
+    assert [one.name for _, one in own] == ["lug of part, 1 to 4 mm"]
+
+
 def test_names_that_choose_nothing_are_refused(tmp_path: Path) -> None:
     """Unknown ones with those that are close, duplicates with their numbers, and files without names."""
     path = bodies(tmp_path / "part.step", "base plate", "lug", "lug", "eye")

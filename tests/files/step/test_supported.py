@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from math import pi
 from pathlib import Path
 
@@ -16,7 +17,9 @@ from workhold.files.supports.reader import read_supports
 from workhold.files.supports.writer import write_supports
 from workhold.model.recounted import ChosenSupports
 from workhold.model.support_bodies import bodies_with_supports
+from workhold.model.support_triples import Supports
 from workhold.presenting.assembly import Assembly
+from workhold.verification.supports import verify_supports_file
 
 LOW, HIGH = 20.0, 34.0
 VISE = Vise(pitch=10, columns=8, peg_radius=3)
@@ -101,3 +104,30 @@ def test_heights_of_upper_faces_are_one_for_each_loop(result: Result) -> None:
     with pytest.raises(InputError, match=r"2 loops of upper faces and 1 heights"):
         evolve(request, top_heights=(20.0,))
     assert evolve(request, top_heights=None).clamped_height((60, 30)) == HIGH
+
+
+def test_a_file_of_supports_has_the_solid_and_is_verified(tmp_path: Path) -> None:
+    """Two faces of one line, told apart by their bands, keep their numbers; sheets of the file have the heights."""
+    stepped = load(fused(box(90, 60, LOW), box(30, 60, HIGH)), name="stepped", peg_height=25)
+    found = next(
+        one for one in design(stepped, VISE, best=40).supports(best=40) if one.triples and split(one)
+    )
+    path = tmp_path / "supports.json"
+    write_supports(found, path)
+    judged = verify_supports_file(path)
+    assert judged.faults == () and judged.proven == len(found.triples) > 0
+    again = read_supports(path)
+    assert again.query.workpiece.solid == found.query.workpiece.solid
+    again.fixture.save_sheet(tmp_path / "a.svg", supports=again)
+    assert "+25.000 top of the pegs" in (tmp_path / "a.svg").read_text(encoding="utf-8")
+    entry = json.loads(path.read_text())
+    del entry["solid"]
+    path.write_text(json.dumps(entry))
+    assert any("its planar fixture is refuted" in fault for fault in verify_supports_file(path).faults)
+
+
+def split(one: Supports) -> bool:
+    """Whether a peg touches a face that is no face of the outline without bands."""
+    workpiece = one.query.workpiece
+    alone = {face.number for face in evolve(workpiece, solid=None).faces}
+    return any(peg.face not in alone for peg in one.fixture.pegs)

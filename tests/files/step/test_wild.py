@@ -170,7 +170,7 @@ def test_true_splines(tmp_path: Path) -> None:
     stands = fused(box(80, 40, 10, (0, 0, -10)), spline_block())
     path = write_step(tmp_path / "part.step", stands)
     assert load(path, peg_height=12.0).bounds == pytest.approx((0, 0, 80, 40))
-    with pytest.raises(InputError, match=r"neither line nor arc: a free-form wall .* give peg_height 30"):
+    with pytest.raises(InputError, match=r"neither line nor arc: a free-form wall .* give peg_height 30mm"):
         load(path, axis="-z", peg_height=12.0)
 
 

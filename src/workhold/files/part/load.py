@@ -21,6 +21,7 @@ from workhold.files.outline.nesting import as_one, chosen_part
 from workhold.files.part.data import drawing_of_object
 from workhold.files.part.finding import builtin_parts, builtin_path, found, kind_of, read_bytes
 from workhold.files.part.loaded import Loaded, built, from_drawing, from_heights, refuse_large
+from workhold.files.part.solids import with_solid_named
 from workhold.files.questions import (
     DRAWING_UNIT,
     UnitAskedError,
@@ -62,7 +63,7 @@ def load(
     ----------
     part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins. Or a
         geometry of shapely, a document of ezdxf, or a sketch, a face or a solid of build123d or CadQuery.
-    name : what to call the part; the file's name if None.
+    name : what to call the part; if None the file's name, before it that of the solid where there are more.
     unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. A
         geometry of shapely is in mm if None.
     layers : the DXF layers to read, in any mixture of capitals; all visible ones when None.
@@ -282,8 +283,10 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
         view = HeightView(**{key: options[key] for key in keys})
         read = read_by_height_apart(content, view) if asked else read_usual_apart(content, view)
         if isinstance(read, Drawing):
-            return from_drawing(path, read, None, 0.0, None)
-        return from_heights(path.stem, read)
+            loaded = from_drawing(path, read, None, 0.0, None)
+        else:
+            loaded = from_heights(path.stem, read)
+        return with_solid_named(loaded, path.stem, options["part_number"])
     from workhold.files.step.reader import read_step_apart
 
     drawing = read_step_apart(
@@ -293,4 +296,5 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
         part_number=options["part_number"],
         fit=options["fit"],
     )
-    return from_drawing(path, drawing, None, 0.0, options["fit"])
+    loaded = from_drawing(path, drawing, None, 0.0, options["fit"])
+    return with_solid_named(loaded, path.stem, options["part_number"])

@@ -46,8 +46,11 @@ class WallEdge:
 
     @cached_property
     def turns(self) -> tuple[float, ...]:
-        """What is added to a position to find it among those of the edge: whole turns on a circle."""
-        return (0.0,) if isinstance(self.edge.segment, Line) else (-tau, 0.0, tau)
+        """What is added to a position to find it among those of the edge: whole turns on a circle.
+
+        A piece begins and an edge begins within half a turn of 0, and either may run a turn in its direction.
+        """
+        return (0.0,) if isinstance(self.edge.segment, Line) else (-2 * tau, -tau, 0.0, tau, 2 * tau)
 
     def is_near(self, low: float, high: float) -> bool:
         """Whether the edge runs over some of a range of positions, or almost."""

@@ -89,7 +89,7 @@ def advice(solid: StandingSolid, room: float, least: float) -> str:
     best = longest(height_table(solid, room, least))
     if best is None:
         return f"give another axis, or {SECTION}"
-    return f"give {PEG_HEIGHT} {best.high:.6g}, or another axis"
+    return f"give {PEG_HEIGHT} {best.high:.6g}mm, or another axis"
 
 
 def height_remarks(
@@ -121,4 +121,4 @@ def better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
     best = longest(rows)
     if best is None or best.touchable <= touchable * (1 + 1e-6):
         return []
-    return [f"With {PEG_HEIGHT} {best.high:.6g} most could be touched: {best.touchable:.4g} mm."]
+    return [f"With {PEG_HEIGHT} {best.high:.6g}mm most could be touched: {best.touchable:.4g} mm."]

@@ -133,7 +133,9 @@ class SupportsPart(FormPart):
     """The whole file; workpiece, toolkit and fixture are read as those of a result."""
 
     format: Literal["workhold-supports/1"]
+    solid: dict[str, Any] | None = None
     workpiece: dict[str, Any]
+    outlines: dict[str, Any] | None = None
     vise: dict[str, Any] | None = None
     toolkit: dict[str, Any] | None = None
     fixture: dict[str, Any]
@@ -149,7 +151,15 @@ class SupportsPart(FormPart):
     def head(self) -> dict[str, Any]:
         """The head of a result file about the same part and toolkit."""
         toolkit = {"vise": self.vise} if self.vise is not None else {"toolkit": self.toolkit}
-        return {"format": "workhold-result/1", "workpiece": self.workpiece, **toolkit, "counts": {}}
+        space = {"solid": self.solid, "outlines": self.outlines}
+        known = {name: value for name, value in space.items() if value is not None}
+        return {
+            "format": "workhold-result/1",
+            "workpiece": self.workpiece,
+            **known,
+            **toolkit,
+            "counts": {},
+        }
 
     def request(self) -> SupportRequest:
         """What was asked.

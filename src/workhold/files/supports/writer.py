@@ -12,7 +12,7 @@ from attrs import asdict
 
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import fixture_lines
-from workhold.files.result.writer import toolkit_entry, workpiece_entry
+from workhold.files.result.writer import outlines_entry, solid_entry, toolkit_entry, workpiece_entry
 from workhold.files.supports.forms import FORMAT
 from workhold.model.requirements import Zone
 from workhold.model.support_request import Loops, SpatialLoad
@@ -49,7 +49,9 @@ def supports_entry(supports: Supports) -> dict[str, Any]:
     band = (0.0, request.thickness) if request.band is None else request.band
     return {
         "format": FORMAT,
+        **solid_entry(query.workpiece.solid),
         "workpiece": workpiece_entry(query.workpiece),
+        **outlines_entry(query.workpiece),
         **toolkit_entry(query.toolkit),
         "fixture": fixture_entry(supports),
         "heights": {"thickness": request.thickness, "band": list(band)},

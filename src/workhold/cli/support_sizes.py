@@ -1,0 +1,75 @@
+"""Sizes of supports where nobody asked for any: which are tried, and what is said of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from attrs import evolve
+
+if TYPE_CHECKING:
+    from workhold.model.result import Result
+    from workhold.model.support_request import SupportRequest
+    from workhold.model.support_triples import Supports
+    from workhold.units import Unit
+
+__all__ = ["size_notes", "smaller_sizes"]
+
+
+def smaller_sizes(request: SupportRequest, result: Result, thickness: float) -> list[SupportRequest]:
+    """Makes the same request with smaller pads and tips, the larger ones first."""
+    from workhold.supports.sizes import requests_by_size
+
+    _, *smaller = requests_by_size(result.workpiece, thickness, result.toolkit)
+    own = ("pad_radius", "tip_radius", "inside")
+    return [evolve(request, **{name: getattr(one, name) for name in own}) for one in smaller]
+
+
+def runs_of(numbers: Sequence[int]) -> str:
+    """Rising numbers in words, three and more that follow one another as a range.
+
+    Examples
+    --------
+    >>> runs_of([1, 3, 4, 6, 7, 8, 20])
+    '1, 3, 4, 6 to 8, 20'
+    """
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    words = (f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
+    return ", ".join(words)
+
+
+def size_notes(
+    found: Sequence[Supports], usual: Sequence[Supports], bare: Sequence[int], unit: Unit
+) -> list[str]:
+    """Says of which sizes the supports of some fixtures are, and why some have none.
+
+    Parameters
+    ----------
+    found, usual : of each fixture in order; those that are listed, and those of the usual sizes.
+    bare : ranks of those without supports among the listed ones.
+    """
+    from workhold.supports.why_none import why_none
+
+    pad, tip = unit.text(found[0].request.pad_radius), unit.text(found[0].request.tip_radius)
+    if len(bare) == len(found):
+        larger = unit.text(usual[0].request.pad_radius)
+        sizes = f"pads of radius {pad}" if found is usual else f"pads of radius {larger} down to {pad}"
+        return [
+            f"Under {runs_of(bare)} no three hold the part, with {sizes}.",
+            f"Under {bare[0]}, with the {'usual' if found is usual else 'least'}: {why_none(found[0], unit)}",
+        ]
+    notes = [
+        f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
+    ]
+    if bare:
+        notes.append(f"Under {runs_of(bare)} no three hold the part.")
+    if found is not usual:
+        notes.append(f"Larger ones hold the part under none of these, so under 1: {why_none(usual[0], unit)}")
+    elif bare:
+        notes.append(f"Under {bare[0]}: {why_none(found[bare[0] - 1], unit)}")
+    return notes

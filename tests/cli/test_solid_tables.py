@@ -1,0 +1,35 @@
+"""What the command says of a solid that pegs of one height hold nowhere."""
+
+from __future__ import annotations
+
+from workhold import Workpiece
+from workhold.cli.solid_tables import other_heights
+from workhold.model.solid import HeightRow, SolidOutline
+from workhold.units import MILLIMETRE, unit_named
+
+SQUARE = [[0, 0, 0], [40, 0, 0], [40, 40, 0], [0, 40, 0]]
+ROWS = [
+    HeightRow(0.0, 3.0, 1600.0, 160.0, 90.0, 3.0),
+    HeightRow(3.0, 12.7, 1600.0, 160.0, 120.0, 8.0),
+    HeightRow(12.7, 15.0, 1600.0, 160.0, 0.0, 0.0),
+    HeightRow(15.0, 18.0, 1600.0, 160.0, 80.0, 3.0),
+    HeightRow(18.0, 19.0, 1600.0, 160.0, 80.0, 3.0),
+    HeightRow(19.0, 20.0, 1600.0, 160.0, 160.0, 3.0),
+]
+
+
+def standing(axis: str) -> Workpiece:
+    """A block with pegs as high as it."""
+    solid = SolidOutline(axis, 20.0, 20.0, 0.5, 1.0, [(0.0, 20.0)] * 4)
+    return Workpiece.from_loops("block", [SQUARE], solid=solid)
+
+
+def test_heights_with_most_to_touch_are_named_and_the_other_side() -> None:
+    """Not the height that was asked for, and none that touches nothing; each in the unit of the command."""
+    (said,) = other_heights(standing("z"), ROWS, MILLIMETRE)
+    assert "--peg-height 12.700, --peg-height 3.000, --peg-height 19.000, or its other side up" in said
+    assert "(--axis=-z)" in said and "20.000" not in said and "15.000" not in said
+    assert "--peg-height 0.5000" in other_heights(standing("z"), ROWS, unit_named("inch"))[0]
+    (said,) = other_heights(standing("-y"), [], MILLIMETRE)
+    assert "--peg-height" not in said and "(--axis=y)" in said
+    assert not other_heights(Workpiece.from_loops("plate", [SQUARE]), ROWS, MILLIMETRE)
