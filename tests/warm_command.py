@@ -1,8 +1,8 @@
 """The command ``workhold`` without its start: forked from a process that has all of it loaded, Open CASCADE too.
 
 ``python warm_command.py SOCKET`` answers at a socket until its standard input ends. ``script`` is a command for the
-shell that asks it: its arguments, folder, environment and streams become those of the fork, signals are handed on, and it ends
-as the fork does. For tests of what calls the command, not of how it starts.
+shell that asks it: its arguments, folder, environment and streams become those of the fork, signals are handed on,
+and it ends as the fork does. For tests of what calls the command, not of how it starts.
 """
 
 from __future__ import annotations
