@@ -11,6 +11,7 @@ from typing import Any
 import httpx
 import pytest
 from attrs import define
+from warm_worker import warm_context
 
 from reading_here import work_reading_here
 from workhold.files.part.load import load
@@ -109,9 +110,11 @@ def running_server(
     origins: Origins | None = None,
     **limits: Any,
 ) -> Iterator[RunningServer]:
-    """A server with one worker of each kind, ready for requests; its desk reads STEP files itself."""
+    """A server with one worker of each kind, ready for requests; workers are forked, and the desk
+    reads STEP files itself."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("workhold.web.pool.work", work_reading_here)
+        patch.setattr("workhold.web.pool.get_context", lambda _: warm_context())
         yield from served(hosts, proxies, token, origins, **limits)
 
 
