@@ -11,13 +11,17 @@ import sys
 # Before the first kernel is imported.
 os.environ.setdefault("WORKHOLD_KERNELS", "callable")
 
-# Commands that tests run have buffered streams, as a user's have.
+# Commands that tests run have buffered streams, and keep the bytecode of what they import, as a user's do.
 os.environ.pop("PYTHONUNBUFFERED", None)
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture.providers import HypothesisProvider
 from hypothesis.internal.constants_ast import Constants
+
+# And so do the processes that share the tests: to prepare the asserts of all modules takes ten seconds.
+sys.dont_write_bytecode = False
 
 settings.register_profile(
     "workhold",

@@ -9,8 +9,11 @@ from contextlib import contextmanager
 from typing import Any
 
 import httpx
+import pytest
 from attrs import define
+from warm_worker import warm_context
 
+from reading_here import work_reading_here
 from workhold.files.part.load import load
 from workhold.web.guard import Hosts, ServerLimits
 from workhold.web.origins import Origins
@@ -107,7 +110,18 @@ def running_server(
     origins: Origins | None = None,
     **limits: Any,
 ) -> Iterator[RunningServer]:
-    """A server with one worker of each kind, ready for requests."""
+    """A server with one worker of each kind, ready for requests; workers are forked, and the desk
+    reads STEP files itself."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("workhold.web.pool.work", work_reading_here)
+        patch.setattr("workhold.web.pool.get_context", lambda _: warm_context())
+        yield from served(hosts, proxies, token, origins, **limits)
+
+
+def served(
+    hosts: Hosts | None, proxies: Collection[str], token: str | None, origins: Origins | None, **limits: Any
+) -> Iterator[RunningServer]:
+    """What :func:`running_server` does, with the workers that there are."""
     listening = threading.Event()
     socket = bound_socket("127.0.0.1", 0)
     given = ServerLimits(**{"searches": 1, "desks": 1, "desk_seconds": PATIENCE, **limits})

@@ -8,11 +8,13 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from warm_command import script, warm_command
 
 ROOT = Path(__file__).parents[2]
 # What every script begins with: two parts, one on the other, away from the origin.
@@ -55,15 +57,38 @@ def distances(held):
 Scripted = Callable[..., dict[str, Any]]
 
 
+PATH = os.pathsep.join(entry for entry in sys.path if entry)
+# Its own home, where the kernels are kept that were compiled before.
+OWN = {"HOME": str(Path.home()), "PYTHONPATH": PATH}
+
+
+@pytest.fixture(scope="session")
+def warm(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The command as a script that does not have to load anything."""
+    if shutil.which("freecadcmd") is None:
+        pytest.skip("freecadcmd is not installed")
+    with warm_command(tmp_path_factory.mktemp("warm")) as address:
+        yield script(address, **OWN)
+
+
 @pytest.fixture
-def scripted(tmp_path: Path) -> Scripted:
+def scripted(warm: str, tmp_path: Path) -> Scripted:
     """Runs a script in FreeCAD, and returns what it answers."""
-    command = tmp_path / "workhold"
+    return running_scripts(warm, tmp_path)
+
+
+@pytest.fixture
+def scripted_as_installed(tmp_path: Path) -> Scripted:
+    """The same with a command that starts as a user's does."""
+    given = " ".join(f"{name}={shlex.quote(value)}" for name, value in OWN.items())
     run = shlex.join([sys.executable, "-m", "workhold"])
-    path = os.pathsep.join(entry for entry in sys.path if entry)
-    # Its own home, where the kernels are kept that were compiled before.
-    own = f"HOME={shlex.quote(str(Path.home()))} PYTHONPATH={shlex.quote(path)}"
-    command.write_text(f'#!/bin/sh\n{own} exec {run} "$@"\n')
+    return running_scripts(f'#!/bin/sh\n{given} exec {run} "$@"\n', tmp_path)
+
+
+def running_scripts(text: str, tmp_path: Path) -> Scripted:
+    """What runs scripts in FreeCAD, in a folder with a command of its own."""
+    command = tmp_path / "workhold"
+    command.write_text(text)
     command.chmod(0o755)
 
     def ran(code: str, program: tuple[str, ...] = ("freecadcmd",), **environment: str) -> dict[str, Any]:

@@ -300,9 +300,9 @@ answered(first=first, killed=len(killed), said=said, kept=kept, again=again)
     assert answer["again"] == answer["first"]
 
 
-def test_a_search_that_is_stopped_says_so(scripted: Scripted) -> None:
+def test_a_search_that_is_stopped_says_so(scripted_as_installed: Scripted) -> None:
     """At once nothing is found, and the fixture that there was stays; of a list that is not whole the state says so."""
-    answer = scripted(
+    answer = scripted_as_installed(
         HELD
         + """
 import json, threading

@@ -49,15 +49,15 @@ def check(folder: Path, content: bytes, seeds: range, peg_height: float | None =
     assert 0 < said.count("read") < len(said)
 
 
-def test_eight_damaged_files_are_read_or_refused(tmp_path: Path, plate: bytes) -> None:
+def test_four_damaged_files_are_read_or_refused(tmp_path: Path, plate: bytes) -> None:
     """Seed 7 ends the library in a segmentation fault."""
-    check(tmp_path, plate, range(8))
+    check(tmp_path, plate, range(4, 8))
 
 
 @pytest.mark.prove
 def test_two_thousand_damaged_files_are_read_or_refused(tmp_path: Path, plate: bytes) -> None:
     """Also those that keep the library busy until its time is over."""
-    check(tmp_path, plate, range(8, 2030))
+    check(tmp_path, plate, range(2030))
 
 
 @pytest.mark.prove
