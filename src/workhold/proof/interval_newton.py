@@ -30,6 +30,8 @@ __all__ = ["BoxOutcome", "solutions_in"]
 
 PRECISIONS = (128, 256, 512)
 MOST_BOXES = 10000
+# A root is not refined further than to so many units in the last place of a mm, at the precision in force.
+SHARP = 2.0**24
 
 
 @frozen
@@ -111,6 +113,8 @@ def judged(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxO
 def refined(frame: SingularFrame, root: list[arb]) -> list[arb]:
     """A proven solution to the precision in force, by steps that each find a binary digit or more."""
     for _ in range(12):
+        if max(float(p.rad()) for p in root) < SHARP * 0.5**ctx.prec:
+            break
         closer, _ = frame.step(root, frame.places(root))
         if closer is not None and not is_smaller(closer, root, 0.5):
             closer, _ = frame.step(root, frame.places(root), regular=True)
