@@ -21,8 +21,8 @@ from workhold.listing.results import Work, listed_result
 from workhold.model.result import Result
 from workhold.proof import deciding
 from workhold.proof import interval_newton as settling
+from workhold.proof.ball_contacts import end_slacks
 from workhold.proof.deciding import Course, box_reach, decided, interval_newton_in_doubles, merged
-from workhold.proof.interval_newton import end_slacks
 from workhold.search import design as design_module
 
 

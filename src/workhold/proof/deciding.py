@@ -41,8 +41,9 @@ IntArray = NDArray[np.int64]
 
 # The precision of balls is one for the whole process, so one thread at a time works with them.
 BALLS = Lock()
-# Records looked at between two looks at the flag that stops the work.
-OPEN_BLOCK = 16
+# Records looked at between two looks at the flag that stops the work: at first, at most, and the seconds
+# under which twice as many are looked at next.
+OPEN_BLOCK, LARGEST_BLOCK, QUICK = 16, 1024, 0.02
 # Seconds after somebody asked to stop in which records are still decided, by what takes little time.
 GRACE = 0.5
 
@@ -219,15 +220,19 @@ def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, 
     together = merged(rest, problem)
     course.advance(len(rest) - len(together), 0)
     found, waiting, left = [proven], [together[:0]], 0
-    for k in range(0, len(together), OPEN_BLOCK):
-        block = together[k : k + OPEN_BLOCK]
+    begin, size = 0, OPEN_BLOCK
+    while begin < len(together):
+        block, since = together[begin : begin + size], perf_counter()
         if course.is_stopped:
-            left += len(together) - k
+            left += len(together) - begin
             break
         proven, rest = interval_newton_in_doubles(block, problem, setting)
         found.append(proven)
         waiting.append(rest)
         course.advance(max(len(block) - len(rest), 0), len(proven))
+        begin += size
+        # Most boxes take microseconds, some a tenth of a second.
+        size = min(2 * size, LARGEST_BLOCK) if perf_counter() - since < QUICK else OPEN_BLOCK
     in_balls, reasons, left_out = records_in_balls(merged(np.concatenate(waiting), problem), problem, course)
     return np.concatenate([*found, in_balls]), reasons, left + left_out
 
@@ -248,7 +253,7 @@ def merged(records: Array, problem: Problem) -> Array:
     """Records of the same pegs on the same features whose boxes overlap, as one with a box around all."""
     if len(records) < 2:
         return records
-    order = np.lexsort([records[:, k] for k in range(record.PSI, -1, -1)])
+    order = np.lexsort(records.T[::-1])
     records = records[order]
     same = np.asarray((records[1:, : record.PSI] == records[:-1, : record.PSI]).all(axis=1))
     reach = box_reach(records, problem.wrench_length)

@@ -1,0 +1,141 @@
+"""The frame of a candidate's box in which directions that are determined badly stand apart from the others.
+
+At a nearly double solution three directions of the box are well determined and one is not. So the box is
+turned into the directions of the Jacobian's singular vectors, where the interval Newton method makes it
+smaller.
+
+Reference: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis",
+BIT 21 (1981) 203-211.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import frozen
+from flint import arb, arb_mat
+from numpy.typing import NDArray
+
+from workhold.kernels.base.given import Limits
+from workhold.proof.ball_contacts import BoxContacts, places
+from workhold.proof.narrowing import CandidateBox
+
+__all__ = ["SingularFrame", "is_smaller", "thirds"]
+
+# The exact solution of a box may lie on its rim, so boxes are made larger by this part.
+RIM = 0.1
+# A place is looked at again when a step leaves less than this of a side.
+SMALLER = 0.7
+# The middle one of three parts has this part of a side, and each part is so much larger than its share.
+MIDDLE, OVERLAP = 0.125, 1.0002
+
+
+@frozen(eq=False)
+class SingularFrame:
+    """Directions of the Jacobian's singular vectors at the middle of a box.
+
+    Parameters
+    ----------
+    box : the candidate.
+    right : (4, 4) directions of the unknowns (psi scaled by L), one in each column, the worst determined
+        last.
+    combining, turning : combinations of the contact equations, one in each row, and ``right``, both as exact
+        balls.
+    length : L in mm.
+    """
+
+    box: CandidateBox
+    right: NDArray[np.float64]
+    combining: arb_mat
+    turning: arb_mat
+    length: float
+
+    @classmethod
+    def of(cls, box: CandidateBox, limits: Limits) -> SingularFrame:
+        """The frame of a box."""
+        slopes = places(box, [arb(m) for m in box.middle]).slopes
+        jacobian = np.array([[float(s.mid()) for s in row] for row in slopes])
+        jacobian[:, 0] /= limits.wrench_length
+        u, _, v = np.linalg.svd(jacobian)
+        left, right = (arb_mat(4, 4, [float(e) for e in matrix.T.ravel()]) for matrix in (u, v))
+        return cls(box, v.T, left, right, limits.wrench_length)
+
+    def start(self) -> list[arb]:
+        """The whole box, in the frame's coordinates in mm, a little larger."""
+        reach = [self.box.reach[0] * self.length, *self.box.reach[1:]]
+        spans = np.abs(self.right.T) @ np.array(reach)
+        return [arb(0, float(span) * (1.0 + RIM)) for span in spans]
+
+    def unknowns(self, place: Sequence[arb]) -> list[arb]:
+        """The unknowns at a place in the frame."""
+        turn, *rest = (self.turning * arb_mat(4, 1, place)).entries()
+        steps = turn / self.length, *rest
+        return [m + s for m, s in zip(self.box.middle, steps, strict=True)]
+
+    def places(self, place: Sequence[arb]) -> BoxContacts:
+        """The contacts at a place in the frame."""
+        return places(self.box, self.unknowns(place))
+
+    def values(self, here: BoxContacts) -> list[arb]:
+        """The combined contact equations."""
+        return list((self.combining * arb_mat(4, 1, here.values)).entries())
+
+    def slopes(self, here: BoxContacts) -> list[list[arb]]:
+        """The Jacobian of the combined contact equations by the frame's coordinates."""
+        scaled = [[row[0] / self.length, *row[1:]] for row in here.slopes]
+        slopes = self.combining * arb_mat(scaled) * self.turning
+        return [[slopes[i, j] for j in range(4)] for i in range(4)]
+
+    def step(
+        self, place: list[arb], here: BoxContacts, regular: bool = False
+    ) -> tuple[list[arb] | None, bool]:
+        """The part of a place that may hold solutions, None without one, and whether it holds exactly one.
+
+        This is a step of the interval Newton method; ``here`` are the contacts at the place. A ``regular``
+        step combines the equations by the inverse of their own Jacobian at the place's middle, if it has
+        one. Near a simple solution next to a double one, the Jacobian at the whole box's middle
+        does not separate the directions.
+        """
+        middle = [arb(p.mid()) for p in place]
+        values, slopes = self.values(self.places(middle)), self.slopes(here)
+        if regular:
+            try:
+                inverse = arb_mat(slopes).mid().inv().mid()
+            except ZeroDivisionError:
+                return place, False
+            values = list((inverse * arb_mat(4, 1, values)).entries())
+            combined = inverse * arb_mat(slopes)
+            slopes = [[combined[i, j] for j in range(4)] for i in range(4)]
+        out, inside = list(place), True
+        for k in range(4):
+            rest = values[k] + sum((slopes[k][j] * (out[j] - middle[j]) for j in range(4) if j != k), arb(0))
+            if slopes[k][k].contains(0):
+                inside = False
+                if not (rest + slopes[k][k] * (out[k] - middle[k])).contains(0):
+                    return None, False
+                continue
+            image = middle[k] - rest / slopes[k][k]
+            if not image.overlaps(out[k]):
+                return None, False
+            inside = inside and out[k].contains_interior(image)
+            out[k] = image if out[k].contains(image) else out[k].intersection(image)
+        return out, inside
+
+
+def is_smaller(part: list[arb], place: list[arb], share: float = SMALLER) -> bool:
+    """Whether a step has made a place so much smaller that another is worth it."""
+    return any(one.rad() < share * whole.rad() for one, whole in zip(part, place, strict=True))
+
+
+def thirds(place: list[arb]) -> list[list[arb]]:
+    """A place cut in three where it is longest, a narrow part in the middle, all a little larger.
+
+    A double solution is in the middle of most boxes. Cut there, it would be on the rim of both halves.
+    """
+    widths = [float(p.rad()) for p in place]
+    whole, side = max(widths), (1.0 - MIDDLE) / 2.0
+    cut = widths.index(whole)
+    parts = (side - 1.0, side), (1.0 - side, side), (0.0, MIDDLE)
+    middles = [((place[cut].mid() + center * whole).mid(), half * whole * OVERLAP) for center, half in parts]
+    return [[*place[:cut], arb(*middle), *place[cut + 1 :]] for middle in middles]
