@@ -121,7 +121,7 @@ def test_blocks_are_passed_over_only_where_they_hold_less(monkeypatch: pytest.Mo
     program, functions = random_program(5, "feed", 30, 400), functions_of(9, 40, 3)
     pieces = without_torques(all_pieces(program, CENTER))
     found = pieces.worst(functions)
-    monkeypatch.setattr(module, "BLOCK", 10**6)
+    monkeypatch.setattr(module, "BLOCK", len(pieces))
     whole = PathForces(*(getattr(pieces, name) for name in module.COLUMNS), spread=pieces.spread).worst(
         functions
     )

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import real
-from workhold.model.requirements import Zone, polygon_zone
+
+if TYPE_CHECKING:
+    from workhold.model.requirements import Zone
 
 __all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
 
@@ -161,6 +163,8 @@ class SolidOutline:
         """What pads are kept off of an outline of bounds (x0, y0, x1, y1) in mm: nothing, or all of it."""
         if not self.lies_on_no_face:
             return ()
+        from workhold.model.requirements import polygon_zone
+
         x0, y0, x1, y1 = bounds
         around = [(x0 - 1, y0 - 1), (x1 + 1, y0 - 1), (x1 + 1, y1 + 1), (x0 - 1, y1 + 1)]
         return (polygon_zone(around),)
