@@ -14,7 +14,10 @@ from typer.testing import Result as Outcome
 
 import workhold
 from workhold import Plate, Restrictions, Workpiece
+from workhold.cli.design_sheet import first_sheet
+from workhold.listing.identity import entries
 from workhold.model.solid import SolidOutline
+from workhold.units import MILLIMETRE
 
 Run = Callable[..., Outcome]
 CORNERS = [(0.0, 0.0), (80.0, 4.0), (76.0, 50.0), (6.0, 44.0)]
@@ -221,3 +224,20 @@ def test_pegs_of_a_program_are_as_high_above_the_part_as_on_its_supports(run: Ru
     assert "top of the pegs 6.000 mm" in text and "pegs above the plate 16.000 mm" in text
     # Pegs press where they reach, not over all of the part.
     assert "0.000 6.000" in text and "0.000 14.000" not in text
+
+
+def test_a_fixture_like_an_earlier_one_may_be_the_first_on_supports(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stands in other holes, so three supports may find room where they find none under the earlier one."""
+    result = workhold.design(side("z", [(1,), (2,), (3,), (4,)], False), Plate(20, 3, columns=6, rows=5))
+    firsts = set(entries(result).index.tolist())
+    rank = next(number for number in range(1, len(result) + 1) if number - 1 not in firsts)
+    asked: list[int] = []
+
+    def found(result: Any, number: int, *_: Any) -> str | None:
+        asked.append(number)
+        return "three" if number == rank else None
+
+    monkeypatch.setattr("workhold.cli.design_sheet.supports_under", found)
+    monkeypatch.setattr("workhold.presenting.papers.write_paper", lambda *_: None)
+    assert first_sheet(result, "a.pdf", "-", 20.0, MILLIMETRE, None) == rank
+    assert asked == list(range(1, rank + 1))

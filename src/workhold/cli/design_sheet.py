@@ -87,10 +87,10 @@ def first_sheet(
     InputError
         When the file cannot be written.
     """
-    from workhold.listing.identity import entries
     from workhold.presenting.papers import write_paper
 
-    ranks: list[int] = [index + 1 for index in entries(result).index[:MOST_ASKED].tolist()]
+    # Fixtures that are alike stand in other holes, which three supports may find room between.
+    ranks = range(1, min(len(result), MOST_ASKED) + 1)
     if not ranks:
         return None
     rank, supports = ranks[0], None
@@ -109,7 +109,7 @@ def first_sheet(
 
 
 def first_supported(
-    result: Result, ranks: list[int], thickness: float, supported: Sequence[Supports]
+    result: Result, ranks: Sequence[int], thickness: float, supported: Sequence[Supports]
 ) -> tuple[int, ChosenSupports | None]:
     """The first of some fixtures that three supports hold up, and these; the first one where none has any.
 
