@@ -1,12 +1,12 @@
 """What double precision leaves open, decided in ball arithmetic (python-flint).
 
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
-there is one. ``proof.narrowing`` makes it smaller by two rules of one or two unknowns. In most boxes all
-solutions are on one curve, on which ``proof.solution_curve`` finds them. Others are turned into the frame of
-``proof.singular_frame``. There, boxes in which some contact equation has no zero, or in which some rule is
-broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the others smaller. It
-shows that there is none or exactly one solution. What remains is cut in three. What is left after
-``MOST_BOXES`` boxes stays undecided. Solutions are judged at rising precision.
+there is one. ``proof.narrowing`` makes it smaller by two rules of one or two unknowns. It is turned into the
+frame of ``proof.singular_frame``. There, boxes in which some contact equation has no zero, or in which some
+rule is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the others
+smaller. It shows that there is none or exactly one solution. What remains is cut in three. Where
+``FEW_BOXES`` do not decide, all solutions are mostly on one curve, on which ``proof.solution_curve`` finds
+them. What is left after ``MOST_BOXES`` boxes stays undecided. Solutions are judged at rising precision.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis",
 BIT 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
@@ -29,7 +29,8 @@ from workhold.proof.solution_curve import roots_on_curve
 __all__ = ["BoxOutcome", "solutions_in"]
 
 PRECISIONS = (128, 256, 512)
-MOST_BOXES = 10000
+# So many boxes take about as long as to find the curve; most solutions take fewer.
+FEW_BOXES, MOST_BOXES = 40, 10000
 # A root is not refined further than to so many units in the last place of a mm, at the precision in force.
 SHARP = 2.0**24
 
@@ -53,22 +54,22 @@ def solutions_in(
         if smaller_box is None:
             return BoxOutcome((), "")
         frame = SingularFrame.of(smaller_box, limits)
-        if is_empty(smaller_box, frame.places(frame.start()), limits):
-            return BoxOutcome((), "")
-        roots = roots_on_curve(frame, limits)
+        roots = roots_in_boxes(frame, limits, is_stopped, FEW_BOXES)
         if roots is None:
-            roots = roots_in_boxes(frame, limits, is_stopped)
+            roots = roots_on_curve(frame, limits)
+        if roots is None:
+            roots = roots_in_boxes(frame, limits, is_stopped, MOST_BOXES)
     if roots is None:
         return None if is_stopped() else BoxOutcome((), NEARLY_DOUBLE)
     return judged(frame, roots, limits)
 
 
 def roots_in_boxes(
-    frame: SingularFrame, limits: Limits, is_stopped: Callable[[], bool]
+    frame: SingularFrame, limits: Limits, is_stopped: Callable[[], bool], most: int
 ) -> list[list[arb]] | None:
-    """Finds parts of a box with one solution each; None after ``MOST_BOXES`` or when the work was stopped."""
+    """Finds parts of a box with one solution each; None where that takes ``most`` boxes, or when stopped."""
     waiting, roots = [frame.start()], list[list[arb]]()
-    for _ in range(MOST_BOXES):
+    for _ in range(most):
         if not waiting:
             return roots
         if is_stopped():
