@@ -7,6 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
 from OCP.BRep import BRep_Builder
 from OCP.gp import gp_Trsf, gp_Vec
 from OCP.STEPCAFControl import STEPCAFControl_Writer

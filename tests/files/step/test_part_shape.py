@@ -6,6 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+pytest.importorskip("OCP", reason="the extra 'step' is not installed")
+
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 
 from files.step_bodies import assert_apart, named_bodies, volume
