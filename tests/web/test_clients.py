@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import pytest
 from running_server import RunningServer, running_server
@@ -27,7 +27,6 @@ PROGRAMS = {
     "python": [sys.executable, str(CLIENTS / "design.py")],
     "node": ["node", str(CLIENTS / "design.mjs")],
 }
-CHROMIUM = Path("/usr/bin/chromium")
 TOKEN = "a-secret"
 
 
@@ -186,28 +185,25 @@ def pass_one(inner: socket.socket, target: tuple[str, int], seen: list[bytes]) -
                 return
 
 
-def test_the_same_code_works_in_a_page_of_another_site(serving: RunningServer, elsewhere: str) -> None:
-    playwright = pytest.importorskip("playwright.sync_api")
-    if not CHROMIUM.exists():
-        pytest.skip("chromium is not installed")
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=str(CHROMIUM), args=["--no-sandbox"])
-        page = browser.new_page()
-        page.goto(f"{elsewhere}/design.html")
-        page.fill("#server", address(serving))
-        page.set_input_files("#drawing", str(ROOT / "examples" / "bracket.dxf"))
-        page.wait_for_selector("#sheet:not([hidden])", timeout=120_000)
-        rows = page.locator("#rows li").all_inner_texts()
-        size = page.evaluate(
-            "async () => (await (await fetch(document.getElementById('sheet').href)).blob()).size"
-        )
-        # A page that is not named is told nothing.
-        page.goto(elsewhere.replace("localhost", "127.0.0.1") + "/design.html")
-        page.fill("#server", address(serving))
-        page.set_input_files("#drawing", str(ROOT / "examples" / "bracket.dxf"))
-        page.wait_for_function("document.getElementById('state').textContent")
-        said = page.inner_text("#state")
-        browser.close()
+def test_the_same_code_works_in_a_page_of_another_site(
+    serving: RunningServer, elsewhere: str, browser: Any
+) -> None:
+    page = browser.new_page()
+    page.goto(f"{elsewhere}/design.html")
+    page.fill("#server", address(serving))
+    page.set_input_files("#drawing", str(ROOT / "examples" / "bracket.dxf"))
+    page.wait_for_selector("#sheet:not([hidden])", timeout=120_000)
+    rows = page.locator("#rows li").all_inner_texts()
+    size = page.evaluate(
+        "async () => (await (await fetch(document.getElementById('sheet').href)).blob()).size"
+    )
+    # A page that is not named is told nothing.
+    page.goto(elsewhere.replace("localhost", "127.0.0.1") + "/design.html")
+    page.fill("#server", address(serving))
+    page.set_input_files("#drawing", str(ROOT / "examples" / "bracket.dxf"))
+    page.wait_for_function("document.getElementById('state').textContent")
+    said = page.inner_text("#state")
+    page.close()
     assert rows == first_choices(serving)
     assert size > 10_000
     assert said == "The server does not answer, or lets no page of this site in."

@@ -67,6 +67,7 @@ def warm(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The command as a script that does not have to load anything."""
     if shutil.which("freecadcmd") is None:
         pytest.skip("freecadcmd is not installed")
+    pytest.importorskip("OCP", reason="the extra 'step' is not installed")
     with warm_command(tmp_path_factory.mktemp("warm")) as address:
         yield script(address, **OWN)
 
@@ -80,6 +81,7 @@ def scripted(warm: str, tmp_path: Path) -> Scripted:
 @pytest.fixture
 def scripted_as_installed(tmp_path: Path) -> Scripted:
     """The same with a command that starts as a user's does."""
+    pytest.importorskip("OCP", reason="the extra 'step' is not installed")
     given = " ".join(f"{name}={shlex.quote(value)}" for name, value in OWN.items())
     run = shlex.join([sys.executable, "-m", "workhold"])
     return running_scripts(f'#!/bin/sh\n{given} exec {run} "$@"\n', tmp_path)

@@ -103,11 +103,7 @@ def test_what_cannot_be_read_is_refused_by_its_line(
     wrong = tmp_path / "Wrong.nc"
     wrong.write_text(text)
     with_program(walk, wrong)
-    walk.seen(
-        f"#program-trouble:has-text({sentence!r})"
-        if "'" not in sentence
-        else "#program-trouble:not([hidden])"
-    )
+    walk.page.locator("#program-trouble:not([hidden])", has_text=sentence).wait_for()
     said = walk.page.inner_text("#program-trouble")
     assert sentence in said and "/" not in said.replace("N/A", "") and "--" not in said
     assert not walk.page.is_visible("#program-read")
