@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from line_plot import CALLED, Bar, bar_plot
-from workhold.benchmark.catalogue import SetEntry, manifest, query_of, sets
+from workhold.benchmark.catalogue import SetEntry, manifest, query_of, set_named, sets
 from workhold.geometry.segment import Line
 from workhold.model.fixture_table import FixtureTable, peg_places
 from workhold.model.quality import CLAMP_AMPLIFICATION, LOCATION_ERROR
@@ -51,7 +51,7 @@ def main() -> None:
         if entry.size:
             rows.append(measured(entry))
             sys.stdout.write(f"{json.dumps(rows[-1])}\n")
-    seated = seated_rows([row["set"] for row in rows if row["kind"] == "vise" and row["by_rule"]])
+    seated = seated_rows([row for row in rows if row["kind"] == "vise" and row["by_rule"]])
     by_kind = grouped(rows, "kind")
     by_family = grouped(rows, "family")
     content = {
@@ -240,11 +240,11 @@ def contact_normals(query: Query, part: FixtureTable, peg: int) -> Array:
     return found.normals[:, peg]
 
 
-def seated_rows(names: Sequence[str]) -> list[dict[str, Any]]:
-    """From how wide open a vise catches the part: of the fixture by the rule, and of the most precise of the list."""
+def seated_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """From how wide open a vise catches the part, for measured sets: by the rule, and the most precise of the list."""
     out = []
-    for entry in [one for one in sets() if one.name in names]:
-        query = query_of(entry)
+    for row in rows:
+        query = query_of(set_named(row["set"]))
         if query.toolkit.carriers[0].peg_radius == 0:
             continue
         result = answer(query, threads=1)
@@ -255,8 +255,8 @@ def seated_rows(names: Sequence[str]) -> list[dict[str, Any]]:
         openings = captures(result, [one, *few])
         out.append(
             {
-                "set": entry.name,
-                "family": manifest()["workpieces"][entry.part]["family"],
+                "set": row["set"],
+                "family": row["family"],
                 "by_rule": openings[0],
                 "widest_of_the_precise": max(openings[1:]),
                 "looked_at": len(few),

@@ -8,13 +8,14 @@ import shlex
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from warm_command import script, warm_command
+from workbench.scripts import Scripted
 
 ROOT = Path(__file__).parents[2]
 # What every script begins with: two parts, one on the other, away from the origin.
@@ -54,7 +55,6 @@ def marks(held):
 def distances(held):
     return {{one.Label: round(one.Shape.distToShape(held.HeldPart.Shape)[0], 6) for one in held.Group}}
 """
-Scripted = Callable[..., dict[str, Any]]
 
 
 PATH = os.pathsep.join(entry for entry in sys.path if entry)

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-Scripted = Callable[..., dict[str, Any]]
-HELD = """
-held = fixture.make(document, block, "z", "two-clamp-plate-20mm")
-held.PegHeight = 8
-"""
+from workbench.scripts import HELD, Scripted
 
 
 def test_bodies_stand_about_the_part_and_are_found_again(scripted: Scripted) -> None:
