@@ -145,8 +145,8 @@ class QueryWords:
     rank_by: str | None = option(
         RANKING,
         "FIGURES",
-        "What makes a fixture good, the first counting most: "
-        "warnings,penalty,clamp-amplification,closure-margin,edge-distance if not given, with load-reaction "
+        "What makes a fixture good, the first counting most, such as penalty,tilt: "
+        "warnings, penalty, clamp-amplification, closure-margin, edge-distance if not given, with load-reaction "
         "in third place if there are loads or cutting forces; also location-error, tilt, smallest-face, "
         "wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and of two clamps "
         "clamp-freedom, which is then in third place.",
