@@ -14,6 +14,7 @@ import pytest
 from workhold.errors import InputError
 from workhold.files import apart
 from workhold.files.apart import run_apart
+from workhold.files.fork_server import CAN_FORK
 
 # Seconds to wait for what comes at once on a machine that has nothing else to do.
 PATIENCE = 120
@@ -40,9 +41,15 @@ def plain(content, **options):
 """
 
 
-@pytest.fixture
-def work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A module, on the path of this process only, that does what its content says."""
+@pytest.fixture(
+    params=[
+        pytest.param(True, marks=pytest.mark.skipif(not CAN_FORK, reason="no process is forked here")),
+        False,
+    ]
+)
+def work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> str:
+    """A module, on the path of this process only, that does what its content says, in a process forked or started anew."""
+    monkeypatch.setattr(apart, "CAN_FORK", request.param)
     (tmp_path / "foreign_work.py").write_text(MODULE)
     monkeypatch.syspath_prepend(tmp_path)
     return "foreign_work"
@@ -110,7 +117,8 @@ def test_the_process_ends_with_its_starter(work: str, tmp_path: Path, number: in
     # No ``if __name__ == "__main__"``; who starts the tests may have told their processes to ignore Ctrl-C.
     script.write_text(
         "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        f"from workhold.files.apart import run_apart\nrun_apart('foreign_work', b'sleep', {{'place': {str(place)!r}}}, '')"
+        f"from workhold.files import apart\napart.CAN_FORK = {apart.CAN_FORK}\n"
+        f"apart.run_apart('foreign_work', b'sleep', {{'place': {str(place)!r}}}, '')"
     )
     starter = subprocess.Popen([sys.executable, script], stderr=subprocess.DEVNULL)
     wait_until(lambda: place.exists() and place.read_text() != "")

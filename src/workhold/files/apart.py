@@ -3,7 +3,8 @@
 Whatever happens to the process, its starter goes on: a crash, a time-out and a lack of memory each become one
 sentence. The process is started through pipes rather than by ``multiprocessing``, so that it works from any
 script, and its answer is JSON, which cannot do anything. It ends with its starter, also where that is killed,
-and where a library is deaf to signals.
+and where a library is deaf to signals. Where processes can be forked, one that has loaded the library is kept
+ready (``files.fork_server``), since that takes longer than to read most files.
 """
 
 from __future__ import annotations
@@ -17,9 +18,11 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from importlib import import_module
 from threading import Event, Timer
+from types import ModuleType
 from typing import Any
 
 from workhold.errors import InputError, lacks_memory
+from workhold.files.fork_server import CAN_FORK, ForkedProcess, forked
 
 __all__ = ["limit_memory", "limit_processor", "run_apart"]
 
@@ -33,10 +36,12 @@ SECONDS, SECONDS_PER_MILLION = 12.0, 2.0
 WALL_FACTOR = 10.0
 # What the process writes then.
 PREPARED = b"\n"
+# The same modules as here, and none from the folder that happens to be the current one.
 START = (
-    "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); "
-    "from workhold.files.apart import answer; answer()"
+    "import signal, sys; sys.path[:] = sys.argv[1:]; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+    "from workhold.files import apart, fork_server; "
 )
+ANSWER, SERVE = "apart.answer()", "fork_server.serve(apart.loaded, apart.answer)"
 
 
 def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str) -> Any:
@@ -63,11 +68,7 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
         "memory": memory,
         "size": len(content),
     }
-    # The same modules as here, and none from the folder that happens to be the current one.
-    command = [sys.executable, "-P", "-c", f"import sys; sys.path[:] = sys.argv[1:]; {START}", *sys.path]
-    with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-    ) as process:
+    with started(module) as process:
         assert process.stdin is not None and process.stdout is not None
         late = Event()
 
@@ -92,6 +93,19 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
                 process.stdin.close()
     given_up = late.is_set() or process.returncode == -getattr(signal, "SIGXCPU", 0)
     return outcome(answered, process.returncode, given_up, (seconds, memory), what)
+
+
+def started(module: str) -> ForkedProcess | subprocess.Popen[bytes]:
+    """A process that answers one order for a module's work."""
+    process = forked(module, python_command(SERVE)) if CAN_FORK else None
+    return process or subprocess.Popen(
+        python_command(ANSWER), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    )
+
+
+def python_command(doing: str) -> list[str]:
+    """The command that starts Python with the modules of this process, to do something."""
+    return [sys.executable, "-P", "-c", START + doing, *sys.path]
 
 
 def outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
@@ -152,12 +166,18 @@ def answer() -> None:
 
 def worked(order: Mapping[str, Any], content: bytes, out: int) -> Any:
     """The result of an order's work; once it is prepared that is written to ``out``."""
-    module = import_module(order["module"])
-    prepare: Callable[[], None] = module.prepare
-    prepare()
+    module = loaded(order["module"])
     os.write(out, PREPARED)
     limit_processor(order["seconds"])
     return module.plain(content, **order["options"])
+
+
+def loaded(name: str) -> ModuleType:
+    """The module of a name, prepared."""
+    module = import_module(name)
+    prepare: Callable[[], None] = module.prepare
+    prepare()
+    return module
 
 
 def end_with_starter() -> None:
