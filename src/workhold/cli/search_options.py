@@ -146,10 +146,10 @@ class QueryWords:
         RANKING,
         "FIGURES",
         "What makes a fixture good, the first counting most, such as penalty,tilt: "
-        "warnings, penalty, clamp-amplification, closure-margin, edge-distance if not given, "
-        "with load-reaction in third place if there are loads or cutting forces; also location-error, tilt, smallest-face, "
-        "wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and of two clamps "
-        "clamp-freedom, which is then in third place.",
+        "warnings, penalty, clamp-amplification, closure-margin, edge-distance if not given, with "
+        "load-reaction in third place if there are loads or cutting forces; also location-error, tilt, "
+        "smallest-face, wrench-radius, end-distance, jaw-force-needed, with a program program-clearance, and "
+        "of two clamps clamp-freedom, which is then in third place.",
     )
     prefer: str | None = option(
         RANKING,
