@@ -88,6 +88,15 @@ def test_every_bad_end_is_one_sentence(
     assert str(caught.value) == said
 
 
+def test_one_that_waits_for_ever_is_ended(work: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It takes no processor, so the clock on the wall ends it."""
+    monkeypatch.setattr(apart, "WALL_FACTOR", 0.01)
+    place = tmp_path / "number"
+    with pytest.raises(InputError, match="given up after 12 s"):
+        run_apart(work, b"sleep", {"place": str(place)}, "the file")
+    wait_until(lambda: not place.exists() or not is_alive(int(place.read_text() or 0)))
+
+
 def test_to_prepare_takes_its_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock of the reading starts behind it; what is refused while it prepares is told."""
     (tmp_path / "slow_work.py").write_text(

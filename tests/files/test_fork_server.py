@@ -7,6 +7,8 @@ import signal
 import socket
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -22,11 +24,13 @@ if not fork_server.CAN_FORK:
 PATIENCE = 120
 # Its answer: the processes that loaded it and that work, what an earlier piece of work left, and the surroundings.
 MODULE = """
-import os
+import os, pathlib, time
 LOADED_BY, LEFT = os.getpid(), []
 def prepare(): pass
 def plain(content):
     if content == b"crash": os.abort()
+    if content: pathlib.Path(content.decode() + "-begun").touch()
+    while content and not pathlib.Path(content.decode()).exists(): time.sleep(0.02)
     LEFT.append(1)
     return LOADED_BY, os.getpid(), len(LEFT), os.environ.get("SAID_BESIDE"), sum(1 for _ in os.scandir("/proc/self/fd"))
 """
@@ -60,7 +64,31 @@ def test_a_server_that_was_ended_is_started_again() -> None:
     first = said()
     os.kill(first[0], signal.SIGKILL)
     fork_server.SERVERS[0].process.wait()
-    assert said()[0] not in (first[0], 0)
+    assert first[0] != said()[0] == fork_server.SERVERS[0].process.pid
+
+
+def test_work_goes_on_where_its_server_ended(tmp_path: Path) -> None:
+    """The next piece of work finds out that the server has ended, though the one that it forked is still at work."""
+    end = tmp_path / "end"
+    with ThreadPoolExecutor(1) as pool:
+        first = pool.submit(said, bytes(end))
+        while not (tmp_path / "end-begun").exists():
+            time.sleep(0.02)
+        fork_server.SERVERS[0].process.kill()
+        fork_server.SERVERS[0].process.wait()
+        other = said()
+        end.write_text("")
+        assert first.result()[0] != other[0]
+
+
+def test_what_cannot_be_loaded_ends_no_server(tmp_path: Path) -> None:
+    """The process that was forked for it says why."""
+    wanting = "from workhold.errors import InputError\ndef prepare(): raise InputError('it is missing.')\n"
+    (tmp_path / "wanting_too.py").write_text(wanting)
+    first = said()
+    with pytest.raises(InputError, match="it is missing"):
+        run_apart("wanting_too", b"", {}, "the file")
+    assert said()[0] == first[0]
 
 
 def test_one_of_other_surroundings_is_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
