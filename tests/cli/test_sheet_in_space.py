@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from hashlib import sha256
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pypdfium2
@@ -14,7 +15,7 @@ from typer.testing import Result as Outcome
 
 import workhold
 from workhold import Plate, Restrictions, Workpiece
-from workhold.cli.design_sheet import first_sheet
+from workhold.cli.setup_sheets import first_sheet
 from workhold.listing.identity import entries
 from workhold.model.solid import SolidOutline
 from workhold.units import MILLIMETRE
@@ -233,11 +234,13 @@ def test_a_fixture_like_an_earlier_one_may_be_the_first_on_supports(monkeypatch:
     rank = next(number for number in range(1, len(result) + 1) if number - 1 not in firsts)
     asked: list[int] = []
 
-    def found(result: Any, number: int, *_: Any) -> str | None:
-        asked.append(number)
-        return "three" if number == rank else None
+    def found(fixtures: Any, *_: Any, **__: Any) -> Iterator[Any]:
+        for fixture in fixtures:
+            asked.append(fixture.listing.row + 1)
+            yield SimpleNamespace(triples=["three"] if asked[-1] == rank else [], stopped=False)
 
-    monkeypatch.setattr("workhold.cli.design_sheet.supports_under", found)
+    monkeypatch.setattr("workhold.supports.asking.each_supported", found)
+    monkeypatch.setattr("workhold.model.recounted.ChosenSupports.of", lambda found: found)
     monkeypatch.setattr("workhold.presenting.papers.write_paper", lambda *_: None)
     assert first_sheet(result, "a.pdf", "-", 20.0, MILLIMETRE, None) == rank
     assert asked == list(range(1, rank + 1))

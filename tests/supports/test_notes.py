@@ -12,8 +12,7 @@ from workhold.cli.supports_command import notes_of as notes_of_command
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of
-from workhold.supports.notes import flat_faces_notes
-from workhold.supports.why_none import why_none
+from workhold.supports.words import flat_faces_notes, why_none
 from workhold.units import unit_named
 from workhold.web.support_tasks import notes_of as notes_of_page
 

@@ -7,12 +7,12 @@ from attrs import evolve
 from supports.cases import case
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.model.query import Query
-from workhold.supports.sizes import SMALLER, requests_by_size, supported_by_size
+from workhold.supports.asking import SMALLER, requests_by_size, supported_by_size
 
 
 def sizes(query: Query) -> list[tuple[float, float]]:
     """The radii of pads and tip that are tried for a query, in order."""
-    tried = requests_by_size(query.workpiece, 12.0, query.toolkit)
+    tried = requests_by_size(query, 12.0)
     return [(one.pad_radius, one.tip_radius) for one in tried]
 
 
@@ -27,17 +27,17 @@ def test_sizes_fall_and_the_toolkits_own_stay() -> None:
     assert sizes(own) == [(4.0, 6.0), (3.0, 6.0), (2.0, 6.0)]
     own = evolve(query, toolkit=evolve(query.toolkit, supports=pads, top_clamp=clamp))
     assert sizes(own) == [(2.5, 6.0)]
-    assert [one.inside for one in requests_by_size(query.workpiece, 12.0, query.toolkit)] == [5.0, 4.0, 3.0]
+    assert [one.inside for one in requests_by_size(query, 12.0)] == [5.0, 4.0, 3.0]
 
 
 def test_the_largest_sizes_that_hold_any_are_taken() -> None:
     """Usual ones where they hold; else the first smaller ones that do; where none do the least, to say why."""
     one = case("bracketL")
-    found, usual = supported_by_size([one.fixture], one.query, 12.0)
+    found, usual = supported_by_size([one.fixture], one.query, requests_by_size(one.query, 12.0))
     assert found is usual and found[0].triples and found[0].request.pad_radius == 4.0
     for margin, pad, held in ((6.5, 4.0, True), (7.0, 3.0, True), (8.0, 2.0, True), (9.0, 2.0, False)):
         pads = SupportPads(pad_margin=margin)
         query = evolve(one.query, toolkit=evolve(one.query.toolkit, supports=pads))
-        found, usual = supported_by_size([one.fixture], query, 12.0)
+        found, usual = supported_by_size([one.fixture], query, requests_by_size(query, 12.0))
         assert (found[0].request.pad_radius, bool(found[0].triples)) == (pad, held), margin
         assert usual[0].request.pad_radius == 4.0 and bool(usual[0].triples) == (pad == 4.0)

@@ -13,7 +13,7 @@ from workhold.model.query import Query
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of
-from workhold.supports.why_none import why_none
+from workhold.supports.words import why_none
 from workhold.units import MILLIMETRE
 
 

@@ -102,7 +102,7 @@ def write_fixture(
     wishes : thickness of the part in mm, loads on it and jaw force in N; None where nobody says.
     part : the STEP file of its own shape.
     """
-    from workhold.cli.sheet_supports import chosen_supports
+    from workhold.cli.setup_sheets import chosen_supports
     from workhold.presenting.assembly import Assembly, shape_in
 
     shape = shape_in(part, result.workpiece)

@@ -12,7 +12,6 @@ import typer
 
 from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.design_report import explain_none, picture_names
-from workhold.cli.design_sheet import first_sheet, refuse_sheet, report_sheet
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import (
@@ -31,6 +30,7 @@ from workhold.cli.outputs import (
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of, without_faces_cut
+from workhold.cli.setup_sheets import first_sheet, refuse_sheet, report_sheet
 from workhold.cli.supports_command import asked_thickness, report_supported
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, optional_count, whole_number

@@ -13,7 +13,7 @@ from workhold.cli.commands import option
 from workhold.cli.options import SHOWN_UNIT, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, print_written, refuse_output
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
-from workhold.cli.sheet_supports import chosen_of_file, chosen_supports, first_side_of, is_of_supports
+from workhold.cli.setup_sheets import chosen_of_file, chosen_supports, first_side_of, is_of_supports
 from workhold.cli.values import (
     choice,
     length,

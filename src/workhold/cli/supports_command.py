@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 import typer
-from attrs import asdict, evolve
+from attrs import asdict
 
 from workhold.cli.body_options import PART_FILE, asked_models, write_bodies
 from workhold.cli.commands import option, print_remark
@@ -16,8 +16,7 @@ from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_out
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.spatial_loads import spatial_load
-from workhold.cli.support_sizes import size_notes, smaller_sizes
-from workhold.cli.supports_friction import friction_words, with_friction
+from workhold.cli.support_words import friction_words, size_notes, with_friction
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
     length,
@@ -128,54 +127,40 @@ def supports(
     models = asked_models(glb, step, (result_file, part), force, support_height=support_height, part=part)
     raised = optional_length("--support-height", support_height, shown)
     result = result_with(result_file, rank)
-    from workhold.model.support_request import SupportRequest
-    from workhold.supports.listing import supports_of
+    from workhold.supports.asking import requests_by_size, supported_by_size
 
     high = asked_thickness(True, thickness, result.workpiece, shown)
     assert high is not None
-    own: dict[str, Any] = {
+    own = {
+        "pad_radius": optional_length("--pad-radius", pad_radius, shown),
         "pad_margin": optional_length("--pad-margin", pad_margin, shown),
+        "tip_radius": optional_length("--tip-radius", tip_radius, shown),
         "inside": optional_length("--inside", inside, shown),
         "reach": [lengths("--reach", text, ",", 4, shown) for text in reach] if reach else None,
+        "band": None if band is None else lengths("--band", band, ":", 2, shown),
+        "bottom_zones": [zone(text, shown) for text in keep_out_below or ()],
+        "top_zones": [zone(text, shown) for text in keep_out_above or ()],
+        "point": None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
     }
-    usual = SupportRequest.of(
-        result.workpiece,
-        high,
-        pad_radius=optional_length("--pad-radius", pad_radius, shown),
-        tip_radius=optional_length("--tip-radius", tip_radius, shown),
-        toolkit=result.toolkit,
-    )
-    request = evolve(
-        usual,
-        band=None if band is None else lengths("--band", band, ":", 2, shown),
-        bottom_zones=[*usual.bottom_zones, *(zone(text, shown) for text in keep_out_below or ())],
-        top_zones=[zone(text, shown) for text in keep_out_above or ()],
-        point=None if clamp_at is None else lengths("--clamp-at", clamp_at, ",", 2, shown),
-        **{name: value for name, value in own.items() if value is not None},
-    )
+    asked = {name: value for name, value in own.items() if value is not None}
+    request, *smaller = requests_by_size(result.query, high, asked)
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in load] if load else None
     every, written = out is not None, [path for path in (out, glb, step) if path is not None]
-    sizes = [request]
-    if all(one is None for one in (pad_radius, tip_radius, pad_margin, inside)):
-        sizes += smaller_sizes(request, result, high)
     with (
         ask_to_stop("the best of what was looked at is kept") as cancel,
         progress_bar("Looking for supports", "of 1 fixture") as show,
     ):
-        for one in sizes:
-            found = supports_of(
-                result[rank - 1],
-                result.query,
-                one,
-                loads,
-                closing,
-                None if every else count,
-                cancel=cancel,
-                progress=lambda fraction: show(fraction, 0),
-            )
-            if found.triples or found.stopped:
-                break
+        (found,), _ = supported_by_size(
+            [result[rank - 1]],
+            result.query,
+            [request, *smaller],
+            loads,
+            closing,
+            None if every else count,
+            cancel=cancel,
+            progress=lambda fraction: show(fraction, 0),
+        )
     if found.triples and found.request.pad_radius < request.pad_radius:
         pad, tip = shown.text(found.request.pad_radius), shown.text(found.request.tip_radius)
         print_remark(f"the usual sizes find no place: the pads have a radius of {pad}, the tip one of {tip}.")
@@ -189,7 +174,7 @@ def supports(
         from workhold.presenting.assembly import Assembly, shape_in
 
         if not found.triples:
-            from workhold.supports.why_none import why_none
+            from workhold.supports.words import why_none
 
             why = why_none(found, shown)
             raise InputError(f"{why[:1].lower()}{why[1:]}")
@@ -225,18 +210,19 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
 
     They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
     """
-    from workhold.supports.notes import flat_faces_notes
-    from workhold.supports.sizes import supported_by_size
+    from workhold.supports.asking import requests_by_size, supported_by_size
+    from workhold.supports.words import flat_faces_notes, set_headings, set_row
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
         return ()
-    found, usual = supported_by_size(fixtures, result.query, thickness)
+    requests = requests_by_size(result.query, thickness)
+    found, usual = supported_by_size(fixtures, result.query, requests)
     with_loads = result.query.is_loaded
-    table = Table((">rank", "supports", *columns_of(unit, with_loads)))
+    table = Table((">rank", *set_headings(unit, with_loads)))
     for rank, one in enumerate(found, 1):
         if one.triples:
-            table.add_row(str(rank), *row_of(one.triples[0], unit, with_loads))
+            table.add_row(str(rank), *set_row(one.triples[0], unit, with_loads))
     bare = [rank for rank, one in enumerate(found, 1) if not one.triples]
     notes = size_notes(found, usual, bare, unit)
     best = [triple for one in found for triple in one.triples]
@@ -256,16 +242,6 @@ def before_first(listed: Sequence[Triple]) -> list[str]:
     if all(min(pad.column, pad.row) >= 0 for triple in listed for pad in triple.supports):
         return []
     return ["A hole before column A or row 1 stands as (column,row), where A1 is (1,1)."]
-
-
-def columns_of(unit: Unit, with_loads: bool) -> tuple[str, ...]:
-    """The headings of what :func:`row_of` says after the supports."""
-    return (
-        f"clamp at {unit.abbreviation}",
-        *((">clamp force N", ">support force N") if with_loads else ()),
-        f">tipping arm {unit.abbreviation}",
-        f">stands by {unit.abbreviation}",
-    )
 
 
 def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[float, ...]:
@@ -302,7 +278,7 @@ def report(
         print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written, **more)
         return
     if not found.triples:
-        from workhold.supports.why_none import why_none
+        from workhold.supports.words import why_none
 
         print_tables(f"Fixture {rank}: {why_none(found, unit)}")
     else:
@@ -319,33 +295,20 @@ def report(
 
 def print_sets(found: Supports, listed: Sequence[Triple], result: Result, rank: int, unit: Unit) -> None:
     """Prints some sets of three as a table, with what is not seen in it."""
+    from workhold.supports.words import set_headings, set_row
+
     with_loads = bool(found.loads)
-    table = Table((">set", "supports", *columns_of(unit, with_loads)))
+    table = Table((">set", *set_headings(unit, with_loads)))
     for place, triple in enumerate(listed, 1):
-        table.add_row(str(place), *row_of(triple, unit, with_loads))
+        table.add_row(str(place), *set_row(triple, unit, with_loads))
     number_of = "" if found.count is None else f" of {found.count}"
     head = f"Fixture {rank}: the best {len(listed)}{number_of} sets of three supports and a clamp on top."
     print_tables(head, table, *notes_of(found, listed, unit))
 
 
-def row_of(triple: Triple, unit: Unit, with_loads: bool) -> list[str]:
-    """The words of a set of three."""
-    clamp = triple.clamp
-    forces = []
-    if with_loads:
-        forces = [f"{clamp.clamp_needed:.0f}", f"{clamp.support_force or 0.0:.0f}"]
-    return [
-        " ".join(pad.hole for pad in triple.supports),
-        f"({unit.number(clamp.at[0])}, {unit.number(clamp.at[1])})",
-        *forces,
-        unit.number(clamp.arm),
-        unit.number(triple.standing),
-    ]
-
-
 def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
     """Says what the figures mean, and what has to be set otherwise than for the fixture alone."""
-    from workhold.supports.notes import listing_notes
+    from workhold.supports.words import listing_notes
 
     notes = [
         "The clamp presses at that point of the part's coordinates. Its force times the tipping arm is the "

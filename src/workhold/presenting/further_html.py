@@ -13,12 +13,12 @@ from workhold.model.recounted import ChosenSupports
 from workhold.presenting.figure_words import figure_text, rounded, unit_of
 from workhold.presenting.markup import Markup, image, paragraph, safe, table
 from workhold.presenting.notebook import sentence
-from workhold.supports.why_none import why_none
+from workhold.supports.words import set_headings, set_row, why_none
 from workhold.units import MILLIMETRE
 
 if TYPE_CHECKING:
     from workhold.model.seating import Seating
-    from workhold.model.support_triples import Supports, Triple
+    from workhold.model.support_triples import Supports
 
 __all__ = ["seating_html", "supports_html"]
 
@@ -32,19 +32,10 @@ def supports_html(supports: Supports) -> str:
     title = paragraph(Markup(f"<b>{safe(sentence(supports.words))}</b>"))
     if not supports.triples:
         return "\n".join((title, paragraph(why_none(supports, MILLIMETRE))))
-    of, loaded = MILLIMETRE.abbreviation, bool(supports.loads)
-    forces = (">clamp force N", ">support force N") if loaded else ()
-    headings = (
-        ">rank",
-        "picture",
-        "supports",
-        f"clamp at {of}",
-        *forces,
-        f">tipping arm {of}",
-        f">stands by {of}",
-    )
+    loaded = bool(supports.loads)
+    headings = (">rank", "picture", *set_headings(MILLIMETRE, loaded))
     rows = [
-        (str(rank), supports_picture(supports, rank), *triple_words(triple, loaded))
+        (str(rank), supports_picture(supports, rank), *set_row(triple, MILLIMETRE, loaded))
         for rank, triple in enumerate(supports.triples[:MOST_SETS], 1)
     ]
     notes = [
@@ -56,19 +47,6 @@ def supports_html(supports: Supports) -> str:
     if len(supports.triples) > MOST_SETS:
         notes.insert(0, f"{MOST_SETS} of {len(supports.triples):,} sets of three shown.")
     return "\n".join((title, table(headings, rows), paragraph(*notes)))
-
-
-def triple_words(triple: Triple, loaded: bool) -> list[str]:
-    """The words of a set of three."""
-    clamp, number = triple.clamp, MILLIMETRE.number
-    forces = [f"{clamp.clamp_needed:.0f}", f"{clamp.support_force or 0.0:.0f}"] if loaded else []
-    return [
-        " ".join(pad.hole for pad in triple.supports),
-        f"({number(clamp.at[0])}, {number(clamp.at[1])})",
-        *forces,
-        number(clamp.arm),
-        number(triple.standing),
-    ]
 
 
 def supports_picture(supports: Supports, rank: int) -> Markup:

@@ -15,7 +15,7 @@ from workhold.drawing.supports_drawn import (
 )
 from workhold.model.recounted import ChosenSupports
 from workhold.model.support_triples import SupportPad, Supports
-from workhold.supports.why_none import why_none
+from workhold.supports.words import why_none
 from workhold.units import MILLIMETRE
 
 __all__ = ["draw_set", "set_words"]

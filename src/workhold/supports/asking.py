@@ -1,13 +1,19 @@
-"""Supports as they are asked of a fixture or of a result in Python."""
+"""Supports as they are asked of fixtures: by names of what is wanted, and of sizes that fall until some hold.
+
+Parts with thin walls below, slots or small bosses have no room for the usual pads, and narrow ones none for
+a clamp so far inside its triangle. Ends of dowels as thick as those that locate do for such a part.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from threading import Event
 from typing import Any
 
 from attrs import evolve, fields
 
 from workhold.errors import InputError
+from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.limits import counting_number
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
@@ -15,23 +21,38 @@ from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
-from workhold.supports.listing import supports_of, supports_of_best
+from workhold.supports.listing import each_supported, supports_of, supports_of_best
 
-__all__ = ["fixture_supports", "result_supports"]
+__all__ = [
+    "SMALLER",
+    "asked_request",
+    "fixture_supports",
+    "requests_by_size",
+    "result_supports",
+    "supported_by_size",
+]
 
 Loads = Sequence[Load | SpatialLoad] | None
 USUAL = ("thickness", "pad_radius", "tip_radius")
 # What else may be asked, by its name.
 FURTHER = tuple(one.name for one in fields(SupportRequest) if one.name not in USUAL)
+# Who asks for one of these is given no other sizes.
+SIZES = {"pad_radius", "tip_radius", "pad_margin", "inside"}
+# Radii of pads and of the tip that goes with them, in mm, where the usual ones find no place.
+SMALLER = ((3.0, 4.0), (2.0, 3.0))
 
 
-def asked_request(query: Query, thickness: float | None, asked: dict[str, Any]) -> SupportRequest:
+def asked_request(query: Query, thickness: float | None, asked: Mapping[str, Any]) -> SupportRequest:
     """What is usual for a part, with what else is asked by name.
+
+    Parameters
+    ----------
+    thickness : of the part in mm; that of its solid if None.
 
     Raises
     ------
     InputError
-        For a name that there is none of, and values that cannot be.
+        For a name that there is none of, values that cannot be, and where nobody says how thick the part is.
     """
     unknown = next((name for name in asked if name not in (*USUAL, *FURTHER)), None)
     if unknown is not None:
@@ -47,6 +68,97 @@ def asked_request(query: Query, thickness: float | None, asked: dict[str, Any]) 
     if "top" in further:
         further.setdefault("top_heights", None)
     return evolve(usual, **further)
+
+
+def requests_by_size(
+    query: Query, thickness: float | None, asked: Mapping[str, Any] | None = None
+) -> Iterator[SupportRequest]:
+    """What is asked, and where no size is, the same with smaller pads and tips, but not than the toolkit has.
+
+    Parameters
+    ----------
+    thickness, asked : as of :func:`asked_request`.
+
+    Raises
+    ------
+    InputError
+        As :func:`asked_request`.
+    """
+    usual = last = asked_request(query, thickness, asked or {})
+    yield usual
+    if asked and not SIZES.isdisjoint(asked):
+        return
+    pads, clamp = query.toolkit.supports or SupportPads(), query.toolkit.top_clamp or TopClamp()
+    for pad, tip in SMALLER:
+        tip = min(tip, usual.tip_radius) if clamp.tip_radius is None else usual.tip_radius
+        smaller = evolve(
+            usual,
+            pad_radius=min(pad, usual.pad_radius) if pads.pad_radius is None else usual.pad_radius,
+            tip_radius=tip,
+            inside=tip if clamp.inside is None else clamp.inside,
+        )
+        if (smaller.pad_radius, smaller.tip_radius) != (last.pad_radius, last.tip_radius):
+            yield smaller
+        last = smaller
+
+
+def supported_by_size(
+    fixtures: Sequence[Fixture],
+    query: Query,
+    requests: Iterable[SupportRequest],
+    loads: Loads = None,
+    jaw_force: float | None = None,
+    each: int | None = 1,
+    *,
+    first_only: bool = False,
+    spares_weak: bool = False,
+    cancel: Event | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
+    """The best supports of some fixtures, of the first request of which any fixture has some.
+
+    Parameters
+    ----------
+    requests : to be tried in turn, see :func:`requests_by_size`.
+    each, spares_weak, cancel, progress : as of :func:`workhold.supports.listing.each_supported`; once
+        ``cancel`` is set no further request is tried.
+    first_only : whether fixtures behind the first that has some are passed over.
+
+    Returns
+    -------
+    These, or those of the last request where none has any, and those of the first request.
+
+    Raises
+    ------
+    InputError
+        As :func:`workhold.supports.listing.supports_of`.
+    """
+    usual = found = tuple[Supports, ...]()
+    for request in requests:
+        every = each_supported(
+            fixtures,
+            query,
+            request,
+            loads,
+            jaw_force,
+            each,
+            spares_weak=spares_weak,
+            cancel=cancel,
+            progress=progress,
+        )
+        found = tuple(up_to_first(every) if first_only else every)
+        usual = usual or found
+        if any(one.triples or one.stopped for one in found):
+            break
+    return found, usual
+
+
+def up_to_first(every: Iterable[Supports]) -> Iterator[Supports]:
+    """The supports of fixtures up to the first that has some."""
+    for one in every:
+        yield one
+        if one.triples:
+            return
 
 
 def fixture_supports(

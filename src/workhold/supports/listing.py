@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import inf, isfinite
 from threading import Event
 
@@ -19,17 +19,16 @@ from workhold.model.requirements import Load
 from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 from workhold.statics.contact_matrix import Touched
-from workhold.supports.acting import checked_force, needed_jaw_force, spatial
+from workhold.supports.acting import WeakJawError, acting_on, checked_force, needed_jaw_force, spatial
 from workhold.supports.choosing import Chosen, TripleChoice
 from workhold.supports.clamp_point import ClampPlaces
-from workhold.supports.cutting import acting_on
 from workhold.supports.faces import TouchableFace, area_center
 from workhold.supports.forces import PegForces, lifted_by_jaws
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.program_zones import with_program
 from workhold.supports.sides import Sides
 
-__all__ = ["SupportSearch", "supports_of", "supports_of_best"]
+__all__ = ["SupportSearch", "each_supported", "supports_of", "supports_of_best"]
 
 Array = NDArray[np.float64]
 # More holes than these leave more triples than can be looked at.
@@ -246,10 +245,10 @@ def supports_of(
         For pads too large for the holes, and a jaw force too small for a load. For more holes than can be
         looked at, and for all triples where there are too many.
     """
-    acting = acting_on(query, request.thickness) if loads is None else loads
-    asked = spatial(acting, request.thickness)
-    search = SupportSearch(query, with_program(request, query.workpiece, query.program), asked)
-    return search.supports(fixture, checked_force(jaw_force), best, cancel, progress)
+    every = each_supported(
+        (fixture,), query, request, loads, jaw_force, best, cancel=cancel, progress=progress
+    )
+    return next(every)
 
 
 def supports_of_best(
@@ -270,18 +269,47 @@ def supports_of_best(
     each : how many triples of each fixture; all other parameters as of :func:`supports_of`. Once
         ``cancel`` is set no further fixture is looked at.
     """
+    every = list(fixtures)
+    return tuple(
+        each_supported(every, query, request, loads, jaw_force, each, cancel=cancel, progress=progress)
+    )
+
+
+def each_supported(
+    fixtures: Sequence[Fixture],
+    query: Query,
+    request: SupportRequest,
+    loads: Sequence[Load | SpatialLoad] | None = None,
+    jaw_force: float | None = None,
+    each: int | None = 3,
+    *,
+    spares_weak: bool = False,
+    cancel: Event | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Iterator[Supports]:
+    """Yields the supports of each of some fixtures of a query as they are found.
+
+    Parameters
+    ----------
+    each : how many triples of each fixture, None for all; others as of :func:`supports_of`.
+    spares_weak : whether a jaw force that is too small for a load is left out, not refused.
+    """
     acting = acting_on(query, request.thickness) if loads is None else loads
     asked = spatial(acting, request.thickness)
-    request = with_program(request, query.workpiece, query.program)
-    search, force, every = SupportSearch(query, request, asked), checked_force(jaw_force), list(fixtures)
-    out = list[Supports]()
-    for number, fixture in enumerate(every):
+    search = SupportSearch(query, with_program(request, query.workpiece, query.program), asked)
+    force = checked_force(jaw_force)
+    for number, fixture in enumerate(fixtures):
 
         def share(fraction: float, before: int = number) -> None:
             if progress is not None:
-                progress((before + fraction) / len(every))
+                progress((before + fraction) / len(fixtures))
 
-        out.append(search.supports(fixture, force, each, cancel, share))
-        if out[-1].stopped:
-            break
-    return tuple(out)
+        try:
+            found = search.supports(fixture, force, each, cancel, share)
+        except WeakJawError:
+            if not spares_weak:
+                raise
+            found = search.supports(fixture, None, each, cancel, share)
+        yield found
+        if found.stopped:
+            return

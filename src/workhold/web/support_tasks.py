@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.geometry.segment import bounding_box
@@ -32,6 +32,8 @@ __all__ = ["SupportsOrder", "chosen_supports", "find_supports"]
 
 # What keeps pads and the clamp off places, as the page calls it.
 KEEP_OFF = ('"Keep pads off"', '"Keep the clamp off"')
+# Figures of a form that a request has by the same names.
+OWN = ("band", "pad_radius", "pad_margin", "tip_radius", "inside", "reach", "point")
 
 
 @frozen(eq=False)
@@ -79,23 +81,12 @@ def request_of(asked: SupportsOrder) -> SupportRequest:
     InputError
         For a thickness that nobody knows.
     """
+    from workhold.supports.asking import asked_request
+
     form = asked.form
-    usual = SupportRequest.of(
-        asked.query.workpiece,
-        form.thickness,
-        pad_radius=form.pad_radius,
-        tip_radius=form.tip_radius,
-        toolkit=asked.query.toolkit,
-    )
-    own: dict[str, Any] = {"pad_margin": form.pad_margin, "inside": form.inside, "reach": form.reach}
-    return evolve(
-        usual,
-        band=form.band,
-        bottom_zones=[*usual.bottom_zones, *map(zone_of, form.bottom_zones)],
-        top_zones=[zone_of(loop) for loop in form.top_zones],
-        point=form.point,
-        **{name: value for name, value in own.items() if value is not None},
-    )
+    own = {name: getattr(form, name) for name in OWN if getattr(form, name) is not None}
+    zones = {name: [zone_of(loop) for loop in getattr(form, name)] for name in ("bottom_zones", "top_zones")}
+    return asked_request(asked.query, form.thickness, own | zones)
 
 
 def chosen_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
@@ -196,8 +187,7 @@ def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, fl
 
 def notes_of(found: Supports, unit: str) -> list[str]:
     """Says why there are no sets, or what their figures do not show."""
-    from workhold.supports.notes import listing_notes
-    from workhold.supports.why_none import why_none
+    from workhold.supports.words import listing_notes, why_none
 
     given, listed = unit_named(unit), found.triples
     reasons = [] if listed else [why_none(found, given)]

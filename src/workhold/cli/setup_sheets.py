@@ -1,4 +1,4 @@
-"""The setup sheet that ``workhold design`` writes of its first choice."""
+"""Setup sheets: the one of a design's first choice, and what sheets say of supports and of another side."""
 
 from __future__ import annotations
 
@@ -6,20 +6,29 @@ import sys
 from collections.abc import Iterable, Sequence
 from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from workhold.cli.commands import print_remark
 from workhold.cli.outputs import STANDARD_OUTPUT, refuse_output
-from workhold.cli.sheet_supports import first_side_of, supports_under
 from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
+    from workhold.model.first_side import FirstSide
     from workhold.model.recounted import ChosenSupports
+    from workhold.model.requirements import Load
     from workhold.model.result import Result
     from workhold.model.support_triples import Supports
 
-__all__ = ["first_sheet", "refuse_sheet", "report_sheet"]
+__all__ = [
+    "chosen_of_file",
+    "chosen_supports",
+    "first_sheet",
+    "first_side_of",
+    "is_of_supports",
+    "refuse_sheet",
+    "report_sheet",
+]
 
 PAPER = (".pdf", ".svg", ".png")
 # So many of the best are asked for supports, a millisecond each.
@@ -116,7 +125,7 @@ def first_supported(
     Supports that are known already go before others, and larger pads before smaller ones.
     """
     from workhold.model.recounted import ChosenSupports
-    from workhold.supports.sizes import requests_by_size
+    from workhold.supports.asking import requests_by_size, supported_by_size
 
     query = result.query
     # The table is for the jaw force that the loads ask for.
@@ -124,11 +133,13 @@ def first_supported(
     for rank in ranks:
         if rank in known and known[rank].triples:
             return rank, said_to_be_there(rank, ranks[0], ChosenSupports.of(known[rank]))
-    for request in requests_by_size(result.workpiece, thickness, result.toolkit):
-        for rank in ranks:
-            chosen = supports_under(result, rank, request, None, query.jaw_force)
-            if chosen is not None:
-                return rank, said_to_be_there(rank, ranks[0], chosen)
+    fixtures, requests = [result[rank - 1] for rank in ranks], requests_by_size(query, thickness)
+    found, _ = supported_by_size(
+        fixtures, query, requests, None, query.jaw_force, first_only=True, spares_weak=True
+    )
+    if found[-1].triples:
+        rank = ranks[len(found) - 1]
+        return rank, said_to_be_there(rank, ranks[0], ChosenSupports.of(found[-1]))
     print_remark(
         "no three supports hold the part under any of the best, so the sheet has none: another side up "
         "(--axis) or a finer pitch may help, or parallels under it instead."
@@ -141,3 +152,78 @@ def said_to_be_there(rank: int, first: int, chosen: ChosenSupports) -> ChosenSup
     if rank != first:
         print_remark(f"fixture {first} has no such supports: the sheet is of fixture {rank}.")
     return chosen
+
+
+def is_of_supports(path: str) -> bool:
+    """Whether a file is one that ``workhold supports`` wrote."""
+    from workhold.verification.supports import is_supports_file
+
+    return is_supports_file(path)
+
+
+def chosen_of_file(
+    path: str, number: int, settings: dict[str, Any], loads: Sequence[Load] | None
+) -> ChosenSupports:
+    """The set of three of a number in a file of supports.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be used, a number that there is none of, and what the file has decided already.
+    """
+    from workhold.files.supports.reader import read_supports
+    from workhold.model.recounted import ChosenSupports
+
+    for name, key in (("--thickness", "thickness"), ("--jaw-force", "jaw_force")):
+        if settings[key] is not None:
+            raise InputError(f"{path} says what {name} would: leave it out, or list the supports anew.")
+    if loads:
+        raise InputError(f"{path} has the loads that its supports are for: leave --load out.")
+    return ChosenSupports.of(read_supports(path), number)
+
+
+def chosen_supports(
+    result: Result,
+    rank: int,
+    thickness: float | None,
+    loads: Sequence[Load] | None,
+    jaw_force: float | None,
+) -> ChosenSupports:
+    """The best three supports under a fixture, of the usual sizes or else of smaller ones.
+
+    A jaw force under which a load would lift the part off a peg is left out: the sheet warns of it anyway.
+
+    Raises
+    ------
+    InputError
+        Where there are none, and where nobody knows how thick the part is.
+    """
+    from workhold.model.recounted import ChosenSupports
+    from workhold.supports.asking import requests_by_size, supported_by_size
+
+    if thickness is None and result.workpiece.solid is None:
+        raise InputError("how thick the part is, is not known: give --thickness.")
+    query = result.query
+    requests = requests_by_size(query, thickness)
+    (found,), _ = supported_by_size([result[rank - 1]], query, requests, loads, jaw_force, spares_weak=True)
+    if not found.triples:
+        raise InputError(
+            f"under fixture {rank} no three supports hold the part: see workhold supports with its "
+            "--pad-radius, --tip-radius and --out, or leave --supports out."
+        )
+    return ChosenSupports.of(found)
+
+
+def first_side_of(result: Result, rank: int, before: str) -> FirstSide:
+    """What a fixture shares with the best fixture of another result, whose part had another side up.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be used, and parts that are not of one solid.
+    """
+    from workhold.files.result.reader import read_result
+    from workhold.model.first_side import first_side
+
+    other = read_result(before)
+    return first_side(result[rank - 1], result.query, other.query, other[0] if len(other) else None)

@@ -1,28 +1,17 @@
-"""Sizes of supports where nobody asked for any: which are tried, and what is said of them."""
+"""What the command says of supports: their sizes, why there are none, and what friction could add."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from attrs import evolve
+from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.model.result import Result
-    from workhold.model.support_request import SupportRequest
     from workhold.model.support_triples import Supports
     from workhold.units import Unit
 
-__all__ = ["size_notes", "smaller_sizes"]
-
-
-def smaller_sizes(request: SupportRequest, result: Result, thickness: float) -> list[SupportRequest]:
-    """Makes the same request with smaller pads and tips, the larger ones first."""
-    from workhold.supports.sizes import requests_by_size
-
-    _, *smaller = requests_by_size(result.workpiece, thickness, result.toolkit)
-    own = ("pad_radius", "tip_radius", "inside")
-    return [evolve(request, **{name: getattr(one, name) for name in own}) for one in smaller]
+__all__ = ["friction_words", "size_notes", "with_friction"]
 
 
 def runs_of(numbers: Sequence[int]) -> str:
@@ -53,7 +42,7 @@ def size_notes(
     found, usual : of each fixture in order; those that are listed, and those of the usual sizes.
     bare : ranks of those without supports among the listed ones.
     """
-    from workhold.supports.why_none import why_none
+    from workhold.supports.words import why_none
 
     pad, tip = unit.text(found[0].request.pad_radius), unit.text(found[0].request.tip_radius)
     if len(bare) == len(found):
@@ -73,3 +62,34 @@ def size_notes(
     elif bare:
         notes.append(f"Under {bare[0]}: {why_none(found[bare[0] - 1], unit)}")
     return notes
+
+
+def with_friction(found: Supports, count: int | None, friction: float | None) -> list[float]:
+    """The least clamp forces in N with friction, of the sets that are listed; none where it is not asked for.
+
+    Raises
+    ------
+    InputError
+        For a coefficient that is too large, and where there is no load.
+    """
+    if friction is None:
+        return []
+    if not found.loads:
+        raise InputError("--friction is asked of loads, of which there are none: give --load too.")
+    return [found.clamp_with_friction(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
+
+
+def friction_words(friction: float, helped: list[float]) -> str:
+    """Says what friction could add to the sets that are listed.
+
+    Parameters
+    ----------
+    friction : its coefficient.
+    helped : least clamp forces in N, one for each set.
+    """
+    forces = ", ".join(f"{force:.0f} N" for force in helped)
+    sets = "that set" if len(helped) == 1 else "these sets, in their order,"
+    return (
+        f"With a friction of {friction:g} at every contact the clamp of {sets} could do with {forces} at "
+        "best. With friction the forces are not determined: clamp for the force without it."
+    )

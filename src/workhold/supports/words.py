@@ -1,27 +1,32 @@
-"""Why no three supports hold a part up with a clamp between them, and what would help, in one sentence.
+"""What is said of a list of supports, in the same words wherever it is shown, and why a list is empty.
 
-It is asked in turn whether three holes have room for a pad, and whether three of them fit the plates. Then
-it is asked whether their triangle is large enough for the clamp, and whether the tip may stand in it.
+Of an empty list it is asked in turn whether three holes have room for a pad, and whether three of them fit
+the plates. Then it is asked whether their triangle is large enough for the clamp, and whether the tip may
+stand in it. The first that fails is said in one sentence, with what would help.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations, islice
 from math import floor
 
 import numpy as np
 from attrs import evolve
 
-from workhold.model.support_triples import Supports
+from workhold.model.support_triples import Supports, Triple
+from workhold.model.workpiece import Workpiece
+from workhold.supports.asking import SMALLER
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.listing import SupportSearch
-from workhold.supports.sizes import SMALLER
 from workhold.units import Unit
 
-__all__ = ["why_none"]
+__all__ = ["flat_faces_notes", "listing_notes", "set_headings", "set_row", "why_none"]
 
 # Triples that are looked at; where there are more, one of these fits.
 MOST_LOOKED_AT = 200_000
+# Openings that differ by less, in mm, are one.
+SAME_OPENING = 1e-6
 
 
 def why_none(found: Supports, unit: Unit) -> str:
@@ -89,3 +94,67 @@ def largest_circle(corners: np.ndarray) -> float:
     a, b, c = corners
     twice = abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
     return float(twice / sum(np.hypot(*(q - p)) for p, q in ((a, b), (b, c), (c, a))))
+
+
+def set_headings(unit: Unit, loaded: bool) -> tuple[str, ...]:
+    """The headings of a table of sets of three, see :func:`set_row`; ``>`` marks columns of numbers."""
+    of = unit.abbreviation
+    forces = (">clamp force N", ">support force N") if loaded else ()
+    return ("supports", f"clamp at {of}", *forces, f">tipping arm {of}", f">stands by {of}")
+
+
+def set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
+    """The cells of a set of three in a table; forces where there are loads."""
+    clamp = triple.clamp
+    forces = [f"{clamp.clamp_needed:.0f}", f"{clamp.support_force or 0.0:.0f}"] if loaded else []
+    return [
+        " ".join(pad.hole for pad in triple.supports),
+        f"({unit.number(clamp.at[0])}, {unit.number(clamp.at[1])})",
+        *forces,
+        unit.number(clamp.arm),
+        unit.number(triple.standing),
+    ]
+
+
+def listing_notes(
+    found: Supports, listed: Sequence[Triple], unit: Unit, keep_off: Sequence[str]
+) -> list[str]:
+    """What has to be known about some sets of three that no figure of them says.
+
+    Parameters
+    ----------
+    keep_off : what keeps pads off the lower side and the tip off the upper one, as it is called there.
+    """
+    notes = []
+    if found.loads and listed and found.jaw_force > 0:
+        notes.append(f"All for a closing force of {found.jaw_force:.0f} N, without friction.")
+    moved = {one.travel for one in listed if one.travel is not None}
+    if any(abs(one - found.fixture.jaw_separation) > SAME_OPENING for one in moved):
+        notes.append(
+            "With these supports the jaws stand elsewhere in their holes, opened to "
+            f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
+        )
+    return notes + flat_faces_notes(found.query.workpiece, keep_off)
+
+
+def flat_faces_notes(workpiece: Workpiece, keep_off: Sequence[str]) -> list[str]:
+    """Says that a solid is taken to be flat below or on top, where no level face of it is known.
+
+    Parameters
+    ----------
+    keep_off : as of :func:`listing_notes`.
+    """
+    solid = workpiece.solid
+    if solid is None:
+        return []
+    if solid.lies_on_no_face:
+        return ["The part lies on no level face, so no support can stand under it: turn another side up."]
+    names = ("bottom", "top")
+    lacking = [k for k, name in enumerate(names) if not getattr(solid, name)]
+    if not lacking:
+        return []
+    sides = " and ".join(names[k] for k in lacking)
+    return [
+        f"No level face of the part is known at its {sides}, which is taken to be flat as far as the outline "
+        f"goes: keep pads and tip off the rest with {' and '.join(keep_off[k] for k in lacking)}."
+    ]
