@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from workhold.completeness import verify
     from workhold.errors import InputError, WorkholdError
     from workhold.files.part.load import load
-    from workhold.files.part.solids import solids_in
+    from workhold.files.part.loaded import solids_in
     from workhold.files.result.columns import answer_to_file
     from workhold.files.result.reader import read_result as open
     from workhold.files.result.save import save
@@ -103,7 +103,7 @@ HOMES = {
     "polygon_zone": "workhold.model.requirements",
     "save": "workhold.files.result.save",
     "seatings": "workhold.seating.solver",
-    "solids_in": "workhold.files.part.solids",
+    "solids_in": "workhold.files.part.loaded",
     "verify": "workhold.completeness",
 }
 

@@ -316,7 +316,7 @@ def list_solids(part: str, unit: Unit, as_json: bool) -> None:
     """
     from workhold.cli.solid_tables import solid_table
     from workhold.cli.table import print_tables
-    from workhold.files.part.solids import solids_in
+    from workhold.files.part.loaded import solids_in
 
     solids = solids_in(part)
     if as_json:

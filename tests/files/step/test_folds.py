@@ -21,7 +21,7 @@ from step_shapes import box, cut, cylinder, fused
 
 from workhold.files.step.crossings import bisected, crossing
 from workhold.files.step.heights import standing
-from workhold.files.step.other_curves import OtherCurveError
+from workhold.files.step.projected import OtherCurveError
 from workhold.files.step.which_height import measures
 
 

@@ -10,7 +10,7 @@ pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 from step_shapes import box
 
 from workhold.files.step.faces import solid_faces
-from workhold.files.step.other_curves import OtherCurveError, refuse_others
+from workhold.files.step.projected import OtherCurveError, refuse_others
 
 
 @pytest.mark.parametrize("k", range(1, 32))

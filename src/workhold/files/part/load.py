@@ -20,8 +20,14 @@ from workhold.files.outline.joining import Loop
 from workhold.files.outline.nesting import as_one, chosen_part
 from workhold.files.part.data import drawing_of_object
 from workhold.files.part.finding import builtin_parts, builtin_path, found, kind_of, read_bytes
-from workhold.files.part.loaded import Loaded, built, from_drawing, from_heights, refuse_large
-from workhold.files.part.solids import with_solid_named
+from workhold.files.part.loaded import (
+    Loaded,
+    built,
+    from_drawing,
+    from_heights,
+    refuse_large,
+    with_solid_named,
+)
 from workhold.files.questions import (
     DRAWING_UNIT,
     UnitAskedError,

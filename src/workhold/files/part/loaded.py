@@ -1,9 +1,13 @@
-"""A workpiece from the outline of a drawing or of a solid, with remarks on how it was read."""
+"""A workpiece from the outline of a drawing or of a solid, with remarks on how it was read, and its name.
+
+A part that is one of several solids of a STEP file is named after its solid too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,6 +29,7 @@ from workhold.files.outline.diagnostics import (
 )
 from workhold.files.outline.joining import Loop, join
 from workhold.files.outline.nesting import DrawnPart, as_one, chosen_part, nest, refuse_loops_across
+from workhold.files.part.finding import found, kind_of, read_bytes
 from workhold.files.questions import PART_NUMBER
 from workhold.model.own_outlines import own_name
 from workhold.model.solid import FileSolid, HeightRow, SolidOutline
@@ -33,7 +38,7 @@ from workhold.model.workpiece import Workpiece
 if TYPE_CHECKING:
     from workhold.files.step.by_height import HeightDrawing
 
-__all__ = ["Loaded", "built", "from_drawing", "from_heights", "refuse_large"]
+__all__ = ["Loaded", "built", "from_drawing", "from_heights", "refuse_large", "solids_in", "with_solid_named"]
 
 # A part of more segments than this is a scan or a picture, and would keep every later step busy for hours.
 MOST_SEGMENTS = 20_000
@@ -201,3 +206,65 @@ def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str
     listing = "; ".join(str(part) for part in parts[:PART_LIST])
     used = f"Part {chosen.number} is used{because}."
     return [f"The file holds {len(parts)} separate parts: {listing}{more}. {used}"]
+
+
+def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
+    """Lists the solids of a STEP file by decreasing volume, with their names where the file has them.
+
+    ``load`` takes one of them by its number or its name.
+
+    Parameters
+    ----------
+    path : of the file.
+
+    Returns
+    -------
+    Number, name, size along x, y and z, and lowest corner of each; lengths in mm, in the file's own axes. A
+    name is empty where the file has none.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read, is of another kind, or has no solid; naming the file.
+    """
+    file = found(path)
+    try:
+        content = read_bytes(file)
+        if kind_of(file, content) != "step":
+            raise InputError("only STEP files have solids.")
+        from workhold.files.step.solid_list import listed_solids
+
+        return listed_solids(content)
+    except InputError as error:
+        raise InputError(f"{file.name}: {error}") from error
+
+
+def with_solid_named(loaded: Loaded, file: str, chosen: int | str | None) -> Loaded:
+    """A part named after its solid too, where the file holds several with names: ``lug of machine``.
+
+    Parameters
+    ----------
+    file : name of the file.
+    chosen : number or name of the solid that was read; None is the largest.
+    """
+    name = "" if len(loaded.solids) < 2 else name_of_chosen(loaded.solids, chosen)
+    if not name or name == file:
+        return loaded
+    called = f"{name} of {file}"
+    outlines = tuple((role, between(called, own)) for role, own in loaded.workpiece.outlines)
+    return evolve(loaded, workpiece=evolve(loaded.workpiece, name=called, outlines=outlines))
+
+
+def name_of_chosen(solids: Sequence[FileSolid], chosen: int | str | None) -> str:
+    """What the file calls the solid of a number or a name; empty where it does not."""
+    if not isinstance(chosen, str):
+        return solids[(chosen or 1) - 1].name
+    asked = " ".join(chosen.split())
+    names = [solid.name for solid in solids]
+    return asked if asked in names else next(one for one in names if one.casefold() == asked.casefold())
+
+
+def between(called: str, own: Workpiece) -> Workpiece:
+    """The outline of a carrier with heights of its own, named after the part and these heights."""
+    assert own.solid is not None
+    return evolve(own, name=own_name(called, (own.solid.low, own.solid.peg_height)))

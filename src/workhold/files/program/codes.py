@@ -1,4 +1,4 @@
-"""The codes of a program: to which group each belongs, and why others are refused.
+"""The codes of a program: to which group each belongs, why others are refused, and what they leave in force.
 
 A group holds codes of which one is in force, or stands in a block: T. R. Kramer, F. M. Proctor, E. Messina,
 "The NIST RS274NGC interpreter, version 3", NISTIR 6556, 2000, "Modal groups". Cycles are a group of their own
@@ -10,9 +10,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 
-from workhold.errors import InputError
+from attrs import define, field
 
-__all__ = ["CANCEL", "CYCLES", "GROUPS", "code_of", "refuse_code", "refuse_function", "FUNCTIONS"]
+from workhold.errors import InputError
+from workhold.units import INCH, MILLIMETRE, Unit
+
+__all__ = [
+    "CANCEL",
+    "CYCLES",
+    "FUNCTIONS",
+    "GROUPS",
+    "Modes",
+    "UNITS",
+    "code_of",
+    "refuse_code",
+    "refuse_function",
+]
 
 CYCLES = ("73", "81", "82", "83")
 MOTIONS = ("0", "1", "2", "3")
@@ -66,6 +79,7 @@ REASONS: Mapping[str, str] = {
     ),
     **dict.fromkeys(("5", "5.1", "5.2", "5.3", "6.2"), "is a spline: post the program with lines and arcs"),
 }
+UNITS = {"20": INCH, "21": MILLIMETRE, "inch": INCH, "mm": MILLIMETRE}
 
 
 @cache
@@ -102,3 +116,39 @@ def refuse_function(code: str) -> None:
     """
     reason = MACRO if code in ("97", "98", "99") else "is not known: take it out if it moves nothing"
     raise InputError(f"M{code} {reason}.")
+
+
+@define
+class Modes:
+    """The state of a control, as far as the path follows from it; lengths in mm, from the program's own zero.
+
+    Parameters
+    ----------
+    unit : of lengths; None until the program says.
+    motion : code of the motion in force, None before the first.
+    cycle : code of the drill cycle in force, None outside one.
+    plane, distance, centre, feed_kind, back : codes in force.
+    offset : code of the zero in force.
+    place : x, y and z of the tip, None where it is not known.
+    called, tool : number that T named last, and that of the tool in the spindle; None before the first.
+    feed, spindle : as they are written.
+    sticky : values of the cycle in force by their letters, in mm; Z and R are heights.
+    initial : height at which the cycle in force began.
+    """
+
+    unit: Unit | None = None
+    motion: str | None = None
+    cycle: str | None = None
+    plane: str = "17"
+    distance: str = "90"
+    centre: str = "91.1"
+    feed_kind: str = "94"
+    back: str = "98"
+    offset: str = "54"
+    place: list[float | None] = field(factory=lambda: [None, None, None])
+    called: int | None = None
+    tool: int | None = None
+    feed: float = 0.0
+    spindle: float = 0.0
+    sticky: dict[str, float] = field(factory=dict)
+    initial: float | None = None

@@ -11,18 +11,17 @@ from math import isfinite
 from attrs import define, field
 
 from workhold.errors import InputError
-from workhold.files.program.arcs import arc_about, arc_of_radius
 from workhold.files.program.codes import (
     CANCEL,
     FUNCTIONS,
     GROUPS,
+    UNITS,
+    Modes,
     code_of,
     refuse_code,
     refuse_function,
 )
-from workhold.files.program.cycles import drill
-from workhold.files.program.modes import UNITS, Modes
-from workhold.files.program.path import AXES, PathWriter, Reached
+from workhold.files.program.path import AXES, PathWriter, Reached, arc_about, arc_of_radius, drill
 from workhold.files.program.words import ProgramBlock
 
 __all__ = ["Interpreter"]

@@ -1,16 +1,23 @@
-"""The path of the tip as rows of moves, in mm from the program's own zero."""
+"""The path of the tip as rows of moves, in mm from the program's own zero: lines, arcs and drill cycles.
+
+Arcs become spans of half a turn or less. In a drill cycle pecks (Q) go up and down between the plane R and
+the bottom. One move down and one up sweep the same, and stand for all of them.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from math import atan2, ceil, cos, hypot, pi, sin, sqrt, tan
 from typing import Any
 
-from attrs import define, field
+from attrs import define, field, frozen
 
+from workhold.conventions import ARC_RADII
 from workhold.errors import InputError
-from workhold.files.program.modes import Modes
+from workhold.files.program.codes import Modes
 from workhold.limits import MOST_LENGTH
 
-__all__ = ["AXES", "PathWriter", "Place", "Reached"]
+__all__ = ["AXES", "PathWriter", "Place", "PlaneArc", "Reached", "arc_about", "arc_of_radius", "drill"]
 
 AXES = "XYZ"
 # Digits in mm to which places are rounded, so that sums of increments are the places that they mean.
@@ -19,6 +26,9 @@ MOST_MOVES = 2_000_000
 Place = tuple[float, float, float]
 # A place of which not every coordinate needs to be known.
 Reached = list[float | None]
+Point = tuple[float, float]
+MOST_REPEATS = 10_000
+PECKING = ("73", "83")
 
 
 @define
@@ -142,3 +152,180 @@ class PathWriter:
             raise InputError(f"the program has more than {MOST_MOVES:,} moves: split it.")
         tool = -1 if modes.tool is None else modes.tool
         self.rows.append((self.line, tool, cutting, start, end, bulge, feed, modes.spindle))
+
+
+@frozen
+class PlaneArc:
+    """An arc from a place to another, perhaps over several turns.
+
+    Parameters
+    ----------
+    center : (x, y) in mm.
+    sweep : in radians, positive counter-clockwise.
+    """
+
+    center: Point
+    sweep: float
+
+    def spans(self, start: Place, end: Place) -> Iterator[tuple[Place, float]]:
+        """The end and the bulge of each span; none is more than half a turn.
+
+        Where the ends are not equally far from the centre, the distance changes with the sweep.
+        """
+        count = max(ceil(abs(self.sweep) / pi - 1e-9), 1)
+        (x, y), part = self.center, self.sweep / count
+        bulge = tan(part / 4)
+        from_x, from_y = start[0] - x, start[1] - y
+        angle, radius = atan2(from_y, from_x), hypot(from_x, from_y)
+        last = hypot(end[0] - x, end[1] - y)
+        for number in range(1, count):
+            share, turned = number / count, angle + number * part
+            reach = radius + share * (last - radius)
+            height = start[2] + share * (end[2] - start[2])
+            yield (x + reach * cos(turned), y + reach * sin(turned), height), bulge
+        yield end, bulge
+
+
+def arc_about(center: Point, start: Place, end: Place, clockwise: bool, turns: int) -> PlaneArc:
+    """An arc about a centre; where its ends are one place, it is a full circle.
+
+    Raises
+    ------
+    InputError
+        For ends that are not equally far from the centre.
+    """
+    (x, y), (to_x, to_y) = (
+        (start[0] - center[0], start[1] - center[1]),
+        (end[0] - center[0], end[1] - center[1]),
+    )
+    radius, other = hypot(x, y), hypot(to_x, to_y)
+    if abs(radius - other) > ARC_RADII or min(radius, other) == 0.0:
+        raise InputError(
+            f"the arc begins {radius:.4f} mm from its centre and ends {other:.4f} mm from it: correct I and "
+            "J, which are distances from the arc's start, or places after G90.1."
+        )
+    angle = atan2(x * to_y - y * to_x, x * to_x + y * to_y)
+    if clockwise:
+        angle = -angle
+    if angle <= 0.0:
+        angle += 2 * pi
+    angle += 2 * pi * (turns - 1)
+    return PlaneArc(center, -angle if clockwise else angle)
+
+
+def arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool) -> PlaneArc:
+    """An arc of a radius; of more than half a turn where the radius is negative.
+
+    Raises
+    ------
+    InputError
+        For one place as both ends, and ends too far apart.
+    """
+    x, y = end[0] - start[0], end[1] - start[1]
+    chord, size = hypot(x, y), abs(radius)
+    if chord == 0.0:
+        raise InputError(
+            "an arc with R ends where it begins, so that its centre is not known: write I and J."
+        )
+    if chord / 2 > size + ARC_RADII:
+        raise InputError(
+            f"the arc's ends are {chord:.4f} mm apart, more than twice its radius of {size:.4f} mm: correct "
+            "R."
+        )
+    away = sqrt(max(size * size - chord * chord / 4, 0.0))
+    half = atan2(chord / 2, away)
+    sweep = 2 * half if radius > 0 else 2 * pi - 2 * half
+    # The centre lies to the left of an arc that is run counter-clockwise and is less than half a turn.
+    side = away if (radius > 0) != clockwise else -away
+    center = (start[0] + x / 2 - side * y / chord, start[1] + y / 2 + side * x / chord)
+    return PlaneArc(center, -sweep if clockwise else sweep)
+
+
+def drill(path: PathWriter, values: dict[str, float]) -> set[str]:
+    """Drills a hole, or a row of them in increments: over it, down to R, to Z at the feed, and up again.
+
+    Returns
+    -------
+    set
+        The letters that have a meaning.
+
+    Raises
+    ------
+    InputError
+        For a cycle that lacks something, or that controls read in different ways.
+    """
+    modes = path.modes
+    bottom, plane = depths(path, values)
+    for _ in range(repeats(path, values)):
+        x, y, z = path.target({key: values[key] for key in ("X", "Y") if key in values})
+        if x is None or y is None:
+            raise InputError("a hole is drilled at a place that the program does not say: write X and Y.")
+        path.move_to([x, y, z], cutting=False)
+        path.move_to([x, y, plane], cutting=False)
+        path.move_to([x, y, bottom], cutting=True)
+        up = modes.initial if modes.back == "98" else plane
+        path.move_to([x, y, up], cutting=False)
+    return {"X", "Y", "Z", "R", "Q", "P", "L", "K"}
+
+
+def depths(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
+    """Heights of the hole's bottom and of the plane R in mm; those that a block does not give stay in force.
+
+    Raises
+    ------
+    InputError
+        Where one is missing, or they do not follow each other downward.
+    """
+    modes, sticky = path.modes, path.modes.sticky
+    if modes.plane != "17":
+        raise InputError(f"a drill cycle stands in the plane G{modes.plane}: write G17 before it.")
+    initial, now = modes.initial, modes.place[2]
+    if initial is None or now is None:
+        raise InputError(
+            "a drill cycle begins at a height that the program does not say: write G0 with Z before it."
+        )
+    if modes.distance == "91":
+        if now != initial:
+            raise InputError(
+                "a drill cycle in increments (G91) goes on at the plane R (G99), which controls read in "
+                "different ways: write it after G90."
+            )
+        if "R" in values:
+            sticky["R"] = initial + path.length(values["R"])
+        if "Z" in values and "R" in sticky:
+            sticky["Z"] = sticky["R"] + path.length(values["Z"])
+    else:
+        sticky.update({key: path.length(values[key]) for key in "RZ" if key in values})
+    for key, what in (("R", "the plane to which it returns"), ("Z", "the bottom of its hole")):
+        if key not in sticky:
+            raise InputError(f"a drill cycle has no {key}, {what}: write it.")
+    if "Q" in values:
+        sticky["Q"] = values["Q"]
+    if modes.cycle in PECKING and not sticky.get("Q", 0.0) > 0.0:
+        raise InputError(f"G{modes.cycle} has no Q, the depth of a peck: write one above 0.")
+    bottom, plane = round(sticky["Z"], DIGITS), round(sticky["R"], DIGITS)
+    if bottom > plane:
+        raise InputError("the bottom Z of a hole is above the plane R of its cycle: correct them.")
+    if now < plane:
+        raise InputError(
+            "a drill cycle begins below its plane R, where controls go different ways: write G0 with a Z "
+            "above R before it."
+        )
+    return bottom, plane
+
+
+def repeats(path: PathWriter, values: dict[str, float]) -> int:
+    """How often a block drills: L, or K on other controls.
+
+    Raises
+    ------
+    InputError
+        For both, and a number that is none.
+    """
+    given = [values[key] for key in "LK" if key in values]
+    if len(given) > 1:
+        raise InputError("a drill cycle has both L and K: write one of them.")
+    count = given[0] if given else 1.0
+    if count != int(count) or not 1 <= count <= MOST_REPEATS:
+        raise InputError(f"a drill cycle is repeated {count:g} times: write a whole number from 1.")
+    return int(count)

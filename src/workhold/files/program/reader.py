@@ -12,9 +12,8 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.files.program.codes import code_of
+from workhold.files.program.codes import UNITS, code_of
 from workhold.files.program.interpreter import Interpreter
-from workhold.files.program.modes import UNITS
 from workhold.files.program.tool_fields import SHAPE, is_bare, tool_of_fields
 from workhold.files.program.tool_tables import commented_tools, read_tools
 from workhold.files.program.words import ProgramText, program_text

@@ -1,4 +1,4 @@
-"""The solids of a STEP file that has several, with what the file calls them.
+"""The solids of a STEP file that has several, with what the file calls them, and what each is made of.
 
 A solid may be named itself, by its product, and by the places in which assemblies use the product. The
 nearest of these names that says something is taken. That is its own where a product has several solids, else
@@ -16,9 +16,8 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import plain, shortened
-from workhold.files.step.shape_parts import sub_shapes
 
-__all__ = ["named_shapes"]
+__all__ = ["bounding_box", "named_shapes", "sub_shapes"]
 
 LONGEST_NAME = 80
 # What programs write where nobody has given a name.
@@ -26,6 +25,8 @@ NO_NAME = re.compile(
     r"(?:none|unnamed|no_?name|solid|compound|shell|shape|body|\d+|nauo\d*|=>\[[\d:]*\]|open cascade .*)?",
     re.IGNORECASE,
 )
+# Its x, y and z in mm.
+Corner = tuple[float, float, float]
 
 
 @frozen
@@ -149,3 +150,34 @@ def name_of(solid: Any, place: ProductPlace, count: int, process: Any) -> str:
     nearest = place.names[2:] or place.names
     of_product = next((name for name in reversed(nearest) if name), "")
     return of_product if count == 1 and of_product else own or of_product
+
+
+def sub_shapes(shape: Any, kind: str) -> list[Any]:
+    """The parts of one kind of a shape, each as often as it is used.
+
+    Parameters
+    ----------
+    kind : "SOLID", "FACE", "WIRE", "EDGE" or "VERTEX".
+    """
+    from OCP import TopAbs
+    from OCP.TopExp import TopExp_Explorer
+    from OCP.TopoDS import TopoDS
+
+    cast = getattr(TopoDS, kind.capitalize())
+    explorer = TopExp_Explorer(shape, getattr(TopAbs.TopAbs_ShapeEnum, f"TopAbs_{kind}"))
+    found = []
+    while explorer.More():
+        found.append(cast(explorer.Current()))
+        explorer.Next()
+    return found
+
+
+def bounding_box(shape: Any) -> tuple[Corner, Corner]:
+    """Both corners of a shape's bounding box in mm, to rounding."""
+    from OCP.Bnd import Bnd_Box
+    from OCP.BRepBndLib import BRepBndLib
+
+    box = Bnd_Box()
+    BRepBndLib.AddOptimal_s(shape, box, False, False)
+    low, high = box.CornerMin(), box.CornerMax()
+    return (low.X(), low.Y(), low.Z()), (high.X(), high.Y(), high.Z())

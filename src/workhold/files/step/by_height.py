@@ -20,8 +20,7 @@ from workhold.files.step.heights import LEAST_BAND as USUAL_BAND
 from workhold.files.step.heights import StandingSolid, standing
 from workhold.files.step.level_faces import known_levels
 from workhold.files.step.library import load_step_library
-from workhold.files.step.other_curves import OtherCurveError
-from workhold.files.step.own_outlines import OwnDrawing, ordered_loops, own_drawings
+from workhold.files.step.projected import OtherCurveError
 from workhold.files.step.reader import drawing_of, guarded, plain_drawing, prepare, read_solid
 from workhold.files.step.solids import (
     Solid,
@@ -34,7 +33,14 @@ from workhold.files.step.solids import (
     solid_remarks,
     sub_shapes,
 )
-from workhold.files.step.which_height import advice, height_remarks, height_table
+from workhold.files.step.which_height import (
+    OwnDrawing,
+    advice,
+    height_remarks,
+    height_table,
+    ordered_loops,
+    own_drawings,
+)
 from workhold.model.solid import FileSolid, HeightRow, SolidOutline
 
 __all__ = [

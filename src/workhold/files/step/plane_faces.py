@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from workhold.conventions import SHORTEST
 from workhold.files.step.edge_curves import EdgeCurve
 from workhold.files.step.faces import SolidFace, surface_of
-from workhold.files.step.turned import is_upright
+from workhold.files.step.folds import is_upright
 from workhold.geometry.segment import Arc, Line, Point
 
 __all__ = ["PlaneFaces"]

@@ -12,8 +12,7 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError, plain, shortened
 from workhold.files.questions import PART_NUMBER
-from workhold.files.step.body_names import named_shapes
-from workhold.files.step.shape_parts import bounding_box, sub_shapes
+from workhold.files.step.body_names import bounding_box, named_shapes, sub_shapes
 from workhold.limits import MOST_LENGTH
 from workhold.model.solid import FileSolid
 

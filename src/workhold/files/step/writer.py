@@ -1,4 +1,4 @@
-"""STEP assemblies that are written: a set-up, and the jaw plates to drill.
+"""STEP assemblies that are written: a set-up, and the jaw plates to drill, with colours.
 
 A set-up is the part in its pose, the pegs, the clamps with their bolts, and the plates with their holes. The
 frame is the vise's, in millimetres, with x to the right. Its origin is the left jaw's hole L-A1, or hole A1
@@ -7,10 +7,15 @@ part's upper side, where nothing else is asked for.
 
 Jaw plates are solids with their dowel holes and bolt holes through them, their upper sides at z = 0. They
 stand side by side as in the DXF drawing of the same plates.
+
+Colours (ISO 10303-46, presentation appearance) are added to the file's text. The STEP library writes them in
+the order of addresses in memory, so the same bodies would not give the same bytes. Here they follow the
+bodies.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from io import BytesIO
 from math import cos, isfinite, pi, sin
@@ -19,7 +24,6 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.files.step.colours import Colour, coloured
 from workhold.files.step.library import load_step_library
 from workhold.files.step.solids import sub_shapes
 from workhold.fixels.toolkit import Toolkit
@@ -32,7 +36,9 @@ from workhold.model.setup import PartZero, part_zero
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "Colour",
     "bodies_step",
+    "coloured",
     "named_solids",
     "plates_step",
     "setup_step",
@@ -42,6 +48,16 @@ __all__ = [
 
 # The header's time stamp, so that the same set-up gives the same bytes.
 TIME_STAMP = "1970-01-01T00:00:00"
+# Red, green and blue from 0 to 1.
+Colour = tuple[float, float, float]
+
+NUMBER = re.compile(rb"^#(\d+)\s*=", re.MULTILINE)
+BODY = re.compile(
+    rb"^#\d+\s*=\s*ADVANCED_BREP_SHAPE_REPRESENTATION\(\s*'[^']*'\s*,\s*\(([#\d,\s]*)\)\s*,\s*#(\d+)\s*\)",
+    re.MULTILINE,
+)
+SOLID = re.compile(rb"^#(\d+)\s*=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS)\b", re.MULTILINE)
+END = b"ENDSEC;\nEND-ISO-10303-21;"
 
 
 def write_setup_step(
@@ -312,3 +328,47 @@ def write_plates_step(plates: Sequence[JawPlate], path: str | Path, thickness: f
         As :func:`plates_step`, and when the file cannot be written.
     """
     write_bytes(path, plates_step(plates, thickness))
+
+
+def coloured(text: bytes, colours: Sequence[Colour]) -> bytes:
+    """The text of a STEP file with a colour for each of its bodies, in their order in the file.
+
+    Raises
+    ------
+    RuntimeError
+        When the file has not one body for each colour.
+    """
+    bodies = list(BODY.finditer(text))
+    if len(bodies) != len(colours) or END not in text:
+        raise RuntimeError("the STEP library has written other bodies than it was given")
+    solids = {int(found[1]) for found in SOLID.finditer(text)}
+    number = max(int(found[1]) for found in NUMBER.finditer(text))
+    lines: list[str] = []
+
+    def add(entity: str) -> str:
+        nonlocal number
+        number += 1
+        lines.append(f"#{number} = {entity};\n")
+        return f"#{number}"
+
+    styles: dict[Colour, str] = {}
+    for body, colour in zip(bodies, colours, strict=True):
+        if colour not in styles:
+            part = add(f"COLOUR_RGB('',{','.join(f'{value:.4f}' for value in colour)})")
+            for kind in (
+                "FILL_AREA_STYLE_COLOUR('',{})",
+                "FILL_AREA_STYLE('',({}))",
+                "SURFACE_STYLE_FILL_AREA({})",
+                "SURFACE_SIDE_STYLE('',({}))",
+                "SURFACE_STYLE_USAGE(.BOTH.,{})",
+                "PRESENTATION_STYLE_ASSIGNMENT(({}))",
+            ):
+                part = add(kind.format(part))
+            styles[colour] = part
+        parts = [int(part) for part in re.findall(rb"#(\d+)", body[1])]
+        items = [add(f"STYLED_ITEM('color',({styles[colour]}),#{part})") for part in parts if part in solids]
+        add(
+            f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',({','.join(items)}),#{int(body[2])})"
+        )
+    before, end, after = text.rpartition(END)
+    return before + "".join(lines).encode("ascii") + end + after
