@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from report import Column, Section
-from workhold.files.glb.writer import bodies_glb
+from workhold.files.glb import bodies_glb
 from workhold.geometry.segment import Arc, Box
 from workhold.model.bodies import BodyKind, FixtureBody, Slab, rectangle
 

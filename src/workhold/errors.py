@@ -9,7 +9,7 @@ from __future__ import annotations
 import errno
 from collections.abc import Sequence
 
-__all__ = ["InputError", "NO_ROOM", "WorkholdError", "lacks_memory", "listed", "plain", "shortened"]
+__all__ = ["NO_ROOM", "InputError", "WorkholdError", "lacks_memory", "listed", "plain", "shortened"]
 
 # Letters of a sentence: enough for any of the program's own.
 LONGEST = 1000

@@ -63,7 +63,7 @@ def test_holes_drilled_through_are_no_place_for_supports(run: Any, tmp_path: Pat
     assert outcome.exit_code == 0, outcome.stderr
     outcome = run("supports", result, "1", "--thickness", "12", "--out", supports)
     assert outcome.exit_code == 0, outcome.stderr
-    from workhold.files.supports.reader import read_supports
+    from workhold.files.supports_file import read_supports
 
     found = read_supports(supports)
     assert found.triples and len(found.request.bottom_zones) >= 4

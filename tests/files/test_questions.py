@@ -16,8 +16,8 @@ from workhold.cli.options import CALLED as ON_THE_COMMAND_LINE
 from workhold.files import questions
 from workhold.files.part.load import load, read_workpiece
 from workhold.files.questions import worded
-from workhold.web.tasks import CALLED as ON_THE_PAGE
-from workhold.web.tasks import Upload, read_part
+from workhold.web.part_tasks import CALLED as ON_THE_PAGE
+from workhold.web.part_tasks import Upload, read_part
 
 SOURCE = Path(workhold.__file__).parent
 MARKS = [value for name in questions.__all__ if isinstance(value := getattr(questions, name), str)]

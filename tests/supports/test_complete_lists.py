@@ -14,7 +14,7 @@ from attrs import evolve
 
 from supports.cases import case
 from supports.random_supports import TOOLKITS, random_demand, random_fixtures
-from workhold.files.supports.writer import write_supports
+from workhold.files.supports_file import write_supports
 from workhold.model.fixture import Fixture
 from workhold.model.support_request import SupportRequest
 from workhold.supports.listing import supports_of

@@ -10,8 +10,7 @@ import pytest
 import workhold
 from own_heights import STEM, stepped
 from workhold import Fence, FlatJaw, OpeningVise, Plate, Vise, Workpiece, design
-from workhold.files.supports.reader import read_supports
-from workhold.files.supports.writer import write_supports
+from workhold.files.supports_file import read_supports, write_supports
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.supports.faces import TouchableFace
 from workhold.supports.listing import supports_of

@@ -10,8 +10,7 @@ import pytest
 from attrs import evolve
 
 from supports.cases import NAMES, case
-from workhold.files.supports.reader import read_supports
-from workhold.files.supports.writer import write_supports
+from workhold.files.supports_file import read_supports, write_supports
 from workhold.supports.listing import supports_of
 from workhold.verification.supports import verify_supports_file
 

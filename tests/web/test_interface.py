@@ -10,9 +10,18 @@ import pytest
 from pydantic import ValidationError
 from running_server import SQUARE, RunningServer, request
 
-from workhold.web.answer_shapes import ErrorAnswer, JobAddress, JobAnswer
 from workhold.web.app import create_app
-from workhold.web.examples import EXAMPLES, FAMILY_NAME, JOB_NAME, NONE_NAME, SEARCH, ApiExample
+from workhold.web.description import (
+    EXAMPLES,
+    FAMILY_NAME,
+    JOB_NAME,
+    NONE_NAME,
+    SEARCH,
+    ApiExample,
+    ErrorAnswer,
+    JobAddress,
+    JobAnswer,
+)
 
 DESCRIPTION = create_app().openapi()
 OPERATIONS = {

@@ -45,8 +45,8 @@ __all__ = [
     "alike_orientations",
     "meets",
     "sliding_pairs_of",
-    "two_and_two_sliding_pairs",
     "three_and_one_sliding_pairs",
+    "two_and_two_sliding_pairs",
 ]
 
 Array = NDArray[np.float64]

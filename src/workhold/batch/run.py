@@ -26,7 +26,7 @@ from workhold.files.result.writer import asked_entry
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ANY_PART", "Batch", "Counting", "HeldIn", "Job", "Part", "Request", "BatchRun", "run_batch"]
+__all__ = ["ANY_PART", "Batch", "BatchRun", "Counting", "HeldIn", "Job", "Part", "Request", "run_batch"]
 
 # Stands for any part in the queries that wait for theirs.
 ANY_PART = Workpiece.from_loops("any", [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])

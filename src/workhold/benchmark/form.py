@@ -21,7 +21,7 @@ from workhold.files.result.fixture_text import fixture_lines
 from workhold.files.result.writer import head as result_head
 from workhold.model.result import Result
 
-__all__ = ["FORMAT", "FIGURE_KEYS", "SetText", "set_text", "sums_of"]
+__all__ = ["FIGURE_KEYS", "FORMAT", "SetText", "set_text", "sums_of"]
 
 FORMAT = "workhold-benchmark/1"
 # The figures that the model defines and that the points of contact alone decide.

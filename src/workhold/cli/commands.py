@@ -20,7 +20,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from workhold.errors import NO_ROOM, plain, shortened
 
-__all__ = ["PlainCommand", "PlainGroup", "forget", "option", "spread", "print_remark"]
+__all__ = ["PlainCommand", "PlainGroup", "forget", "option", "print_remark", "spread"]
 
 
 def print_remark(message: str) -> None:

@@ -171,7 +171,7 @@ def chosen_of_file(
     InputError
         For a file that cannot be used, a number that there is none of, and what the file has decided already.
     """
-    from workhold.files.supports.reader import read_supports
+    from workhold.files.supports_file import read_supports
     from workhold.model.recounted import ChosenSupports
 
     for name, key in (("--thickness", "thickness"), ("--jaw-force", "jaw_force")):

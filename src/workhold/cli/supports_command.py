@@ -166,7 +166,7 @@ def supports(
         print_remark(f"the usual sizes find no place: the pads have a radius of {pad}, the tip one of {tip}.")
     helped = with_friction(found, count, coefficient)
     if out is not None:
-        from workhold.files.supports.writer import write_supports
+        from workhold.files.supports_file import write_supports
 
         write_supports(found, out)
     if models:

@@ -19,11 +19,11 @@ __all__ = [
     "number",
     "optional_count",
     "optional_force",
-    "optional_positive_length",
     "optional_length",
+    "optional_positive_length",
     "picture_ending",
-    "positive_number",
     "pitches",
+    "positive_number",
     "whole_number",
 ]
 

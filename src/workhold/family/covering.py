@@ -27,10 +27,10 @@ from workhold.family.members import Member
 from workhold.listing.canonical_form import changes
 
 __all__ = [
+    "REQUIREMENT",
     "Cover",
     "LossTable",
     "Point",
-    "REQUIREMENT",
     "Search",
     "as_sets",
     "cover",

@@ -26,7 +26,7 @@ from workhold.errors import InputError
 from workhold.geometry.loop import near_pairs
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, carrier_intersections
 
-__all__ = ["BorderPiece", "CutCarrier", "subdivide", "border_loops", "border_pieces"]
+__all__ = ["BorderPiece", "CutCarrier", "border_loops", "border_pieces", "subdivide"]
 
 # Carriers, and points along one, that differ by less than this in mm are one.
 ONE = 1e-6

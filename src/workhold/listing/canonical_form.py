@@ -19,15 +19,15 @@ from workhold.proof.deciding import peg_integers
 __all__ = [
     "Candidates",
     "candidates_of",
+    "canonical_form",
     "changes",
     "clusters",
     "joined",
     "listed_once",
+    "most_holes",
     "packed",
     "packed_holes",
     "place_number",
-    "canonical_form",
-    "most_holes",
 ]
 
 Array = NDArray[np.float64]

@@ -28,7 +28,7 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-__all__ = ["Columns", "SortedRun", "Runs", "in_order", "key_of"]
+__all__ = ["Columns", "Runs", "SortedRun", "in_order", "key_of"]
 
 Keys = NDArray[np.bytes_]
 Columns = tuple[NDArray[Any], ...]

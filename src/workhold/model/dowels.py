@@ -42,8 +42,8 @@ __all__ = [
     "Limits",
     "fit_words",
     "jaw_plates",
-    "plate_places",
     "peg_error",
+    "plate_places",
     "refuse_limits",
 ]
 

@@ -13,8 +13,7 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.files.glb.meshes import surface_mesh
-from workhold.files.glb.writer import bodies_glb
+from workhold.files.glb import bodies_glb, surface_mesh
 from workhold.files.part.finding import read_bytes
 from workhold.model.bodies import BodySizes, FixtureBody, fixture_bodies
 from workhold.model.recounted import ChosenSupports

@@ -51,7 +51,7 @@ from workhold.search.wall_contacts import (
     seating,
 )
 
-__all__ = ["allowed_edges", "faces_are_square", "lying_on", "WallSearch", "fixtures_on", "searches_of"]
+__all__ = ["WallSearch", "allowed_edges", "faces_are_square", "fixtures_on", "lying_on", "searches_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -54,7 +54,7 @@ from workhold.seating.closing import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern, PegSubset, jaw_subsets
 
-__all__ = ["TwoContactCurves", "JawCurves"]
+__all__ = ["JawCurves", "TwoContactCurves"]
 
 Array = NDArray[np.float64]
 # Cells of the curves that are kept, of about 360 bytes with all that belongs to them; with more, all are

@@ -50,8 +50,8 @@ from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 
 __all__ = [
     "broken_restriction",
-    "faces_avoided",
     "certified_zero",
+    "faces_avoided",
     "gap_findings",
     "proven_pose",
     "written_pose",

@@ -44,7 +44,7 @@ from workhold.verification.rules.travel import (
 )
 from workhold.verification.tolerances import SAME
 
-__all__ = ["Key", "Place", "KnownFixtures", "PartRotations", "pattern_faults", "stance"]
+__all__ = ["Key", "KnownFixtures", "PartRotations", "Place", "pattern_faults", "stance"]
 
 Key = tuple[Any, ...]
 # Orientation, place in the workpiece's frame of the first peg, and how far from it each other group of pegs

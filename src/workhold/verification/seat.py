@@ -41,9 +41,9 @@ from workhold.verification.tolerances import (
 __all__ = [
     "CLAMPS",
     "LOCATORS",
+    "LocatorWrenches",
     "Push",
     "Ratio",
-    "LocatorWrenches",
     "SeatBalance",
     "closure_margin",
     "ratio_of",

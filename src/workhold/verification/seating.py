@@ -43,7 +43,7 @@ from workhold.verification.seating_contacts import (
 )
 from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
-__all__ = ["StatedSeating", "SeatingJudge"]
+__all__ = ["SeatingJudge", "StatedSeating"]
 
 Array = NDArray[np.float64]
 # Files have nine decimals, of numbers that follow from others that are rounded so.

@@ -33,12 +33,12 @@ from workhold.verification.tolerances import AGREEMENT
 
 __all__ = [
     "PRESSES",
-    "balances",
-    "touching_peg",
     "FloatOutline",
     "StatedContact",
+    "balances",
     "stop_of",
     "touching_faults",
+    "touching_peg",
     "touching_wall",
 ]
 

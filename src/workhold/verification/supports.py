@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.files.result.parts import checked_head
-from workhold.files.supports.forms import (
+from workhold.files.supports_forms import (
     FORMAT,
     ClampFiguresPart,
     TriplePart,

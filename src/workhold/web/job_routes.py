@@ -17,8 +17,8 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.result import Result
 from workhold.model.seating import length
 from workhold.statics.judging import unfit as unfit_of
-from workhold.web.answer_shapes import JobAddress, JobAnswer
 from workhold.web.answers import explanation_answer, rows_answer
+from workhold.web.description import JobAddress, JobAnswer
 from workhold.web.families import PAPERS, FamilyForm, FamilyFound, FamilyPaper
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.guard import BASES

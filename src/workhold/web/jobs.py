@@ -25,15 +25,15 @@ from workhold.seating.clamping import ByHand
 from workhold.web.answers import arrangements_answer, proof_answer
 from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
+from workhold.web.part_tasks import shape_size
 from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
 from workhold.web.selection import Selection
-from workhold.web.shapes import shape_size
 from workhold.web.tasks import Found, NamedQuery
 
 if TYPE_CHECKING:
     from workhold.files.step.part_shape import PartShape
 
-__all__ = ["ServerJob", "Jobs", "TooManyError"]
+__all__ = ["Jobs", "ServerJob", "TooManyError"]
 
 # Bytes of a random name; nobody can guess 128 bits.
 NAME_BYTES = 16

@@ -26,7 +26,7 @@ from workhold.errors import InputError, WorkholdError
 from workhold.web.tasks import work
 from workhold.web.worker import CANCEL
 
-__all__ = ["BusyError", "FailedError", "Pool", "StoppedError", "PoolTask"]
+__all__ = ["BusyError", "FailedError", "Pool", "PoolTask", "StoppedError"]
 
 # Seconds before the worker of a task is ended: after its user asked it to stop, and after it ran out of time.
 STOP_GRACE = 2.0

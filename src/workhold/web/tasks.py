@@ -7,38 +7,32 @@ needs none of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from functools import partial
 from multiprocessing.connection import Connection
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from attrs import evolve, frozen
+from attrs import frozen
 
-from workhold.errors import InputError
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.search_report import Explanation
 from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
 from workhold.web.fixture_tasks import close, find_seating, make_paper
+from workhold.web.part_tasks import builtin_part, check_part, find_shape, read_part, survey_part
 from workhold.web.program_forms import ProgramQuestion, look_at_program
-from workhold.web.shapes import find_shape
 from workhold.web.support_tasks import find_supports
 from workhold.web.worker import Order, Tasks, worker_main
 
 if TYPE_CHECKING:
-    from workhold.files.part.loaded import Loaded
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
     from workhold.web.families import FamilyForm
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm
     from workhold.web.part_forms import WorkpieceForm
 
-__all__ = ["TASKS", "Found", "NamedQuery", "Upload", "warm_up", "work"]
+__all__ = ["TASKS", "Found", "NamedQuery", "warm_up", "work"]
 
 # What a toolkit is called, and the query for it.
 NamedQuery = tuple[str, Query]
@@ -47,40 +41,6 @@ NamedQuery = tuple[str, Query]
 PAUSE = 0.1
 # Best fixtures listed when loads are asked for over all of them.
 MOST_RESISTING = 10
-# What the questions of a part's readers are called on the page, or by those who ask the server for more.
-CALLED = {
-    "unit": '"File drawn in"',
-    "drawing_unit": '"File drawn in"',
-    "layers": '"Layers"',
-    "part_number": "the part number",
-    "join_tolerance": '"Join gaps up to"',
-    "fit": '"Fit curves within"',
-    "axis": "axis",
-    "section": "the height of a section",
-    "peg_height": '"Peg height"',
-    "head_room": '"Head room"',
-    "least_band": "the least band",
-    "heights": "the toolkit's own heights",
-}
-ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
-
-
-@frozen
-class Upload:
-    """A file with a part as it came.
-
-    Parameters
-    ----------
-    content : its bytes.
-    name : what the user calls it; never used as a path.
-    most_segments : the most segments of the part.
-    options : keyword arguments of :func:`workhold.files.part.load.read_workpiece`.
-    """
-
-    content: bytes
-    name: str
-    most_segments: int
-    options: Mapping[str, Any]
 
 
 @frozen(eq=False)
@@ -177,105 +137,12 @@ def check_job(
     return queries
 
 
-def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
-    """Checks a part drawn by hand, and describes it for the page."""
-    from workhold.web.answers import part_answer
-
-    form, most_segments = payload
-    return part_answer(form.workpiece(most_segments))
-
-
 def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
     """Makes what the page that explains the method shows of a part."""
     from workhold.presenting.lesson import lesson
 
     form, most_segments = payload
     return lesson(form.workpiece(most_segments), order.cancel)
-
-
-def builtin_part(name: str, order: Order) -> dict[str, Any]:
-    """Describes a built-in part; the name is known to exist."""
-    from workhold.files.part.finding import builtin_path
-    from workhold.files.part.load import read_workpiece
-    from workhold.web.answers import part_answer
-
-    path = builtin_path(name)
-    assert path is not None
-    return part_answer(read_workpiece(path).workpiece)
-
-
-def read_part(upload: Upload, order: Order) -> dict[str, Any]:
-    """Reads the part of a file that was sent."""
-    from workhold.files.part.load import read_workpiece
-
-    with sent_file(upload) as path:
-        loaded = read_workpiece(path, **upload.options, called=CALLED)
-        return uploaded_part(upload, path, loaded)
-
-
-def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
-    """Describes what a file that was sent holds and leaves open, with the part if it can be read."""
-    from workhold.files.part.survey import survey
-    from workhold.web.survey_answers import survey_answer
-
-    with sent_file(upload) as path:
-        seen = survey(path, **upload.options, called=CALLED)
-        part = None if seen.loaded is None else uploaded_part(upload, path, seen.loaded)
-        return survey_answer(seen, part, without_path(seen.refusal, path))
-
-
-@contextmanager
-def sent_file(upload: Upload) -> Iterator[Path]:
-    """Writes a file that was sent for the duration of the block; errors are raised without its path.
-
-    Raises
-    ------
-    InputError
-        For what cannot be read.
-    """
-    ending = f".{upload.name.rpartition('.')[2].lower()}"
-    with TemporaryDirectory(prefix="workhold-") as folder:
-        path = Path(folder) / f"part{ending if ending in ENDINGS else ''}"
-        path.write_bytes(upload.content)
-        try:
-            yield path
-        except InputError as error:
-            raise InputError(without_path(str(error), path)) from error
-        except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
-            raise InputError(
-                "The file is damaged, or holds what this program cannot read: save it anew."
-            ) from error
-
-
-def without_path(sentence: str, path: Path) -> str:
-    """Removes the path of a file from a sentence, for its user knows it by another name."""
-    return sentence.replace(f"{path.name}: ", "", 1)
-
-
-def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
-    """Describes a part for the page; where it has no name it gets that of the file that was sent.
-
-    Raises
-    ------
-    InputError
-        For more segments than this server takes.
-    """
-    from workhold.web.answers import part_answer
-    from workhold.web.part_forms import checked_part
-
-    part, sent_as = loaded.workpiece, upload.name.rpartition(".")[0] or upload.name
-    checked_size = checked_part(
-        part.name,
-        part.loops,  # type: ignore[arg-type]
-        upload.most_segments,
-        part.departure,
-        part.solid,
-    )
-    name = sent_as if part.name == path.stem else part.name
-    if loaded.solids and name.endswith(f" of {path.stem}"):
-        name = name.removesuffix(path.stem) + sent_as
-    whole = evolve(checked_size, name=name or "part", outlines=part.outlines)
-    return part_answer(whole, loaded.remarks)
 
 
 def program(question: ProgramQuestion, order: Order) -> dict[str, Any]:

@@ -13,8 +13,7 @@ from attrs import evolve
 from body_examples import BLOCK, TOOLKITS, held
 from glb_reading import ReadBody, read_glb
 from workhold.errors import InputError
-from workhold.files.glb.meshes import SAGITTA
-from workhold.files.glb.writer import bodies_glb, fixture_glb
+from workhold.files.glb import SAGITTA, bodies_glb, fixture_glb
 from workhold.fixels.vise import Vise
 from workhold.geometry.segment import Arc, Line
 from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, fixture_bodies

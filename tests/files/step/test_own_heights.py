@@ -16,7 +16,7 @@ import workhold
 from glb_reading import read_glb
 from solid_truth import fixture_faults, off_region, section_points, segments_of
 from workhold import Fence, FlatJaw, InputError, Plate, Vise, design, load
-from workhold.files.glb.writer import fixture_glb
+from workhold.files.glb import fixture_glb
 from workhold.files.step.heights import standing
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import segment_rows

@@ -13,8 +13,7 @@ from files.step_bodies import assert_apart, named_bodies, volume
 from files.step_shapes import box, fused
 from workhold import Result, Vise, design, load
 from workhold.errors import InputError
-from workhold.files.supports.reader import read_supports
-from workhold.files.supports.writer import write_supports
+from workhold.files.supports_file import read_supports, write_supports
 from workhold.model.recounted import ChosenSupports
 from workhold.model.support_bodies import bodies_with_supports
 from workhold.model.support_triples import Supports

@@ -44,12 +44,12 @@ __all__ = [
     "load_entry",
     "proof_entry",
     "result_text",
-    "toolkit_fields",
     "solid_entry",
+    "toolkit_fields",
     "workpiece_entry",
-    "written",
     "write_result",
     "write_result_to",
+    "written",
 ]
 
 FORMAT = "workhold-result/1"

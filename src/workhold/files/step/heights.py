@@ -35,7 +35,7 @@ from workhold.files.step.strips import Strip, strips_of_loop
 from workhold.geometry.segment import Point
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
 
-__all__ = ["HEAD_ROOM", "HeightOutline", "LEAST_BAND", "Material", "StandingSolid"]
+__all__ = ["HEAD_ROOM", "LEAST_BAND", "HeightOutline", "Material", "StandingSolid"]
 
 # What is kept free above the pegs, and the shortest band that may be touched, both in mm.
 HEAD_ROOM, LEAST_BAND = 0.5, 1.0

@@ -1,0 +1,273 @@
+"""GLB files of fixtures: glTF 2.0 in its binary form (Khronos Group, "glTF 2.0 Specification", section 4.4).
+
+Each body is a node with its own mesh, named as the body is, below one node for the whole fixture. Bodies of
+one kind share a material. Lengths are metres, and y is up. What a viewer may do with a body stands in the
+node's ``extras``: its ``kind``, and where it slides ``opens``, the direction in which it opens.
+
+In a mesh, arcs are chords, and each slab is a closed surface of its own: two caps and the walls between them.
+A vertex stands in a mesh once for each normal that it has, so that edges are sharp and round walls smooth.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Sequence
+from math import acos, ceil, dist, pi
+from typing import Any
+
+import numpy as np
+from attrs import define, field, frozen
+from numpy.typing import NDArray
+
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Line, Point, Segment
+from workhold.geometry.triangulation import triangulate
+from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, fixture_bodies
+from workhold.model.fixture import Fixture
+from workhold.model.workpiece import Workpiece
+
+__all__ = ["SAGITTA", "Mesh", "bodies_glb", "body_mesh", "fixture_glb", "surface_mesh"]
+
+Array = NDArray[np.float64]
+Triangles = NDArray[np.int64]
+
+# How far a chord may be from its arc, in mm, and how much of a turn it may stand for.
+SAGITTA, LARGEST_TURN = 0.05, pi / 6
+# Vertices that are nearer to the one before than this in mm are one with it in single precision.
+SAME = 1e-4
+# Numbers of the specification: its name, kinds of chunks, component types, targets of buffer views.
+MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
+FLOAT, UNSIGNED_INT = 5126, 5125
+VERTICES, ELEMENTS = 34962, 34963
+
+
+@frozen(eq=False)
+class Mesh:
+    """Triangles in space.
+
+    Parameters
+    ----------
+    positions : (N, 3) float32 vertices in metres, y up, as glTF has them.
+    normals : (N, 3) float32 unit vectors outward.
+    triangles : (M, 3) uint32 numbers of vertices, counter-clockwise from outside.
+    """
+
+    positions: NDArray[np.float32]
+    normals: NDArray[np.float32]
+    triangles: NDArray[np.uint32]
+
+
+def body_mesh(body: FixtureBody, sagitta: float = SAGITTA) -> Mesh:
+    """The mesh of a body.
+
+    Parameters
+    ----------
+    sagitta : how far a chord may be from its arc, in mm.
+    """
+    positions: list[Array] = []
+    normals: list[Array] = []
+    triangles: list[Triangles] = []
+    count = 0
+    for slab in body.slabs:
+        for part in slab_parts(slab, sagitta):
+            points, outward, numbers = part
+            positions.append(points)
+            normals.append(outward)
+            triangles.append(numbers + count)
+            count += len(points)
+    return surface_mesh(np.concatenate(positions), np.concatenate(normals), np.concatenate(triangles))
+
+
+def surface_mesh(positions: Array, normals: Array, triangles: Triangles) -> Mesh:
+    """The mesh of a surface with z up.
+
+    Parameters
+    ----------
+    positions, normals : (N, 3) vertices in mm and unit vectors outward.
+    triangles : (M, 3) numbers of vertices.
+    """
+    return Mesh(as_gltf(positions / 1000.0), as_gltf(normals), triangles.astype(np.uint32))
+
+
+def as_gltf(vectors: Array) -> NDArray[np.float32]:
+    """Vectors (N, 3) with z up as glTF has them: y up, and what was y to the back."""
+    turned = np.stack([vectors[:, 0], vectors[:, 2], -vectors[:, 1]], axis=1).astype(np.float32)
+    return turned + np.float32(0.0)
+
+
+def slab_parts(slab: Slab, sagitta: float) -> list[tuple[Array, Array, Triangles]]:
+    """Positions in mm, normals and triangles of the caps and the walls of a slab."""
+    loops = [pieces_of(loop, sagitta) for loop in (slab.outer, *slab.holes)]
+    flat = np.array([piece.start for loop in loops for piece in loop])
+    caps = np.array(triangulate([[piece.start for piece in loop] for loop in loops]), dtype=np.int64)
+    parts: list[tuple[Array, Array, Triangles]] = []
+    for height, up, triangles in ((slab.low, -1.0, caps[:, ::-1]), (slab.high, 1.0, caps)):
+        points = np.column_stack([flat, np.full(len(flat), height)])
+        parts.append((points, np.tile((0.0, 0.0, up), (len(flat), 1)), triangles))
+    parts += [wall(loop, slab.low, slab.high) for loop in loops]
+    return parts
+
+
+@frozen
+class WallPiece:
+    """A flat piece of a wall seen from above, in mm, with its segment's outward normals at its ends."""
+
+    start: Point
+    end: Point
+    normals: tuple[Point, Point]
+
+
+def pieces_of(loop: Sequence[Segment], sagitta: float) -> list[WallPiece]:
+    """A closed loop of pieces over the chords of a loop's segments; those too short are left out."""
+    places: list[tuple[Point, int, float]] = []
+    for number, segment in enumerate(loop):
+        for parameter in chord_ends(segment, sagitta)[:-1]:
+            point = segment.at(parameter)
+            if not places or dist(point, places[-1][0]) > SAME:
+                places.append((point, number, parameter))
+    while dist(places[-1][0], places[0][0]) <= SAME:
+        places.pop()
+    out = []
+    for k, (start, number, first) in enumerate(places):
+        end, following, last = places[(k + 1) % len(places)]
+        segment = loop[number]
+        if following != number:
+            last = chord_ends(segment, sagitta)[-1]
+        out.append(WallPiece(start, end, (segment.normal(first), segment.normal(last))))
+    return out
+
+
+def chord_ends(segment: Segment, sagitta: float) -> list[float]:
+    """Parameters of the ends of a segment's chords in running order."""
+    if isinstance(segment, Line):
+        return [-segment.half_extent, segment.half_extent]
+    widest = min(2 * acos(max(0.0, 1.0 - sagitta / segment.radius)), LARGEST_TURN)
+    count = ceil(2 * segment.half_sweep / widest)
+    half = segment.sign * segment.half_sweep
+    return [half * (2 * k / count - 1.0) for k in range(count + 1)]
+
+
+def wall(loop: Sequence[WallPiece], low: float, high: float) -> tuple[Array, Array, Triangles]:
+    """Positions in mm, normals and triangles of the wall over a loop: two triangles over each piece."""
+    points = np.array(
+        [(*place, z) for piece in loop for place in (piece.start, piece.end) for z in (low, high)]
+    )
+    outward = np.array([(*normal, 0.0) for piece in loop for normal in piece.normals for _ in range(2)])
+    first = 4 * np.arange(len(loop))[:, None]
+    triangles = np.concatenate([first + np.array(corners) for corners in ((0, 2, 3), (0, 3, 1))])
+    return points, outward, triangles
+
+
+def fixture_glb(
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, sizes: BodySizes | None = None
+) -> bytes:
+    """The bytes of a fixture's GLB file.
+
+    Parameters
+    ----------
+    sizes : heights of the bodies; those of :meth:`BodySizes.of` if None.
+
+    Raises
+    ------
+    InputError
+        For pegs of radius 0, which have no body.
+    """
+    bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
+    return bodies_glb(bodies, f"{bodies[0].name} set-up")
+
+
+def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = None) -> bytes:
+    """The GLB file of bodies below one node of a name.
+
+    Parameters
+    ----------
+    part : the mesh of the part's own shape; of its prism if None.
+    """
+    kinds = [kind for kind in BodyKind if any(body.kind is kind for body in bodies)]
+    scene = GlbBuffer()
+    nodes: list[dict[str, Any]] = [{"name": name, "children": [k + 1 for k in range(len(bodies))]}]
+    meshes = []
+    for number, body in enumerate(bodies):
+        mesh = body_mesh(body) if part is None or body.kind is not BodyKind.PART else part
+        meshes.append({"name": body.name, "primitives": [scene.add(mesh, kinds.index(body.kind))]})
+        extras: dict[str, Any] = {"kind": str(body.kind)}
+        if body.opens is not None:
+            extras["opens"] = [body.opens[0], 0.0, 0.0 - body.opens[1]]
+        nodes.append({"name": body.name, "mesh": number, "extras": extras})
+    document = {
+        "asset": {"version": "2.0", "generator": "workhold"},
+        "scene": 0,
+        "scenes": [{"name": name, "nodes": [0]}],
+        "nodes": nodes,
+        "meshes": meshes,
+        "materials": [material(kind) for kind in kinds],
+        "accessors": scene.accessors,
+        "bufferViews": scene.views,
+        "buffers": [{"byteLength": len(scene.content)}],
+    }
+    text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode("ascii")
+    chunks = chunk(JSON_CHUNK, text, b" ") + chunk(BINARY_CHUNK, bytes(scene.content), b"\0")
+    return struct.pack("<III", MAGIC, 2, 12 + len(chunks)) + chunks
+
+
+def chunk(kind: int, content: bytes, filling: bytes) -> bytes:
+    """A chunk with its length and kind, filled up to a multiple of four bytes."""
+    content += filling * (-len(content) % 4)
+    return struct.pack("<II", len(content), kind) + content
+
+
+def material(kind: BodyKind) -> dict[str, Any]:
+    """The material of a kind of body; glTF asks for linear light."""
+    factor = [*(linear(value) for value in COLOURS[kind]), 1.0]
+    return {
+        "name": str(kind),
+        "pbrMetallicRoughness": {
+            "baseColorFactor": factor,
+            "metallicFactor": 0.1,
+            "roughnessFactor": 0.7,
+        },
+    }
+
+
+def linear(value: float) -> float:
+    """Light from a value on a screen, both from 0 to 1, to six places (IEC 61966-2-1, sRGB)."""
+    return round(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4, 6)
+
+
+@define
+class GlbBuffer:
+    """The buffer of a file, and what says where in it things are."""
+
+    content: bytearray = field(factory=bytearray)
+    views: list[dict[str, Any]] = field(factory=list)
+    accessors: list[dict[str, Any]] = field(factory=list)
+
+    def add(self, mesh: Mesh, material: int) -> dict[str, Any]:
+        """Adds a mesh, and returns its primitive."""
+        ends = {"min": mesh.positions.min(axis=0).tolist(), "max": mesh.positions.max(axis=0).tolist()}
+        attributes = {
+            "POSITION": self.accessor(mesh.positions, VERTICES, **ends),
+            "NORMAL": self.accessor(mesh.normals, VERTICES),
+        }
+        indices = self.accessor(mesh.triangles.reshape(-1), ELEMENTS)
+        return {"attributes": attributes, "indices": indices, "material": material}
+
+    def accessor(self, values: NDArray[Any], target: int, **more: list[float]) -> int:
+        """Adds an array, and returns the number of its accessor."""
+        is_vector = values.ndim == 2
+        content = values.astype("<f4" if is_vector else "<u4").tobytes()
+        self.views.append(
+            {"buffer": 0, "byteOffset": len(self.content), "byteLength": len(content), "target": target}
+        )
+        self.content += content
+        self.accessors.append(
+            {
+                "bufferView": len(self.views) - 1,
+                "componentType": FLOAT if is_vector else UNSIGNED_INT,
+                "count": len(values),
+                "type": "VEC3" if is_vector else "SCALAR",
+                **more,
+            }
+        )
+        return len(self.accessors) - 1

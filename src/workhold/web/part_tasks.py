@@ -1,0 +1,262 @@
+"""Tasks of the workers about parts: to read and describe what was sent, and to find the shape of a part.
+
+A request for a search has an outline and the heights of its faces, not a shape. So that bodies show the
+shape, the STEP file is sent once more, and what was made of it stays with the job.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from attrs import asdict, evolve, frozen
+
+from workhold.errors import InputError
+from workhold.model.workpiece import Workpiece
+from workhold.web.worker import Order
+
+if TYPE_CHECKING:
+    from workhold.files.outline.chain import Chain
+    from workhold.files.part.loaded import Loaded
+    from workhold.files.part.survey import Survey
+    from workhold.files.step.part_shape import PartShape
+    from workhold.web.part_forms import WorkpieceForm
+
+__all__ = [
+    "ShapeOrder",
+    "Upload",
+    "builtin_part",
+    "check_part",
+    "find_shape",
+    "read_part",
+    "shape_size",
+    "survey_part",
+]
+
+# Bytes of a shape that a job keeps at most.
+MOST_BYTES = 64_000_000
+# Segments of a drawing or a layer, parts, gaps and layers of a file that are sent to be shown.
+MOST_STROKES, MOST_PARTS, MOST_GAPS, MOST_LAYERS = 20_000, 200, 500, 60
+# Solids of a file that are sent to be shown.
+MOST_SOLIDS = 200
+# What the questions of a part's readers are called on the page, or by those who ask the server for more.
+CALLED = {
+    "unit": '"File drawn in"',
+    "drawing_unit": '"File drawn in"',
+    "layers": '"Layers"',
+    "part_number": "the part number",
+    "join_tolerance": '"Join gaps up to"',
+    "fit": '"Fit curves within"',
+    "axis": "axis",
+    "section": "the height of a section",
+    "peg_height": '"Peg height"',
+    "head_room": '"Head room"',
+    "least_band": "the least band",
+    "heights": "the toolkit's own heights",
+}
+ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
+
+
+@frozen
+class Upload:
+    """A file with a part as it came.
+
+    Parameters
+    ----------
+    content : its bytes.
+    name : what the user calls it; never used as a path.
+    most_segments : the most segments of the part.
+    options : keyword arguments of :func:`workhold.files.part.load.read_workpiece`.
+    """
+
+    content: bytes
+    name: str
+    most_segments: int
+    options: Mapping[str, Any]
+
+
+def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
+    """Checks a part drawn by hand, and describes it for the page."""
+    from workhold.web.answers import part_answer
+
+    form, most_segments = payload
+    return part_answer(form.workpiece(most_segments))
+
+
+def builtin_part(name: str, order: Order) -> dict[str, Any]:
+    """Describes a built-in part; the name is known to exist."""
+    from workhold.files.part.finding import builtin_path
+    from workhold.files.part.load import read_workpiece
+    from workhold.web.answers import part_answer
+
+    path = builtin_path(name)
+    assert path is not None
+    return part_answer(read_workpiece(path).workpiece)
+
+
+def read_part(upload: Upload, order: Order) -> dict[str, Any]:
+    """Reads the part of a file that was sent."""
+    from workhold.files.part.load import read_workpiece
+
+    with sent_file(upload) as path:
+        loaded = read_workpiece(path, **upload.options, called=CALLED)
+        return uploaded_part(upload, path, loaded)
+
+
+def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
+    """Describes what a file that was sent holds and leaves open, with the part if it can be read."""
+    from workhold.files.part.survey import survey
+
+    with sent_file(upload) as path:
+        seen = survey(path, **upload.options, called=CALLED)
+        part = None if seen.loaded is None else uploaded_part(upload, path, seen.loaded)
+        return survey_answer(seen, part, without_path(seen.refusal, path))
+
+
+@contextmanager
+def sent_file(upload: Upload) -> Iterator[Path]:
+    """Writes a file that was sent for the duration of the block; errors are raised without its path.
+
+    Raises
+    ------
+    InputError
+        For what cannot be read.
+    """
+    ending = f".{upload.name.rpartition('.')[2].lower()}"
+    with TemporaryDirectory(prefix="workhold-") as folder:
+        path = Path(folder) / f"part{ending if ending in ENDINGS else ''}"
+        path.write_bytes(upload.content)
+        try:
+            yield path
+        except InputError as error:
+            raise InputError(without_path(str(error), path)) from error
+        except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
+            raise InputError(
+                "The file is damaged, or holds what this program cannot read: save it anew."
+            ) from error
+
+
+def without_path(sentence: str, path: Path) -> str:
+    """Removes the path of a file from a sentence, for its user knows it by another name."""
+    return sentence.replace(f"{path.name}: ", "", 1)
+
+
+def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
+    """Describes a part for the page; where it has no name it gets that of the file that was sent.
+
+    Raises
+    ------
+    InputError
+        For more segments than this server takes.
+    """
+    from workhold.web.answers import part_answer
+    from workhold.web.part_forms import checked_part
+
+    part, sent_as = loaded.workpiece, upload.name.rpartition(".")[0] or upload.name
+    checked_size = checked_part(
+        part.name,
+        part.loops,  # type: ignore[arg-type]
+        upload.most_segments,
+        part.departure,
+        part.solid,
+    )
+    name = sent_as if part.name == path.stem else part.name
+    if loaded.solids and name.endswith(f" of {path.stem}"):
+        name = name.removesuffix(path.stem) + sent_as
+    whole = evolve(checked_size, name=name or "part", outlines=part.outlines)
+    return part_answer(whole, loaded.remarks)
+
+
+@frozen(eq=False)
+class ShapeOrder:
+    """Which part to find in which file.
+
+    Parameters
+    ----------
+    content : of the STEP file.
+    name : what the user calls it.
+    workpiece : whose outline one of its solids gives.
+    """
+
+    content: bytes
+    name: str
+    workpiece: Workpiece
+
+
+def find_shape(payload: ShapeOrder, order: Order) -> PartShape:
+    """Finds the solid that gives the outline of a part, and makes a mesh of it.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read, one of another part, and a shape too large to keep.
+    """
+    from workhold.files.step.part_shape import part_shape
+
+    try:
+        shape = part_shape(payload.content, payload.workpiece)
+        if shape_size(shape) > MOST_BYTES:
+            raise InputError(
+                f"the shape of the part takes more than {MOST_BYTES // 1_000_000} MB to show: leave out "
+                "threads, letters and other small things when you save it."
+            )
+    except InputError as error:
+        raise InputError(f"{payload.name or 'the file'}: {error}") from error
+    return shape
+
+
+def shape_size(shape: PartShape | None) -> int:
+    """Returns about how many bytes a shape takes."""
+    if shape is None:
+        return 0
+    return shape.positions.nbytes + shape.normals.nbytes + shape.triangles.nbytes + len(shape.kept)
+
+
+def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
+    """Describes chains as lists of x, y in mm and bulge, as many as are shown."""
+    strokes, room = [], MOST_STROKES
+    for chain in chains:
+        room -= len(chain.bulges)
+        if room < 0:
+            break
+        strokes.append(
+            [[*point, bulge] for point, bulge in zip(chain.points, (*chain.bulges, 0.0), strict=True)]
+        )
+    return strokes
+
+
+def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
+    """Describes what a file holds and leaves open; strokes and outlines are chains of x, y in mm, bulge.
+
+    ``heights`` is what other heights of the pegs offer of a solid, and ``solids`` are those of the file with
+    their names.
+    """
+    from workhold.web.answers import place_in
+
+    return {
+        "part": part,
+        "error": refusal or None,
+        "place": place_in(refusal) if refusal else None,
+        "asked": list(seen.asked),
+        "size": None if seen.size is None else list(seen.size),
+        "strokes": strokes_answer(seen.chains),
+        "layers": [
+            {"name": one.name, "hidden": one.hidden, "strokes": strokes_answer(one.chains)}
+            for one in seen.layers[:MOST_LAYERS]
+        ],
+        "parts": [
+            {
+                "number": one.number,
+                "loops": [loop.vertices.tolist() for loop in one.loops],
+                "bounds": list(one.bounds),
+                "holes": len(one.loops) - 1,
+            }
+            for one in seen.parts[:MOST_PARTS]
+        ],
+        "gaps": list(seen.gaps[:MOST_GAPS]),
+        "heights": [] if seen.loaded is None else [asdict(row) for row in seen.loaded.heights],
+        "solids": [asdict(solid) for solid in seen.solids[:MOST_SOLIDS]],
+    }
