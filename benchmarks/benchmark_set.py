@@ -16,7 +16,7 @@ from typing import Any
 
 from benchmark_parts import BenchmarkPart, benchmark_parts
 from benchmark_sets import AskedSet, asked_sets
-from workhold.benchmark.form import set_text, sums_of
+from workhold.benchmark.catalogue import set_text, sums_of
 from workhold.fixels.kinds import toolkit_of
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece

@@ -130,7 +130,7 @@ DELEGATES = {
     "to_build123d": "workhold.presenting.cad",
     "to_cadquery": "workhold.presenting.cad",
     "to_pandas": "workhold.presenting.data",
-    "why_none": "workhold.presenting.why_none",
+    "why_none": "workhold.presenting.further_html",
     "workpiece_html": "workhold.presenting.notebook",
     "workpiece_picture": "workhold.presenting.papers",
 }

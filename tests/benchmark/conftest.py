@@ -13,8 +13,7 @@ from typing import Any
 import pytest
 
 import workhold
-from workhold.benchmark.catalogue import set_named
-from workhold.benchmark.form import file_text
+from workhold.benchmark.catalogue import file_text, set_named
 from workhold.benchmark.making import made_list
 
 Content = dict[str, Any]

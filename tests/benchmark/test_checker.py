@@ -14,8 +14,7 @@ import pytest
 
 import workhold
 from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
-from workhold.benchmark.catalogue import manifest
-from workhold.benchmark.form import file_text
+from workhold.benchmark.catalogue import file_text, manifest
 
 Content = Callable[[str], dict[str, Any]]
 TRUE = (

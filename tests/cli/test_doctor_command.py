@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from workhold.cli import doctor_command
+from workhold.cli import installed_commands
 from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.kernels.base import compiling
@@ -45,8 +45,8 @@ def installation(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(metadata, "requires", lambda _: REQUIRES)
     monkeypatch.setattr(metadata, "version", version)
-    monkeypatch.setattr(doctor_command, "find_spec", lambda name: name if name in MODULES else None)
-    monkeypatch.setattr(doctor_command, "step_fault", lambda: "apt install libgl1")
+    monkeypatch.setattr(installed_commands, "find_spec", lambda name: name if name in MODULES else None)
+    monkeypatch.setattr(installed_commands, "step_fault", lambda: "apt install libgl1")
 
 
 def findings() -> dict[str, tuple[str, str | None]]:
@@ -80,10 +80,10 @@ def test_the_report_is_read_by_people(installation: None) -> None:
 
 def test_what_is_missing_is_red_on_a_terminal(installation: None) -> None:
     """And nothing else is."""
-    shown = doctor_command.table(
+    shown = installed_commands.table(
         [
-            doctor_command.InstallationRow("a", "1.0", "x"),
-            doctor_command.InstallationRow("b", "missing", "y", "pip install b"),
+            installed_commands.InstallationRow("a", "1.0", "x"),
+            installed_commands.InstallationRow("b", "missing", "y", "pip install b"),
         ]
     )
     assert shown.red == {1}
@@ -108,7 +108,7 @@ def test_the_python_that_is_looked_at_is_named() -> None:
 
 
 def test_nothing_is_to_add_where_all_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doctor_command, "extras", lambda is_built: iter(()))
+    monkeypatch.setattr(installed_commands, "extras", lambda is_built: iter(()))
     monkeypatch.setattr(compiling, "LIBRARY", object())
     assert "To add" not in CliRunner().invoke(app, ["doctor"]).stdout
 
@@ -141,4 +141,4 @@ def test_a_copy_that_was_not_installed_says_so(installation: None, monkeypatch: 
 def test_what_is_said_of_the_extras_is_what_the_package_asks_for() -> None:
     """Every extra for users has a line; those for developers and the manual have none."""
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))
-    assert set(doctor_command.USES) == set(project["project"]["optional-dependencies"]) - {"dev", "docs"}
+    assert set(installed_commands.USES) == set(project["project"]["optional-dependencies"]) - {"dev", "docs"}

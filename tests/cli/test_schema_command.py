@@ -14,7 +14,7 @@ import pytest
 
 import workhold
 from fakes import fake_proof, fake_result
-from workhold.cli.schema_command import SCHEMAS, schema_of
+from workhold.cli.installed_commands import SCHEMAS, schema_of
 from workhold.errors import InputError
 from workhold.files.loads_file import read_loads
 from workhold.files.result.writer import result_text

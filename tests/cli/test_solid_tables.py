@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from workhold import Workpiece
-from workhold.cli.solid_tables import other_heights
+from workhold.cli.tables import other_heights
 from workhold.model.solid import HeightRow, SolidOutline
 from workhold.units import MILLIMETRE, unit_named
 

@@ -8,7 +8,7 @@ from random import Random
 import numpy as np
 import pytest
 
-from workhold.drawing.apart import moved_apart
+from workhold.drawing.side_drawing import moved_apart
 
 
 @pytest.mark.parametrize("seed", range(40))

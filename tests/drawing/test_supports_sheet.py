@@ -11,11 +11,11 @@ from svg_reading import by_class, texts, to_model
 
 from body_examples import BLOCK, TOOLKITS
 from workhold import Workpiece, design
+from workhold.drawing.hardware_table import hardware_of
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.supports_block import counting_words
-from workhold.drawing.two_sides import side_up_words
+from workhold.drawing.sheet_blocks import side_up_words
+from workhold.drawing.supports_drawn import counting_words
 from workhold.model.first_side import FirstSide
-from workhold.model.hardware import hardware_of
 from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import part_zero
 from workhold.model.solid import SolidOutline

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workhold.model.cutting_data import CuttingDirection
 from workhold.model.cutting_forces import CuttingForces
-from workhold.model.cutting_tool import Cylinder, Tool
+from workhold.model.cutting_tool import CuttingDirection, Cylinder, Tool
 from workhold.model.moves import Moves, along
 from workhold.model.program import Program
 from workhold.statics import path_forces as module

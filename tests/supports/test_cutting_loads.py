@@ -9,9 +9,8 @@ import pytest
 from attrs import evolve
 
 from workhold import Query, Vise, Workpiece, answer
-from workhold.model.cutting_data import CuttingData
 from workhold.model.cutting_forces import forces_on
-from workhold.model.cutting_tool import Cylinder, Tool
+from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
 from workhold.model.support_request import SpatialLoad

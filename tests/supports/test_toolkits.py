@@ -14,7 +14,7 @@ from workhold.files.supports_file import read_supports, write_supports
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.supports.faces import TouchableFace
 from workhold.supports.listing import supports_of
-from workhold.verification.support_faces import room_on
+from workhold.verification.support_listing import room_on
 from workhold.verification.supports import verify_supports_file
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])

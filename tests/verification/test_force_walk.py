@@ -19,8 +19,8 @@ from workhold import Query, Result, answer
 from workhold.files.result.columns import write_columns
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
-from workhold.model.cutting_data import CuttingData, CuttingDirection
 from workhold.model.cutting_forces import forces_on
+from workhold.model.cutting_tool import CuttingData, CuttingDirection
 from workhold.model.program import Program
 from workhold.statics.path_pieces import path_forces
 from workhold.verification.force_walk import ForceWalk

@@ -14,12 +14,14 @@ from workhold.benchmark.catalogue import (
     SetEntry,
     data_bytes,
     data_names,
+    file_text,
     parts_of,
     query_of,
     set_named,
+    set_text,
+    sums_of,
 )
 from workhold.benchmark.entry import Entry, entered_fixture
-from workhold.benchmark.form import file_text, set_text, sums_of
 from workhold.benchmark.matching import Comparison, Places, compared
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, write_bytes

@@ -241,9 +241,8 @@ def features(
     loaded = reading.load(part)
     workpiece = loaded.workpiece
 
-    from workhold.cli.solid_tables import band_table, height_table
     from workhold.cli.table import print_tables
-    from workhold.cli.tables import face_table, jumps_sentence, plural
+    from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence, plural
 
     if parts:
         list_parts(loaded, shown_unit, picture, json_)
@@ -314,8 +313,8 @@ def list_solids(part: str, unit: Unit, as_json: bool) -> None:
     InputError
         For a file that cannot be read.
     """
-    from workhold.cli.solid_tables import solid_table
     from workhold.cli.table import print_tables
+    from workhold.cli.tables import solid_table
     from workhold.files.part.loaded import solids_in
 
     solids = solids_in(part)

@@ -12,7 +12,7 @@ from workhold.cli.values import choice, in_unit, optional_force, optional_positi
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.model.cutting_data import CuttingData
+    from workhold.model.cutting_tool import CuttingData
 
 __all__ = [
     "CUTTING_DIRECTION",
@@ -75,7 +75,7 @@ def asked_cutting(typed: Any, unit: Unit) -> CuttingData:
     InputError
         For words that mean nothing, and what cannot be.
     """
-    from workhold.model.cutting_data import CuttingData
+    from workhold.model.cutting_tool import CuttingData
 
     given = {
         "cutting_force": no_force(typed.cutting_force),

@@ -198,8 +198,8 @@ def design(
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":
-        from workhold.cli.solid_tables import other_heights
         from workhold.cli.table import print_tables
+        from workhold.cli.tables import other_heights
 
         stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
         explain_none(result, workers, folder, shown, stream)

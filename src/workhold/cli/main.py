@@ -100,6 +100,7 @@ COMMANDS = {
 SHARED_MODULES = {
     "catalogue_commands": ("features", "parts", "toolkits"),
     "fixture_commands": ("seat", "show"),
+    "installed_commands": ("doctor", "schema"),
     "result_commands": ("convert", "verify"),
     "serving_commands": ("completion", "mcp", "serve"),
     "workshop_commands": ("copies", "drill"),

@@ -42,15 +42,16 @@ def size_notes(
     found, usual : of each fixture in order; those that are listed, and those of the usual sizes.
     bare : ranks of those without supports among the listed ones.
     """
-    from workhold.supports.words import why_none
+    from workhold.supports.words import why_no_set
 
     pad, tip = unit.text(found[0].request.pad_radius), unit.text(found[0].request.tip_radius)
     if len(bare) == len(found):
         larger = unit.text(usual[0].request.pad_radius)
         sizes = f"pads of radius {pad}" if found is usual else f"pads of radius {larger} down to {pad}"
+        which = "usual" if found is usual else "least"
         return [
             f"Under {runs_of(bare)} no three hold the part, with {sizes}.",
-            f"Under {bare[0]}, with the {'usual' if found is usual else 'least'}: {why_none(found[0], unit)}",
+            f"Under {bare[0]}, with the {which}: {why_no_set(found[0], unit)}",
         ]
     notes = [
         f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
@@ -58,9 +59,11 @@ def size_notes(
     if bare:
         notes.append(f"Under {runs_of(bare)} no three hold the part.")
     if found is not usual:
-        notes.append(f"Larger ones hold the part under none of these, so under 1: {why_none(usual[0], unit)}")
+        notes.append(
+            f"Larger ones hold the part under none of these, so under 1: {why_no_set(usual[0], unit)}"
+        )
     elif bare:
-        notes.append(f"Under {bare[0]}: {why_none(found[bare[0] - 1], unit)}")
+        notes.append(f"Under {bare[0]}: {why_no_set(found[bare[0] - 1], unit)}")
     return notes
 
 

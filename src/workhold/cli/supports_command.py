@@ -174,9 +174,9 @@ def supports(
         from workhold.presenting.assembly import Assembly, shape_in
 
         if not found.triples:
-            from workhold.supports.words import why_none
+            from workhold.supports.words import why_no_set
 
-            why = why_none(found, shown)
+            why = why_no_set(found, shown)
             raise InputError(f"{why[:1].lower()}{why[1:]}")
         best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
         assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
@@ -278,9 +278,9 @@ def report(
         print_json(fixture=rank, jaw_force=found.jaw_force, **counts, triples=rows, written=written, **more)
         return
     if not found.triples:
-        from workhold.supports.words import why_none
+        from workhold.supports.words import why_no_set
 
-        print_tables(f"Fixture {rank}: {why_none(found, unit)}")
+        print_tables(f"Fixture {rank}: {why_no_set(found, unit)}")
     else:
         print_sets(found, listed, result, rank, unit)
         if friction is not None:

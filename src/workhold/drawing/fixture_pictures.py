@@ -20,7 +20,7 @@ from workhold.drawing.panel import (
 )
 from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
-from workhold.drawing.program_block import write_path
+from workhold.drawing.program_picture import write_path
 from workhold.drawing.scene import (
     GREY,
     LANDSCAPE,

@@ -1,4 +1,4 @@
-"""Supports and the clamp on top on the plan of a set-up: their signs, the triangle, and their names."""
+"""Supports and the clamp on top: on the plan of a set-up with their names, and in blocks of a setup sheet."""
 
 from __future__ import annotations
 
@@ -9,17 +9,40 @@ from math import cos, pi, sin
 from attrs import frozen
 
 from workhold.drawing.annotation import Label, LabelPlacer, Place, around, leader_end
+from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import Box, Scene, View, text_width
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, fact_or_field, heading
+from workhold.errors import listed
 from workhold.geometry.segment import Point
 from workhold.model.recounted import ChosenSupports
+from workhold.units import Unit
 
-__all__ = ["SUPPORT", "PlannedSupports", "draw_pad", "draw_supports", "draw_tip", "draw_triangle", "size_of"]
+__all__ = [
+    "PlannedSupports",
+    "SUPPORT",
+    "draw_pad",
+    "draw_supports",
+    "draw_tip",
+    "draw_triangle",
+    "holding_up_words",
+    "size_of",
+    "support_steps",
+    "tipping_words",
+    "write_heights",
+    "write_supports",
+]
 
 SUPPORT = "#1b6e3c"
 # A sign is at least so large, page units.
 SMALLEST = 6.0
 NAME, HIGH = 13.0, 19.0
 TOP_NAME = "clamp on top"
+# Where no load says how much clamp force is wanted, the margin is stated for so many units of force.
+ROUND_FORCE = 100.0
+FROM_THE_SIDE = (
+    "What begins above the plane on which the part lies comes in from the side once the part is down: "
+    "nothing promises that the part passes it on its way."
+)
 
 
 @frozen
@@ -144,3 +167,160 @@ def draw_tip(scene: Scene, at: Point, radius: float = 7.0) -> None:
     reach = radius * cos(pi / 4)
     for way in (1, -1):
         scene.line([(at[0] - reach, at[1] - way * reach), (at[0] + reach, at[1] + way * reach)], SUPPORT, 1.8)
+
+
+def write_supports(column: TextColumn, sheet: Sheet) -> None:
+    """Writes where supports stand, where the clamp presses, with what force, and what that resists."""
+    chosen, lengths = sheet.details.supports, sheet.lengths
+    assert chosen is not None
+    request, clamp = chosen.supports.request, chosen.clamp
+    heading(column, "Supports and the clamp on top")
+    column.fact("supports in", listed([pad.hole for pad in chosen.pads]), bold=True)
+    column.fact("round pads", f"Ø {lengths.short(2 * request.pad_radius)}", bold=True)
+    at = [place - zero for place, zero in zip(clamp.at, sheet.zero.point, strict=True)]
+    column.fact("clamp presses at", f"X {lengths.number(at[0])}, Y {lengths.words(at[1])}", bold=True)
+    there = chosen.recounted.fixture.pose.apply(*clamp.at)
+    column.fact(
+        f"from {sheet.datum.point}",
+        f"x {lengths.number(float(there[0]))}, y {lengths.words(float(there[1]))}",
+    )
+    if sheet.heights is not None and sheet.heights.clamped_height is not None:
+        column.fact("at the height", lengths.words(sheet.heights.clamped_height), bold=True)
+    column.fact("its round tip", f"Ø {lengths.short(2 * request.tip_radius)}", bold=True)
+    write_forces(column, sheet, chosen)
+    column.fact("tipping arm", lengths.words(clamp.arm))
+    column.paragraph(f"{tipping_words(chosen, lengths.unit)} {holding_up_words(sheet, chosen)}", NOTE)
+    for sentence in counting_words(sheet, chosen):
+        column.paragraph(sentence, NOTE)
+
+
+def write_forces(column: TextColumn, sheet: Sheet, chosen: ChosenSupports) -> None:
+    """Writes the force wanted of the clamp on top and the largest on a support, or a line to write it on."""
+    supports, clamp, unit = chosen.supports, chosen.clamp, sheet.lengths.unit
+    noun = sheet.toolkit.moving.noun
+    if supports.loads:
+        wanted = f"at least {unit.force_above(clamp.clamp_needed)} {unit.force}"
+        column.fact("clamp force wanted", wanted, bold=True)
+        column.fact(
+            "largest force on a support",
+            f"{unit.force_above(clamp.support_force or 0.0)} {unit.force}",
+            bold=True,
+        )
+        column.paragraph(
+            f"Under the loads, at a {noun} force of {unit.force_words(supports.jaw_force)}, without "
+            "friction.",
+            NOTE,
+        )
+        return
+    if clamp.lift > 0 and sheet.details.jaw_force is not None:
+        force = f"at least {unit.force_above(clamp.lift * sheet.details.jaw_force)} {unit.force}"
+        column.fact("clamp force wanted", force, bold=True)
+    else:
+        fact_or_field(column, "clamp force wanted", None)
+    if clamp.lift > 0:
+        column.paragraph(
+            f"The {noun}s may lift the part off a support by where they press: at least {clamp.lift:.2f} "
+            "times their force on top holds it.",
+            NOTE,
+        )
+
+
+def tipping_words(chosen: ChosenSupports, unit: Unit) -> str:
+    """How large a moment the clamp on top resists, a sentence.
+
+    The moment that tips the part is the clamp's force times the distance from the triangle's nearest side.
+    """
+    force = chosen.clamp.clamp_needed if chosen.supports.loads else 0.0
+    what = "that force" if force > 0 else f"each {ROUND_FORCE:.0f} {unit.force}"
+    force = force if force > 0 else ROUND_FORCE * unit.newtons
+    return (
+        f"With {what} the clamp alone holds up to {moment_words(force * chosen.clamp.arm, unit)} of tipping."
+    )
+
+
+def moment_words(moment: float, unit: Unit) -> str:
+    """A moment in N mm as whole N mm, or in lbf in."""
+    return f"{moment:.0f} N mm" if unit.newtons == 1 else unit.moment_words(moment)
+
+
+def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
+    """Whether the part stands before it is clamped, a sentence."""
+    standing = chosen.triple.standing
+    if standing > 0:
+        inside = sheet.lengths.words(standing)
+        return f"Unclamped it stands on the three: the centre of its area is {inside} inside their triangle."
+    return "Unclamped it does not stand on the three: hold it down until it is clamped."
+
+
+def counting_words(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
+    """What to know where holes have other names than in the list of fixtures."""
+    recounted, sentences = chosen.recounted, list[str]()
+    if recounted.is_moved:
+        ways = [
+            f"{abs(count)} {noun}{'' if abs(count) == 1 else 's'} further {way[count < 0]}"
+            for count, noun, way in (
+                (recounted.columns, "column", ("right", "left")),
+                (recounted.rows, "row", ("up", "down")),
+            )
+            if count
+        ]
+        sentences.append(
+            f"So that supports have holes, all stands {' and '.join(ways)} than the fixture was listed."
+        )
+    travelled = recounted.fixture.jaw_separation - chosen.supports.fixture.jaw_separation
+    if sheet.toolkit.moving.has_lattice and abs(travelled) > 1e-6:
+        sentences.append(
+            f"Supports stand between the pegs, so the opening is {sheet.lengths.words(abs(travelled))} "
+            f"{'wider' if travelled > 0 else 'narrower'} than the fixture was listed with."
+        )
+    return sentences
+
+
+def support_steps(sheet: Sheet, steps: list[str]) -> list[str]:
+    """The steps of setting up with those about supports among them; the steps themselves without supports."""
+    chosen = sheet.details.supports
+    if chosen is None:
+        return steps
+    lengths, unit = sheet.lengths, sheet.lengths.unit
+    x, y = (
+        lengths.number(place - zero) for place, zero in zip(chosen.clamp.at, sheet.zero.point, strict=True)
+    )
+    force = (
+        f" with at least {unit.force_above(chosen.clamp.clamp_needed)} {unit.force}"
+        if chosen.supports.loads
+        else ""
+    )
+    put = f"{steps[0]} Put supports in {listed([pad.hole for pad in chosen.pads])}."
+    where = f"X {x}, Y {y} {lengths.sign}"
+    press = f"Then press the part down at {where}{force}, inside the triangle of the supports."
+    return [put, *steps[1:], press]
+
+
+def write_heights(column: TextColumn, sheet: Sheet) -> None:
+    """Writes all heights, and at which ones each peg presses."""
+    heights, lengths = sheet.heights, sheet.lengths
+    assert heights is not None
+    noun = sheet.toolkit.plates[0].noun
+    heading(column, "Heights")
+    column.fact("height of the part", lengths.words(heights.thickness), bold=True)
+    column.fact(f"top of the pegs{heights.sure('peg_top')}", lengths.words(heights.peg_top), bold=True)
+    own = {one.elements: one.heights for one in sheet.toolkit.carriers if one.heights is not None}
+    for elements, (low, high) in own.items():
+        column.fact(f"{elements}, from and to", f"{lengths.number(low)}, {lengths.words(high)}", bold=True)
+    if any(low > 0 for low, _ in own.values()):
+        column.paragraph(FROM_THE_SIDE, NOTE)
+    if heights.head_room is not None:
+        column.fact("head room above the pegs", lengths.words(heights.head_room))
+    if heights.supported_by:
+        column.fact(
+            f"height of the supports{heights.sure('supported_by')}",
+            lengths.words(heights.supported_by),
+            bold=True,
+        )
+        column.fact(f"pegs above the {noun}", lengths.words(heights.above_plate), bold=True)
+    rows = [
+        [peg.hole, *((lengths.number(end) for end in band) if band else ("?", "?"))]
+        for peg, band in zip(sheet.fixture.pegs, heights.bands, strict=True)
+    ]
+    column.y += 2
+    column.table(["presses between", f"from {lengths.sign}", f"to {lengths.sign}"], rows, BODY)

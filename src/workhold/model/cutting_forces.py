@@ -28,8 +28,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.limits import real, refuse_strong
-from workhold.model.cutting_data import ANY, DIRECTIONS, CuttingData, CuttingDirection
-from workhold.model.cutting_tool import Tool
+from workhold.model.cutting_tool import ANY, DIRECTIONS, CuttingData, CuttingDirection, Tool
 from workhold.model.moves import Moves, floats
 
 __all__ = ["CuttingForces", "forces_on"]

@@ -1,18 +1,142 @@
-"""A tool of the machine as a stack of upright cylinders."""
+"""A tool of the machine as a stack of upright cylinders, and what is said of how it cuts.
+
+Its force is said, or what the force follows from, by the tool itself or for the whole job.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from math import inf, isfinite
-from typing import Any
+from typing import Any, Literal
 
-from attrs import field, frozen
+from attrs import asdict, field, frozen
+from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long
-from workhold.model.cutting_data import CuttingData
+from workhold.limits import real, refuse_long, refuse_strong
+from workhold.model.materials import CutMaterial, material_named
 
-__all__ = ["Cylinder", "Tool"]
+__all__ = ["ANY", "CuttingData", "CuttingDirection", "Cylinder", "DIRECTIONS", "FEED", "Tool"]
+
+CuttingDirection = Literal["any", "feed"]
+ANY: CuttingDirection = "any"
+FEED: CuttingDirection = "feed"
+DIRECTIONS = (ANY, FEED)
+# What the force follows from, of which one is given.
+FORCES = ("cutting_force", "power", "material")
+MOST_TEETH, MOST_POWER = 1000, 1e5
+
+
+def material_of(value: str | CutMaterial) -> CutMaterial:
+    """A material, or the one of a name."""
+    return value if isinstance(value, CutMaterial) else material_named(str(value))
+
+
+def direction_of(value: Any) -> CuttingDirection:
+    """The directions in which a force may act, as a word.
+
+    Raises
+    ------
+    InputError
+        For any other word.
+    """
+    for word in DIRECTIONS:
+        if word == value:
+            return word
+    raise InputError(f"the direction '{str(value)[:20]}' of cutting forces is not known: give any or feed.")
+
+
+@frozen
+class CuttingData:
+    """What is known of how a tool, or all tools of a job, cut; None for what is not.
+
+    Parameters
+    ----------
+    cutting_force : at the periphery of the tool, in N; 0 where it hardly cuts.
+    power : at the spindle, in kW, from which the force follows.
+    material : that is cut, or its name, for the force of Kienzle.
+    teeth : how many there are.
+    cut_depth, cut_width : of the cut along the tool's axis and across the feed, in mm.
+    point_angle : of a drill, in degrees.
+    helix_angle : of the flutes, in degrees; a helix pulls the part up.
+    direction : ``any`` in the plane, or within 60 degrees of against the ``feed``.
+
+    Raises
+    ------
+    InputError
+        For numbers that cannot be, and more than one of force, power and material.
+
+    Examples
+    --------
+    >>> CuttingData(material="steel", teeth=4).over(CuttingData(power=3, cut_depth=5)).cut_depth
+    5.0
+    """
+
+    cutting_force: float | None = field(default=None, converter=optional(real))
+    power: float | None = field(default=None, converter=optional(real))
+    material: CutMaterial | None = field(default=None, converter=optional(material_of))
+    teeth: float | None = field(default=None, converter=optional(real))
+    cut_depth: float | None = field(default=None, converter=optional(real))
+    cut_width: float | None = field(default=None, converter=optional(real))
+    point_angle: float | None = field(default=None, converter=optional(real))
+    helix_angle: float | None = field(default=None, converter=optional(real))
+    direction: CuttingDirection | None = field(default=None, converter=optional(direction_of))
+
+    def __attrs_post_init__(self) -> None:
+        given = [name for name in FORCES if getattr(self, name) is not None]
+        if len(given) > 1:
+            raise InputError(f"{given[0]} and {given[1]} are two ways to the same force: give one of them.")
+        for name, low, high, remedy in (
+            ("cutting_force", 0.0, None, "a force of 0 or more, in N"),
+            ("power", 0.0, MOST_POWER, "kW above 0"),
+            ("teeth", 1.0, MOST_TEETH, "a whole number from 1"),
+            ("cut_depth", 0.0, None, "a length above 0"),
+            ("cut_width", 0.0, None, "a length above 0"),
+            ("point_angle", 0.0, 180.0, "degrees above 0 and up to 180"),
+            ("helix_angle", 0.0, 89.0, "degrees from 0 to 89"),
+        ):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            least = value >= low if name in ("cutting_force", "teeth", "helix_angle") else value > low
+            whole = name != "teeth" or value == int(value)
+            if not (isfinite(value) and least and (high is None or value <= high) and whole):
+                raise InputError(f"{name} {value:g} cannot be used: give {remedy}.")
+        refuse_strong("cutting_force", self.cutting_force or 0.0)
+        for name in ("cut_depth", "cut_width"):
+            refuse_long(name, getattr(self, name) or 0.0)
+
+    @classmethod
+    def of(cls, value: CuttingData | Mapping[str, Any] | None) -> CuttingData:
+        """Cutting data, or those of fields by their names; None is none of them.
+
+        Raises
+        ------
+        InputError
+            For a name that there is none of, and as the class.
+        """
+        if value is None or isinstance(value, CuttingData):
+            return value or cls()
+        for name in value:
+            if name not in asdict(cls()):
+                raise InputError(f"cutting has no '{str(name)[:40]}': give {', '.join(asdict(cls()))}.")
+        return cls(**value)
+
+    @property
+    def asks_for_forces(self) -> bool:
+        """Whether anything is given from which a force follows."""
+        return any(getattr(self, name) is not None for name in FORCES)
+
+    def over(self, other: CuttingData) -> CuttingData:
+        """Completes these data by another's; where these have a force, that of the other does not count."""
+        mine = {name: getattr(self, name) for name in FIELDS}
+        theirs = {name: getattr(other, name) for name in FIELDS}
+        if self.asks_for_forces:
+            theirs |= dict.fromkeys(FORCES)
+        return CuttingData(**{name: theirs[name] if mine[name] is None else mine[name] for name in FIELDS})
+
+
+FIELDS = tuple(asdict(CuttingData()))
 
 
 def cylinders_of(values: Iterable[Cylinder]) -> tuple[Cylinder, ...]:

@@ -23,17 +23,16 @@ from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.geometry.segment import Box
 from workhold.limits import real, refuse_long
-from workhold.model.cutting_data import CuttingData
 from workhold.model.cutting_forces import CuttingForces
-from workhold.model.cutting_tool import Cylinder, Tool
+from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import Moves, along, shares_between
-from workhold.model.raw_block import beside_block
 from workhold.model.swept_piece import (
     CUT,
     RAPID,
     MoveKind,
     PathVertex,
     SweptPiece,
+    beside_block,
     box_path,
     moves_of,
     packed_piece,
@@ -169,7 +168,7 @@ class Program:
         rapid : whether rapid moves are straight.
         unit : ``mm`` or ``inch`` where the program does not say.
         cutting : how tools cut of which the table does not say it, for the forces on the part:
-            :class:`workhold.model.cutting_data.CuttingData`, or its fields by name.
+            :class:`workhold.model.cutting_tool.CuttingData`, or its fields by name.
 
         Raises
         ------

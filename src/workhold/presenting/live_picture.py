@@ -1,5 +1,7 @@
 """One fixture as a picture that can be pushed and closed: what moves stands in groups of its own.
 
+Supports under it, and the clamp on top, are drawn where they are asked for.
+
 Glossary
 --------
 push : a force on the part that is tried out, at a point of the part.
@@ -9,7 +11,7 @@ keyframe : one moment of closing: how far the part is turned, in degrees, and sh
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import atan2, ceil, cos, degrees, hypot, isfinite, radians, sin
 from typing import Any
 
@@ -19,6 +21,14 @@ from workhold.drawing.bench import Bench, bench_of, draw_part, draw_pegs
 from workhold.drawing.carriers import draw_clamp, draw_holes, draw_plate, draw_push, draw_wall, most_holes
 from workhold.drawing.panel import fixture_words
 from workhold.drawing.scene import Box, Scene, View, text_width
+from workhold.drawing.supports_drawn import (
+    SUPPORT,
+    PlannedSupports,
+    draw_pad,
+    draw_tip,
+    draw_triangle,
+    size_of,
+)
 from workhold.errors import InputError
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Fixture
@@ -26,14 +36,14 @@ from workhold.model.pose import Pose
 from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.model.support_triples import Supports
+from workhold.model.support_triples import SupportPad, Supports
 from workhold.presenting.figure_words import figure_text, figures_shown, unit_of
-from workhold.presenting.live_supports import draw_set, set_words
 from workhold.presenting.notebook import fixture_title
 from workhold.statics.loads import jaw_words, load_cases
+from workhold.supports.words import why_no_set
 from workhold.units import MILLIMETRE
 
-__all__ = ["LivePicture", "TriedForce"]
+__all__ = ["LivePicture", "TriedForce", "draw_set", "set_words"]
 
 # Size of the page and the room at its rim for names and arrows, page units.
 PAGE, RIM = (640.0, 480.0), 44.0
@@ -46,6 +56,8 @@ USUAL, SHORTEST, LONGEST = 100.0, 6.0, 170.0
 OPEN_PITCHES, OPEN_SHARE = 1.5, 0.16
 # A peg lets go when its force is negative and larger than this part of the largest.
 NOTHING = 1e-6
+# Of the name of a support, page units.
+PAD_NAME = 12.0
 
 
 @frozen
@@ -326,3 +338,34 @@ class LivePicture:
         turned = (pose.theta_deg - self.fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
         numbers = turned, x - self.center[0], y - self.center[1], opened
         return [round(float(value), 3) for value in numbers]
+
+
+def draw_set(
+    scene: Scene, chosen: ChosenSupports, view: View, group_for: Callable[[SupportPad], Scene]
+) -> None:
+    """Draws a set of three with the names of its holes.
+
+    Parameters
+    ----------
+    group_for : the group of a support, which moves with the jaw that it stands on.
+    """
+    planned = PlannedSupports.of(chosen)
+    corners, radius = [view(place) for place in planned.places], size_of(planned.pad_radius, view)
+    draw_triangle(scene.group("stands"), corners)
+    for pad, (x, y) in zip(chosen.pads, corners, strict=True):
+        group = group_for(pad)
+        draw_pad(group, (x, y), radius)
+        group.text(
+            (x, y + radius + PAD_NAME), pad.hole, PAD_NAME, "middle", bold=True, fill=SUPPORT, halo=3.0
+        )
+    draw_tip(scene.group("stands"), view(planned.clamp), size_of(planned.tip_radius, view))
+
+
+def set_words(found: Supports) -> str:
+    """The best set of three and the clamp on top in a sentence, or why there is none."""
+    if not found.triples:
+        return why_no_set(found, MILLIMETRE)
+    chosen, number = ChosenSupports.of(found), MILLIMETRE.number
+    x, y = chosen.clamp.at
+    holes = ", ".join(pad.hole for pad in chosen.pads)
+    return f"Supports in {holes}; the clamp on top presses at ({number(x)}, {number(y)})."

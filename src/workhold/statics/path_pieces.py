@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.geometry.hull import convex_hull, half_hull
-from workhold.model.cutting_data import ANY
+from workhold.model.cutting_tool import ANY
 from workhold.model.program import Program
 from workhold.statics.path_forces import EVERY, WITHIN, PathForces
 

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.limits import real, refuse_strong
-from workhold.model.cutting_data import ANY
 from workhold.model.cutting_forces import CuttingForces
+from workhold.model.cutting_tool import ANY
 from workhold.model.program import Program
 from workhold.model.query import Query
 from workhold.model.requirements import Load

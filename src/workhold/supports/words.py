@@ -21,7 +21,7 @@ from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.listing import SupportSearch
 from workhold.units import Unit
 
-__all__ = ["flat_faces_notes", "listing_notes", "set_headings", "set_row", "why_none"]
+__all__ = ["flat_faces_notes", "listing_notes", "set_headings", "set_row", "why_no_set"]
 
 # Triples that are looked at; where there are more, one of these fits.
 MOST_LOOKED_AT = 200_000
@@ -29,7 +29,7 @@ MOST_LOOKED_AT = 200_000
 SAME_OPENING = 1e-6
 
 
-def why_none(found: Supports, unit: Unit) -> str:
+def why_no_set(found: Supports, unit: Unit) -> str:
     """The sentence for supports of which there is no set; lengths in a unit."""
     return f"No three supports hold the part with the clamp between them: {reason(found, unit)}"
 

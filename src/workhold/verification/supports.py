@@ -34,8 +34,14 @@ from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.verification.reading import fixtures_of
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.support_faces import area_center, band_faults, room_on
-from workhold.verification.support_listing import Hole, missing_triples, opened_clear_of_blocked
+from workhold.verification.support_listing import (
+    Hole,
+    area_center,
+    band_faults,
+    missing_triples,
+    opened_clear_of_blocked,
+    room_on,
+)
 from workhold.verification.verify import Judge, Unproven, Verification
 
 __all__ = ["SupportsJudge", "is_supports_file", "verify_supports_file"]

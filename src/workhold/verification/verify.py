@@ -24,7 +24,6 @@ from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.own_outlines import met_by
 from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
-from workhold.verification.program_forces import program_force_findings
 from workhold.verification.repeats import KnownFixtures, PartRotations, pattern_faults
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
@@ -33,7 +32,7 @@ from workhold.verification.seating import SeatingJudge
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 from workhold.verification.tool_walk import program_fault
 from workhold.verification.touching import touching_findings
-from workhold.verification.written_numbers import pair_numbers, written_numbers
+from workhold.verification.written_numbers import pair_numbers, program_force_findings, written_numbers
 
 __all__ = [
     "Judge",

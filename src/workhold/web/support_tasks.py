@@ -187,10 +187,10 @@ def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, fl
 
 def notes_of(found: Supports, unit: str) -> list[str]:
     """Says why there are no sets, or what their figures do not show."""
-    from workhold.supports.words import listing_notes, why_none
+    from workhold.supports.words import listing_notes, why_no_set
 
     given, listed = unit_named(unit), found.triples
-    reasons = [] if listed else [why_none(found, given)]
+    reasons = [] if listed else [why_no_set(found, given)]
     return reasons + listing_notes(found, listed, given, KEEP_OFF)
 
 

@@ -19,12 +19,11 @@ from workhold.files.program.tool_tables import commented_tools, read_tools
 from workhold.files.program.words import ProgramText, program_text
 from workhold.files.text import read_limited
 from workhold.limits import real
-from workhold.model.cutting_data import CuttingData
 from workhold.model.cutting_forces import forces_on
-from workhold.model.cutting_tool import Tool
+from workhold.model.cutting_tool import CuttingData, Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
-from workhold.model.raw_block import above_block
+from workhold.model.swept_piece import above_block
 from workhold.units import Unit
 
 __all__ = ["ReadProgram", "read_program", "read_program_with_calls"]

@@ -8,8 +8,7 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.limits import real
-from workhold.model.cutting_data import CuttingData
-from workhold.model.cutting_tool import Cylinder, Tool
+from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.units import Unit, unit_named
 
 __all__ = ["FIELDS", "SHAPE", "is_bare", "tool_of_fields"]
