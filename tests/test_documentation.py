@@ -17,7 +17,7 @@ import pytest
 import yaml
 
 from workhold.errors import InputError
-from workhold.files.result.column_types import COLUMNS, PAIR_COLUMNS
+from workhold.files.result.heads import COLUMNS, PAIR_COLUMNS
 from workhold.fixels.kinds import KINDS
 from workhold.fixels.vise import OpeningVise
 from workhold.version import __version__

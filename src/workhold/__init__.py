@@ -121,7 +121,7 @@ DELEGATES = {
     "result_html": "workhold.presenting.notebook",
     "result_picture": "workhold.presenting.papers",
     "result_supports": "workhold.supports.asking",
-    "result_widget": "workhold.presenting.stepping",
+    "result_widget": "workhold.presenting.further_html",
     "save_glb": "workhold.presenting.assembly",
     "save_sheet": "workhold.presenting.papers",
     "seating_html": "workhold.presenting.further_html",

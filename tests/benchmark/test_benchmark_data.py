@@ -15,8 +15,7 @@ import pytest
 
 from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
 from workhold.benchmark.catalogue import data_bytes, manifest, query_of, sets
-from workhold.benchmark.entry import entered_fixture
-from workhold.benchmark.matching import Places, compared
+from workhold.benchmark.matching import Places, compared, entered_fixture
 from workhold.search.design import answer
 
 Content = Callable[[str], dict[str, Any]]

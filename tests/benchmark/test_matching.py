@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from workhold.benchmark.catalogue import query_of, set_named
-from workhold.benchmark.entry import Entry, entered_fixture, read_entry
 from workhold.benchmark.making import compared_entry
-from workhold.benchmark.matching import Comparison, Places, compared
+from workhold.benchmark.matching import Comparison, Entry, Places, compared, entered_fixture, read_entry
 from workhold.errors import InputError
 
 Content = Callable[[str], dict[str, Any]]

@@ -11,7 +11,7 @@ from typer.testing import Result as Outcome
 
 import workhold
 from workhold import Plate, Workpiece
-from workhold.cli.spatial_loads import spatial_load
+from workhold.cli.support_words import spatial_load
 from workhold.model.solid import SolidOutline
 from workhold.units import MILLIMETRE
 

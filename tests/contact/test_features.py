@@ -18,7 +18,7 @@ from workhold.contact.problem import Problem
 from workhold.fixels.vise import Vise
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distance, outline_distances, segment_distance
-from workhold.model.diameter import outline_diameter, segments_diameter
+from workhold.model.own_outlines import outline_diameter, segments_diameter
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions, polygon_zone
 from workhold.model.workpiece import Workpiece

@@ -13,8 +13,8 @@ from body_examples import BLOCK, TOOLKITS
 from workhold import Workpiece, design
 from workhold.drawing.hardware_table import hardware_of
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.sheet_blocks import side_up_words
 from workhold.drawing.supports_drawn import counting_words
+from workhold.drawing.upper_side import side_up_words
 from workhold.model.first_side import FirstSide
 from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import part_zero

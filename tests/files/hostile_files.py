@@ -20,8 +20,8 @@ import numpy as np
 
 from fakes import fake_result
 from workhold.archive import mapped_archive
-from workhold.files.result.column_types import COLUMNS, HEAD
 from workhold.files.result.columns import write_columns
+from workhold.files.result.heads import COLUMNS, HEAD
 from workhold.files.result.writer import result_text
 
 __all__ = ["MAKERS"]

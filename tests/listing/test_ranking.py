@@ -9,8 +9,16 @@ from hypothesis import strategies as st
 
 from workhold import InputError
 from workhold.listing.ranking import best_marked, rank
-from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR, WRENCH_RADIUS
-from workhold.model.ranking import DEFAULT_RANKING, PREFERENCES, asked_ranking, chosen_ranking
+from workhold.model.quality import (
+    CLOSURE_MARGIN,
+    DEFAULT_RANKING,
+    FIGURES,
+    LOCATION_ERROR,
+    PREFERENCES,
+    WRENCH_RADIUS,
+    asked_ranking,
+    chosen_ranking,
+)
 from workhold.model.requirements import Load, Tolerance
 
 # So loose that no fixture is unfit by its location error.

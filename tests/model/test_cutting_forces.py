@@ -12,8 +12,7 @@ import pytest
 
 from workhold import InputError
 from workhold.model.cutting_forces import CuttingForces, forces_on, teeth_together
-from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
-from workhold.model.materials import MATERIALS, SOURCE, material_named
+from workhold.model.cutting_tool import MATERIALS, SOURCE, CuttingData, Cylinder, Tool, material_named
 from workhold.model.moves import Moves
 from workhold.model.program import Program
 

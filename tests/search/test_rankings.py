@@ -17,8 +17,7 @@ from cad_parts import cad_part
 from strategies import random_outline
 from workhold import InputError, Load, Plate, Result, Workpiece, design
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
-from workhold.model.ranking import PREFERENCES
+from workhold.model.quality import CLAMP_FREEDOM, FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION, PREFERENCES
 from workhold.search import lattice_shares
 
 

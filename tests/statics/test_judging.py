@@ -11,7 +11,7 @@ from workhold import Workpiece
 from workhold.conventions import GENTLE_PEG, SMALL_FACE_POINTS, STRONG_POINTS, TILTED_POINTS
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.sheet_facts import SheetDetails, cautions_of, edge_distances
-from workhold.model.diameter import outline_diameter
+from workhold.model.own_outlines import outline_diameter
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     JAW_FORCE_NEEDED,

@@ -15,9 +15,9 @@ from held import contacts, force_directions, held, load_wrench
 from workhold import Plate, design
 from workhold.geometry.segment import Arc, segment_rows
 from workhold.kernels.base.distance import outline_distances
-from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.own_outlines import outline_diameter
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,

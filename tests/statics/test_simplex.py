@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from workhold.statics.simplex import least_costs
+from workhold.supports.friction import least_costs
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -21,8 +21,7 @@ from workhold.benchmark.catalogue import (
     set_text,
     sums_of,
 )
-from workhold.benchmark.entry import Entry, entered_fixture
-from workhold.benchmark.matching import Comparison, Places, compared
+from workhold.benchmark.matching import Comparison, Entry, Places, compared, entered_fixture
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, write_bytes
 from workhold.search.design import answer

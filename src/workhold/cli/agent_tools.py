@@ -33,8 +33,8 @@ from workhold.files.toolkit_file import load_toolkit
 from workhold.fixels.kinds import ALIASES, KINDS, toolkit_of
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.identity import entries
+from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
-from workhold.model.ranking import asked_ranking
 from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
 from workhold.model.result import Result
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data

@@ -211,8 +211,8 @@ def check_entries(
     if not files:
         raise InputError("check needs a file with another program's fixtures: name one or more.")
     from workhold.benchmark.catalogue import set_named
-    from workhold.benchmark.entry import read_entry
     from workhold.benchmark.making import compared_entry
+    from workhold.benchmark.matching import read_entry
 
     entries = [read_entry(Path(name), set_name) for name in files]
     for entry in entries:

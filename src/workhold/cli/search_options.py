@@ -176,7 +176,7 @@ class QueryWords:
         InputError
             For words that mean nothing, figures that are not known, and a file that cannot be used.
         """
-        from workhold.model.ranking import asked_ranking
+        from workhold.model.quality import asked_ranking
         from workhold.model.requirements import Restrictions
 
         loads = asked_loads(self.load, self.loads, unit)

@@ -1,17 +1,21 @@
-"""What the command says of supports: their sizes, why there are none, and what friction could add."""
+"""What the command reads of loads in space and says of supports: sizes, why none hold, what friction adds."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 from typing import TYPE_CHECKING
 
+from workhold.cli.search_options import parse_load
+from workhold.cli.values import number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
+    from workhold.model.support_request import SpatialLoad
     from workhold.model.support_triples import Supports
     from workhold.units import Unit
 
-__all__ = ["friction_words", "size_notes", "with_friction"]
+__all__ = ["friction_words", "size_notes", "spatial_load", "with_friction"]
 
 
 def runs_of(numbers: Sequence[int]) -> str:
@@ -23,11 +27,11 @@ def runs_of(numbers: Sequence[int]) -> str:
     '1, 3, 4, 6 to 8, 20'
     """
     runs: list[list[int]] = []
-    for number in numbers:
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
+    for rank in numbers:
+        if runs and rank == runs[-1][-1] + 1:
+            runs[-1].append(rank)
         else:
-            runs.append([number])
+            runs.append([rank])
     words = (f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
     return ", ".join(words)
 
@@ -96,3 +100,60 @@ def friction_words(friction: float, helped: list[float]) -> str:
         f"With a friction of {friction:g} at every contact the clamp of {sets} could do with {forces} at "
         "best. With friction the forces are not determined: clamp for the force without it."
     )
+
+
+def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
+    """A load with its heights, its axial force and what tilts, from the text of ``--load``.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing.
+    """
+    from workhold.model.support_request import SpatialLoad
+
+    place = f'--load "{text}"'
+    own, rest = dict[str, str](), list[str]()
+    for word in text.split():
+        key, _, value = word.partition("=")
+        if key in ("z", "axial", "tilt"):
+            own[key] = value
+        else:
+            rest.append(word)
+    acts = any(word.startswith(("force=", "moment=")) for word in rest)
+    try:
+        planar = parse_load(" ".join(rest if acts else [*rest, "force=1"]), unit.millimetres)
+    except InputError as error:
+        raise InputError(str(error).replace(" force=1", "")) from error
+    heights = ranged(place, own.get("z"), (thickness, thickness))
+    scale = unit.millimetres
+    tilt = own.get("tilt", "0,0").split(",")
+    if len(tilt) != 2:
+        raise InputError(f"{place} cannot be used at 'tilt': give tilt=ABOUTX,ABOUTY in N mm.")
+    return SpatialLoad(
+        points=planar.points,
+        heights=(heights[0] * scale, heights[1] * scale) if "z" in own else heights,
+        force=planar.force if acts else 0.0,
+        directions=planar.directions,
+        axial=ranged(place, own.get("axial"), (0.0, 0.0)),
+        moment=planar.moment,
+        tilt=(number(tilt[0]), number(tilt[1])),
+        name=planar.name,
+    )
+
+
+def ranged(place: str, text: str | None, usual: tuple[float, float]) -> tuple[float, float]:
+    """One number or a range LOW..HIGH.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if text is None:
+        return usual
+    low, _, high = text.partition("..")
+    found = number(low), number(high or low)
+    if not all(map(isfinite, found)):
+        raise InputError(f"{place} cannot be used at '{text}': give a number, or a range LOW..HIGH.")
+    return found

@@ -15,8 +15,7 @@ from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
-from workhold.cli.spatial_loads import spatial_load
-from workhold.cli.support_words import friction_words, size_notes, with_friction
+from workhold.cli.support_words import friction_words, size_notes, spatial_load, with_friction
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
     length,

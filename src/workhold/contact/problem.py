@@ -32,8 +32,7 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.given import Lattice, Limits, Setting
 from workhold.limits import refuse_many_steps
-from workhold.model.diameter import outline_diameter
-from workhold.model.own_outlines import outline_met
+from workhold.model.own_outlines import outline_diameter, outline_met
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece

@@ -1,4 +1,4 @@
-"""The blocks of words and tables on a setup sheet: title, steps, quality, loads and sides; which to write."""
+"""The blocks of words and tables on a setup sheet: title, steps, quality, and loads, and which there are."""
 
 from __future__ import annotations
 
@@ -20,10 +20,8 @@ from workhold.drawing.sheet_writing import (
     heading,
 )
 from workhold.drawing.supports_drawn import draw_pad, draw_tip, support_steps, write_heights, write_supports
-from workhold.drawing.upper_side import write_part, write_side
-from workhold.errors import listed
+from workhold.drawing.upper_side import write_part, write_side, write_side_up
 from workhold.fixels.carrier import Measure
-from workhold.model.first_side import FirstSide
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
@@ -35,11 +33,10 @@ from workhold.model.quality import (
 )
 from workhold.model.requirements import ANY_DIRECTION, Load
 from workhold.model.setup import contact_names
-from workhold.model.solid import SolidOutline
 from workhold.statics.loads import jaw_words
 from workhold.units import INCH
 
-__all__ = ["blocks_of", "side_up_words", "write_side_up"]
+__all__ = ["blocks_of"]
 
 ON_THE_SHEET = (
     CLOSURE_MARGIN,
@@ -53,7 +50,6 @@ ON_THE_SHEET = (
 MOST_LOADS = 6
 # Of the width of a column, how much the name of a load may take.
 WIDEST_LOAD = 0.3
-ON_NO_FACE = "The part lies on no level face: hold it level, on vee blocks or packing, while it is clamped."
 
 
 def write_quality(column: TextColumn, sheet: Sheet) -> None:
@@ -266,59 +262,3 @@ def write_legend(column: TextColumn, sheet: Sheet) -> None:
             draw(column.scene, (column.x + 16, column.y + 8))
             column.scene.text((column.x + 44, column.y + 8), words, 11.5, fill=BLACK)
             column.y += 21
-
-
-def write_side_up(column: TextColumn, sheet: Sheet) -> None:
-    """Writes which side of the solid is up, and which of its faces the set-up before cut or located on."""
-    solid, before = sheet.workpiece.solid, sheet.details.first_side
-    assert solid is not None
-    heading(column, "Which side is up" if before is None else "Second set-up of the same part")
-    for words in side_up_words(solid, before):
-        column.paragraph(words, BODY)
-    if solid.lies_on_no_face:
-        column.paragraph(ON_NO_FACE, BODY)
-
-
-def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
-    """Sentences on the side that is up, and on a set-up before."""
-    up = solid.axis.replace("-", "−")
-    sentences = [f"{up} of the file points up."]
-    if before is None:
-        return sentences
-    if before.up == before.up_before:
-        return [f"The same side is up as in the first set-up: {up} of the file.", *face_words(before)]
-    was = before.up_before.replace("-", "−")
-    return [
-        f"Second side up: {up} of the file points up, {was} did before. The part is {before.turned}.",
-        *face_words(before),
-    ]
-
-
-def face_words(before: FirstSide) -> list[str]:
-    """Sentences on faces that were cut before, and on those that both set-ups touch."""
-    found = []
-    cut = listed([str(number) for number in before.cut_of_solid]) if before.cut_of_solid else ""
-    cut_faces = f"face {cut}" if len(before.cut_of_solid) == 1 else f"faces {cut}"
-    if before.cut:
-        faces = listed([str(number) for number in before.cut])
-        noun = "Face" if len(before.cut) == 1 else "Faces"
-        found.append(
-            f"{noun} {faces} of this outline must not be touched: the first set-up cuts {cut_faces} of the "
-            "solid."
-        )
-    elif before.cut_of_solid:
-        found.append(
-            f"What the first set-up cuts ({cut_faces} of the solid) is not in reach of the pegs here."
-        )
-    else:
-        found.append("The first set-up names no face that it cuts.")
-    if before.shared:
-        faces = listed([str(number) for number in before.shared])
-        noun = "Face" if len(before.shared) == 1 else "Faces"
-        found.append(
-            f"{noun} {faces} of the solid {'is' if len(before.shared) == 1 else 'are'} touched in both "
-            "set-ups, in the first by its best fixture."
-        )
-    else:
-        found.append("No face is touched in both set-ups: what one locates on, the other does not.")
-    return found

@@ -3,7 +3,8 @@
 A part turned over shows the mirror image of its outline. Where that is the outline itself, nothing
 distinguishes the sides. Else two marks do that look like no others: the way from one to the other,
 counter-clockwise about the middle, is less than half a turn on one side only. Turning the part round does not
-change that.
+change that. Of a solid the side is known, and which of its faces a
+set-up before has cut or located on.
 """
 
 from __future__ import annotations
@@ -17,13 +18,25 @@ from workhold.drawing.bench import LOWEST, draw_inset
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import Box, LengthUnit
 from workhold.drawing.sheet_writing import BODY, Sheet, fact_or_field, heading
+from workhold.errors import listed
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.symmetry import is_own_mirror_image, middle_of
+from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
 from workhold.model.setup import hole_centers
+from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Mark", "distinguishing_marks", "marks_of", "side_words", "write_part", "write_side"]
+__all__ = [
+    "Mark",
+    "distinguishing_marks",
+    "marks_of",
+    "side_up_words",
+    "side_words",
+    "write_part",
+    "write_side",
+    "write_side_up",
+]
 
 # Of the larger one: lengths and radii of two marks that differ by less look the same.
 SEEN = 0.025
@@ -35,6 +48,7 @@ MOST_MARKS = 60
 EIGHTHS = ("right", "upper right", "top", "upper left", "left", "lower left", "bottom", "lower right")
 # Height of the picture of the part as drawn by its width, and at most, page units.
 TALLEST_INSET, HIGHEST_INSET, INSET_ROOM = 0.75, 230.0, 56.0
+ON_NO_FACE = "The part lies on no level face: hold it level, on vee blocks or packing, while it is clamped."
 
 
 def write_side(column: TextColumn, sheet: Sheet) -> None:
@@ -159,3 +173,59 @@ def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> s
         eighth = round(atan2(float(there[1] - y), float(there[0] - x)) / (pi / 4)) % 8
         places.append(f"{mark.words(lengths)} at the {EIGHTHS[eighth]}")
     return f"Lying as in the plan, it has {places[0]} and {places[1]}. Turned over, it never has."
+
+
+def write_side_up(column: TextColumn, sheet: Sheet) -> None:
+    """Writes which side of the solid is up, and which of its faces the set-up before cut or located on."""
+    solid, before = sheet.workpiece.solid, sheet.details.first_side
+    assert solid is not None
+    heading(column, "Which side is up" if before is None else "Second set-up of the same part")
+    for words in side_up_words(solid, before):
+        column.paragraph(words, BODY)
+    if solid.lies_on_no_face:
+        column.paragraph(ON_NO_FACE, BODY)
+
+
+def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
+    """Sentences on the side that is up, and on a set-up before."""
+    up = solid.axis.replace("-", "−")
+    sentences = [f"{up} of the file points up."]
+    if before is None:
+        return sentences
+    if before.up == before.up_before:
+        return [f"The same side is up as in the first set-up: {up} of the file.", *face_words(before)]
+    was = before.up_before.replace("-", "−")
+    return [
+        f"Second side up: {up} of the file points up, {was} did before. The part is {before.turned}.",
+        *face_words(before),
+    ]
+
+
+def face_words(before: FirstSide) -> list[str]:
+    """Sentences on faces that were cut before, and on those that both set-ups touch."""
+    found = []
+    cut = listed([str(number) for number in before.cut_of_solid]) if before.cut_of_solid else ""
+    cut_faces = f"face {cut}" if len(before.cut_of_solid) == 1 else f"faces {cut}"
+    if before.cut:
+        faces = listed([str(number) for number in before.cut])
+        noun = "Face" if len(before.cut) == 1 else "Faces"
+        found.append(
+            f"{noun} {faces} of this outline must not be touched: the first set-up cuts {cut_faces} of the "
+            "solid."
+        )
+    elif before.cut_of_solid:
+        found.append(
+            f"What the first set-up cuts ({cut_faces} of the solid) is not in reach of the pegs here."
+        )
+    else:
+        found.append("The first set-up names no face that it cuts.")
+    if before.shared:
+        faces = listed([str(number) for number in before.shared])
+        noun = "Face" if len(before.shared) == 1 else "Faces"
+        found.append(
+            f"{noun} {faces} of the solid {'is' if len(before.shared) == 1 else 'are'} touched in both "
+            "set-ups, in the first by its best fixture."
+        )
+    else:
+        found.append("No face is touched in both set-ups: what one locates on, the other does not.")
+    return found

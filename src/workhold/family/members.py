@@ -23,9 +23,8 @@ from workhold.family.patterns import half_turn, pattern_words, turned, zero_word
 from workhold.listing.canonical_form import changes
 from workhold.listing.ranking import measured
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.quality import FIGURES, Figure, figure_number
+from workhold.model.quality import DEFAULT_RANKING, FIGURES, PAIR_RANKING, Figure, figure_number
 from workhold.model.query import Query
-from workhold.model.ranking import DEFAULT_RANKING, PAIR_RANKING
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, zone_of
 from workhold.model.result import Result
 from workhold.model.setup import PartZero, part_zero

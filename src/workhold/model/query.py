@@ -18,13 +18,17 @@ from workhold.model.own_outlines import met_by
 from workhold.model.program import Program
 from workhold.model.quality import (
     CLOSURE_MARGIN,
+    DEFAULT_RANKING,
     FIGURES,
     JAW_FORCE_NEEDED,
     LOAD_REACTION,
     PROGRAM_FIGURE,
     SEATING_FIGURES,
+    chosen_ranking,
+    for_loads,
+    listed,
+    words,
 )
-from workhold.model.ranking import DEFAULT_RANKING, chosen_ranking, for_loads, listed, words
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.workpiece import Workpiece
 

@@ -1,4 +1,4 @@
-"""What supports, a seating and a result without fixtures show of themselves in a notebook.
+"""What supports, a seating, a result without fixtures and one without its widget show in a notebook.
 
 Each shows tables, and a picture where there is one. Of a result without fixtures these are the rules, the
 nearest miss, and what would help.
@@ -6,8 +6,9 @@ nearest miss, and what would help.
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
@@ -19,10 +20,12 @@ from workhold.errors import InputError
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.query import Query
 from workhold.model.recounted import ChosenSupports
+from workhold.model.result import Result
 from workhold.model.search_report import Explanation
+from workhold.presenting.data import REQUIREMENTS
 from workhold.presenting.figure_words import figure_text, rounded, unit_of
 from workhold.presenting.markup import Markup, image, paragraph, safe, table
-from workhold.presenting.notebook import sentence
+from workhold.presenting.notebook import fixture_html, sentence
 from workhold.supports.words import set_headings, set_row, why_no_set
 from workhold.units import MILLIMETRE
 
@@ -31,7 +34,7 @@ if TYPE_CHECKING:
     from workhold.model.seating import Seating
     from workhold.model.support_triples import Supports
 
-__all__ = ["WhyNone", "seating_html", "supports_html", "why_none"]
+__all__ = ["StillPicture", "WhyNone", "result_widget", "seating_html", "supports_html", "why_none"]
 
 # Sets of three and seats that are shown; the width of a picture in pixels, and its page with a rim.
 MOST_SETS, MOST_SEATS = 6, 12
@@ -172,3 +175,34 @@ def why_none(result: Result) -> WhyNone:
     if sum(result.found.values()) or not result.complete:
         raise InputError(f"that there is none, was not found out. {' '.join(result.notes)}".strip())
     return WhyNone(result.query, explain(result.query))
+
+
+@frozen(repr=False)
+class StillPicture:
+    """A fixture of a result that stands in for its widget.
+
+    Parameters
+    ----------
+    result, rank : of the fixture, from 1.
+    """
+
+    result: Result
+    rank: int
+
+    def __repr__(self) -> str:
+        return f"<StillPicture: fixture {self.rank} of {len(self.result)} of {self.result.workpiece.name}>"
+
+    def _repr_html_(self) -> str:
+        words = f"This picture moves with another library: pip install '{REQUIREMENTS['anywidget']}'."
+        return f"{fixture_html(self.result[self.rank - 1])}\n{paragraph(words)}"
+
+
+def result_widget(result: Result, rank: int = 1, **asked: Any) -> Any:
+    """Makes the widget of a result, see :meth:`workhold.Result.widget`."""
+    if find_spec("anywidget") is None:
+        if not 1 <= rank <= len(result):
+            raise InputError(f"there is no fixture {rank}: {len(result)} are listed.")
+        return StillPicture(result, rank)
+    from workhold.presenting.widget import FixtureWidget
+
+    return FixtureWidget(result, rank, **asked)

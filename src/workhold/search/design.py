@@ -32,9 +32,8 @@ from workhold.listing.results import (
     listed_result,
     stage,
 )
-from workhold.model.quality import FIGURES
+from workhold.model.quality import FIGURES, asked_ranking
 from workhold.model.query import Query
-from workhold.model.ranking import asked_ranking
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
 from workhold.model.search_report import no_fixture_notes, no_place_note

@@ -33,8 +33,8 @@ from workhold.kernels.base.feature import (
 )
 from workhold.kernels.contact.contact_matrix import contact_matrices_of
 from workhold.model.clamps import LOCATORS, working_forces
-from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
+from workhold.model.own_outlines import outline_diameter
 from workhold.model.wall import Flush
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import largest

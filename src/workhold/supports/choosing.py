@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 from workhold.conventions import FIGURE_DECIMALS, GAP_SLACK
 from workhold.errors import InputError
 from workhold.supports.clamp_point import ClampPlaces
-from workhold.supports.forces import Triangles
+from workhold.supports.forces import Corners, Sides, Triangles
 from workhold.supports.holes import CarrierRoom
-from workhold.supports.sides import Corners, Sides
 
 __all__ = ["MOST_LISTED", "BoundFigures", "Chosen", "TripleChoice", "coarse"]
 

@@ -23,10 +23,9 @@ from workhold.supports.acting import WeakJawError, acting_on, checked_force, nee
 from workhold.supports.choosing import Chosen, TripleChoice
 from workhold.supports.clamp_point import ClampPlaces
 from workhold.supports.faces import TouchableFace, area_center
-from workhold.supports.forces import PegForces, lifted_by_jaws
+from workhold.supports.forces import PegForces, Sides, lifted_by_jaws
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.program_zones import with_program
-from workhold.supports.sides import Sides
 
 __all__ = ["SupportSearch", "each_supported", "supports_of", "supports_of_best"]
 

@@ -53,8 +53,8 @@ from workhold.model.search_report import (
     undecided_note,
 )
 from workhold.verification.ball_geometry import PRECISIONS
+from workhold.verification.contacts import every_outline
 from workhold.verification.listing import Listing
-from workhold.verification.own_outlines import every_outline
 from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat_clamps import pairs_at

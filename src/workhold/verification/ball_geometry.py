@@ -309,7 +309,7 @@ class BallOutline:
     smooth : whether each face, by its number, meets its neighbours tangentially at its start and at its end.
     turns : by how much the normals differ at these two joints, the larger component.
     neighbours : those of each face, by its number, segments at its start and at its end.
-    own : outlines of carriers with heights of their own, by role (``verification.own_outlines``).
+    own : outlines of carriers with heights of their own, by role (``verification.contacts``).
     """
 
     segments: tuple[Side, ...]

@@ -12,6 +12,10 @@ Force closure and forces (model: conditions 4 and 5) follow from the null vector
 which the signed 3 x 3 minors give. It depends neither on the point that moments are taken about nor on their
 scale, because both change the matrix by invertible row operations only.
 
+Segments of further outlines, those that carriers with heights of their own meet, are numbered on; those of
+equal outlines have the same numbers. So a face's number says of which outline it is, and whoever looks up a
+face by its number finds those of all outlines. What a peg keeps from is its own carrier's outline.
+
 Glossary
 --------
 wrench radius : distance from the origin to the nearest facet of the hull of the wrenches, no unit. A wrench
@@ -22,14 +26,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 from flint import arb, arb_mat
 
-from workhold.fixels.pegs import Flat
+from workhold.fixels.contacts import Flat
 from workhold.model.pose import Pose
-from workhold.verification.ball_geometry import LineSide, Point, Side, cross, dot, least, root, turned
+from workhold.model.workpiece import Workpiece
+from workhold.verification.ball_geometry import (
+    BallOutline,
+    LineSide,
+    Point,
+    Side,
+    cross,
+    dot,
+    least,
+    root,
+    turned,
+)
 from workhold.verification.tolerances import (
     FLAT,
     LEAST_CLAMPING,
@@ -46,7 +61,9 @@ __all__ = [
     "BallPose",
     "closure_findings",
     "contact_system",
+    "every_outline",
     "inverted",
+    "met_by",
     "minors",
     "span",
     "standoff",
@@ -326,3 +343,40 @@ def difference(a: Wrench, b: Wrench) -> Wrench:
 def scalar(a: Wrench, b: Wrench) -> arb:
     """Scalar product in space."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def every_outline(workpiece: Workpiece) -> BallOutline:
+    """The outline of a workpiece at the precision in force, with the faces of all outlines in its tables."""
+    whole = BallOutline.of(workpiece)
+    if not workpiece.outlines:
+        return whole
+    first, own, known = len(whole.segments), dict[str, BallOutline](), list[tuple[Workpiece, BallOutline]]()
+    for role, part in workpiece.outlines:
+        same = next((outline for one, outline in known if one == part), None)
+        if same is None:
+            known.append((part, same := BallOutline.of(part, first)))
+            first += len(same.segments)
+        own[role] = same
+    tables: dict[str, Any] = {
+        name: {face: value for one in (whole, *own.values()) for face, value in getattr(one, name).items()}
+        for name in ("faces", "others", "smooth", "turns", "neighbours")
+    }
+    return evolve(whole, **tables, own=own)
+
+
+def met_by(outline: BallOutline, carrier: str) -> BallOutline:
+    """What the pegs of a carrier of a name keep from; a clamp's name ends with its direction."""
+    if not outline.own:
+        return outline
+    role = carrier.split(" ")[0]
+    return outline.own[role] if role in outline.own else alone(outline)
+
+
+def alone(outline: BallOutline) -> BallOutline:
+    """The outline without the faces of others."""
+    count = len(outline.segments)
+    tables: dict[str, Any] = {
+        name: {face: value for face, value in getattr(outline, name).items() if face < count}
+        for name in ("faces", "others", "smooth", "turns", "neighbours")
+    }
+    return evolve(outline, **tables, own={})

@@ -39,10 +39,9 @@ from workhold.verification.ball_geometry import (
     norm,
     root,
 )
-from workhold.verification.contacts import Balance, BallContact, BallPose, wrench_radius
+from workhold.verification.contacts import Balance, BallContact, BallPose, every_outline, wrench_radius
 from workhold.verification.force_walk import ForceWalk, force_walk_of
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
-from workhold.verification.own_outlines import every_outline
 from workhold.verification.seat import SeatBalance
 from workhold.verification.tolerances import (
     FIGURE_AGREEMENT,

@@ -42,8 +42,7 @@ from workhold.verification.ball_geometry import (
     turned,
     vertex_side,
 )
-from workhold.verification.contacts import BallContact, BallPose, contact_system
-from workhold.verification.own_outlines import every_outline
+from workhold.verification.contacts import BallContact, BallPose, contact_system, every_outline
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.wall import WallContact
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule

@@ -28,8 +28,7 @@ from workhold.verification.ball_geometry import (
     largest,
     turned,
 )
-from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.own_outlines import met_by
+from workhold.verification.contacts import BallContact, BallPose, met_by
 from workhold.verification.placing import faces_avoided, faces_without_band, proven_pose, zone_distance
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import WAYS, direction_of, directions_of, line_of, pieces_apart

@@ -35,8 +35,7 @@ from workhold.verification.ball_geometry import (
     norm,
     turned,
 )
-from workhold.verification.contacts import standoff
-from workhold.verification.own_outlines import every_outline
+from workhold.verification.contacts import every_outline, standoff
 from workhold.verification.rules.travel import quarter_turns, seen_along_x
 from workhold.verification.seat import LOCATORS
 from workhold.verification.tolerances import AGREEMENT

@@ -11,18 +11,17 @@ from attrs import field, frozen
 from flint import arb, ctx
 
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.diameter import outline_diameter
 from workhold.model.fixture import Fixture
+from workhold.model.own_outlines import outline_diameter
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.verification.account import account_faults, seat_faults
 from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, norm
-from workhold.verification.contacts import Balance, BallContact, BallPose, closure_findings
+from workhold.verification.contacts import Balance, BallContact, BallPose, closure_findings, met_by
 from workhold.verification.figures import Measure, figure_missing
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
-from workhold.verification.own_outlines import met_by
 from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
 from workhold.verification.repeats import KnownFixtures, PartRotations, pattern_faults
 from workhold.verification.rules.hardware import ToolkitRules

@@ -10,8 +10,8 @@ from attrs import evolve, frozen
 from pydantic import Field
 
 from workhold.errors import InputError
+from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
-from workhold.model.ranking import asked_ranking
 from workhold.web.form import LARGEST, Form, Name
 from workhold.web.forms import HeldIn, ToleranceForm
 from workhold.web.part_forms import WorkpieceForm

@@ -17,8 +17,8 @@ from workhold.fixels.kinds import USUAL, toolkit_of
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
-from workhold.model.ranking import asked_ranking
 from workhold.model.requirements import Load, Tolerance
 from workhold.web.form import (
     LARGEST,

@@ -15,8 +15,8 @@ from fakes import fake_proof, fake_result
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.result import columns as in_columns
-from workhold.files.result.column_types import COLUMNS, HEAD
 from workhold.files.result.columns import significant, write_columns
+from workhold.files.result.heads import COLUMNS, HEAD
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
 from workhold.listing.identity import entries

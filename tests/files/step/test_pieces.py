@@ -39,7 +39,7 @@ from workhold.files.part.load import read_workpiece
 from workhold.files.step.heights import standing
 from workhold.files.step.writer import setup_step
 from workhold.model.bodies import fixture_bodies
-from workhold.model.diameter import outline_diameter
+from workhold.model.own_outlines import outline_diameter
 from workhold.model.setup import hole_centers
 from workhold.model.solid import SolidOutline
 

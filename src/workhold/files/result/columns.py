@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
-from workhold.files.result.column_types import HEAD, columns_of, columns_said
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees, significant
+from workhold.files.result.heads import HEAD, columns_of, columns_said, head_texts, head_value
 from workhold.files.result.parts import (
     checked_head,
     checked_query,
@@ -31,7 +31,6 @@ from workhold.files.result.parts import (
     result_with,
     with_seating,
 )
-from workhold.files.result.program_entries import head_texts, head_value
 from workhold.files.result.writer import FORMAT, head
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query

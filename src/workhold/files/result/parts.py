@@ -23,7 +23,7 @@ from pydantic import ValidationError
 from workhold.errors import InputError
 from workhold.files.input_forms import TAGS
 from workhold.files.result.forms import Head, ProofPart
-from workhold.files.result.program_entries import head_value
+from workhold.files.result.heads import head_value
 from workhold.files.text import json_value
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable

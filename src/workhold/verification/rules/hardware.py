@@ -24,8 +24,7 @@ from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.verification.ball_geometry import BallOutline, Point, Side, exact_point
-from workhold.verification.contacts import BallContact, BallPose, standoff
-from workhold.verification.own_outlines import met_by
+from workhold.verification.contacts import BallContact, BallPose, met_by, standoff
 from workhold.verification.rules.travel import (
     WAYS,
     Stroke,
