@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zone, polygon_zone
     from workhold.model.result import Result
     from workhold.model.workpiece import Workpiece
-    from workhold.presenting.cad import from_build123d, from_cadquery
+    from workhold.presenting.assembly import from_build123d, from_cadquery
     from workhold.search.design import answer, design
     from workhold.search.toolkit_search import count_contacts
     from workhold.seating.solver import seatings
@@ -96,8 +96,8 @@ HOMES = {
     "circle_zone": "workhold.model.requirements",
     "count_contacts": "workhold.search.toolkit_search",
     "design": "workhold.search.design",
-    "from_build123d": "workhold.presenting.cad",
-    "from_cadquery": "workhold.presenting.cad",
+    "from_build123d": "workhold.presenting.assembly",
+    "from_cadquery": "workhold.presenting.assembly",
     "load": "workhold.files.part.load",
     "open": "workhold.files.result.reader:read_result",
     "polygon_zone": "workhold.model.requirements",
@@ -127,8 +127,8 @@ DELEGATES = {
     "seating_html": "workhold.presenting.further_html",
     "supports_html": "workhold.presenting.further_html",
     "to_arrow": "workhold.presenting.data",
-    "to_build123d": "workhold.presenting.cad",
-    "to_cadquery": "workhold.presenting.cad",
+    "to_build123d": "workhold.presenting.assembly",
+    "to_cadquery": "workhold.presenting.assembly",
     "to_pandas": "workhold.presenting.data",
     "why_none": "workhold.presenting.further_html",
     "workpiece_html": "workhold.presenting.notebook",

@@ -11,11 +11,11 @@ from typer.testing import Result as Outcome
 
 import workhold
 from workhold import Plate, Workpiece
-from workhold.drawing.sheet_heights import lift_of
+from workhold.drawing.sheet_writing import lift_of
 from workhold.files.result.reader import read_result
 from workhold.fixels.support_hardware import SupportPads, TopClamp
-from workhold.model.recounted import ChosenSupports
 from workhold.model.support_bodies import supported_sizes
+from workhold.model.support_triples import ChosenSupports
 
 Run = Callable[..., Outcome]
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])

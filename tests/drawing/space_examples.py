@@ -13,11 +13,11 @@ from workhold import design
 from workhold.drawing.pdf import svg_to_pdf
 from workhold.drawing.result_sheet import result_sheet
 from workhold.drawing.scene import UNITS_PER_MM
-from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.solid import SolidOutline
 from workhold.model.support_request import SupportRequest
+from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 from workhold.supports.listing import supports_of
 

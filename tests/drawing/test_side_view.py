@@ -27,7 +27,7 @@ from svg_reading import by_class, matrix, texts, to_model
 from workhold.drawing.bench import bench_of, contact_of
 from workhold.drawing.scene import UNITS_PER_MM
 from workhold.drawing.sheet_facts import SheetDetails
-from workhold.drawing.sheet_heights import heights_of
+from workhold.drawing.sheet_writing import heights_of
 from workhold.drawing.side_view import WAYS, apart, side_view
 from workhold.errors import InputError
 from workhold.fixels.plate import Plate

@@ -16,9 +16,9 @@ from workhold.drawing.scene import LengthUnit
 from workhold.drawing.supports_drawn import counting_words
 from workhold.drawing.upper_side import side_up_words
 from workhold.model.first_side import FirstSide
-from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import part_zero
 from workhold.model.solid import SolidOutline
+from workhold.model.support_triples import ChosenSupports
 from workhold.units import INCH, MILLIMETRE
 
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from workhold import Program, Query, Vise, Workpiece
 from workhold.geometry.segment import Box
+from workhold.model.cutting_forces import ALLOWANCE, above_block, beside_block
 from workhold.model.cutting_tool import Cylinder, Tool
 from workhold.model.moves import Moves, along
-from workhold.model.swept_piece import ALLOWANCE, above_block, beside_block
 
 PART = Box(0.0, 0.0, 120.0, 70.0)
 TOOLS = {2: Tool(2, [Cylinder(0, 40, 6)], 12)}

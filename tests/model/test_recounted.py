@@ -14,9 +14,16 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
-from workhold.model.recounted import FARTHEST, ChosenSupports, Recounted, moves, recounted
 from workhold.model.support_request import SupportRequest
-from workhold.model.support_triples import SupportPad, Triple
+from workhold.model.support_triples import (
+    FARTHEST,
+    ChosenSupports,
+    Recounted,
+    SupportPad,
+    Triple,
+    moves,
+    recounted,
+)
 from workhold.supports.listing import supports_of
 
 REQUEST = SupportRequest(12, pad_radius=2.0, tip_radius=2.5)

@@ -13,9 +13,8 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
 from workhold.model.bodies import SUPPORT_HEIGHT, BodyKind, BodySizes, FixtureBody, part_slabs
-from workhold.model.recounted import ChosenSupports, Recounted, recounted
 from workhold.model.support_bodies import bodies_with_supports, supported_sizes, with_room
-from workhold.model.support_triples import Supports, Triple
+from workhold.model.support_triples import ChosenSupports, Recounted, Supports, Triple, recounted
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
 

@@ -91,7 +91,7 @@ def cadquery(monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )
 def test_an_axis_is_named_by_what_people_have(up: Any, name: str) -> None:
-    from workhold.presenting.cad import axis_name
+    from workhold.presenting.assembly import axis_name
 
     assert axis_name(up) == name
 

@@ -10,7 +10,7 @@ import pytest
 
 import workhold
 from workhold.errors import InputError
-from workhold.model.recounted import ChosenSupports
+from workhold.model.support_triples import ChosenSupports
 from workhold.presenting import further_html
 
 WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])

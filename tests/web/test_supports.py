@@ -22,7 +22,7 @@ from workhold.model.result import Result
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of
-from workhold.web.support_forms import EXAMPLE
+from workhold.web.request_forms import EXAMPLE
 
 CORNERS = [[0, 0, 0], [100, 0, 0], [100, 60, 0], [10, 70, 0]]
 BLOCK = {"name": "block", "loops": [CORNERS]}

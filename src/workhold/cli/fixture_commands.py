@@ -10,7 +10,13 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
-from workhold.cli.body_options import (
+from workhold.cli.commands import option, print_remark
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.program_options import passing_data, passing_words
+from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
+from workhold.cli.seat_table import seat_table
+from workhold.cli.setup_sheets import (
     BODY_THICKNESS,
     GLB,
     PART_FILE,
@@ -19,12 +25,6 @@ from workhold.cli.body_options import (
     asked_models,
     write_fixture,
 )
-from workhold.cli.commands import option, print_remark
-from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
-from workhold.cli.program_options import passing_data, passing_words
-from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
-from workhold.cli.seat_table import seat_table
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
     choice,

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, TextIO
 import typer
 from attrs import asdict
 
-from workhold.cli.body_options import PART_FILE, asked_models, write_bodies
 from workhold.cli.commands import option, print_remark
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
+from workhold.cli.setup_sheets import PART_FILE, asked_models, write_bodies
 from workhold.cli.support_words import friction_words, size_notes, spatial_load, with_friction
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
@@ -169,7 +169,7 @@ def supports(
 
         write_supports(found, out)
     if models:
-        from workhold.model.recounted import ChosenSupports
+        from workhold.model.support_triples import ChosenSupports
         from workhold.presenting.assembly import Assembly, shape_in
 
         if not found.triples:

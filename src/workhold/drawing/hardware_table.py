@@ -9,8 +9,7 @@ from typing import TypeVar
 from attrs import frozen
 
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.sheet_heights import SheetHeights
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, heading
 from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import fit_words

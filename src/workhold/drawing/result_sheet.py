@@ -11,16 +11,16 @@ from attrs import evolve
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_facts import Caution, SheetDetails, cautions_of, edge_distances
-from workhold.drawing.sheet_heights import lift_of
+from workhold.drawing.sheet_writing import lift_of
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
 from workhold.model.program import Program
-from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.setup import PartZero, part_zero
+from workhold.model.support_triples import ChosenSupports
 from workhold.seating.clamping import by_hand
 from workhold.seating.solver import Solver
 from workhold.statics.loads import load_cases

@@ -13,7 +13,6 @@ from workhold.drawing.plan import draw_plan
 from workhold.drawing.scene import BLACK, UNITS_PER_MM, Box, LengthUnit, Scene, View, shortened, text_width
 from workhold.drawing.sheet_blocks import blocks_of
 from workhold.drawing.sheet_facts import PAPERS, SheetDetails, cautions_of, edge_distances
-from workhold.drawing.sheet_heights import heights_of
 from workhold.drawing.sheet_layout import (
     FOOT,
     MARGIN,
@@ -25,7 +24,7 @@ from workhold.drawing.sheet_layout import (
     plan_room,
     standard_scale,
 )
-from workhold.drawing.sheet_writing import Sheet
+from workhold.drawing.sheet_writing import Sheet, heights_of
 from workhold.drawing.side_drawing import SideFigure
 from workhold.drawing.side_view import side_view
 from workhold.drawing.supports_drawn import PlannedSupports

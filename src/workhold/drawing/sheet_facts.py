@@ -16,10 +16,10 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
 from workhold.model.program import Program
-from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Tolerance
 from workhold.model.seating import Seating
 from workhold.model.setup import PartZero
+from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import ByHand
 from workhold.statics.contact_matrix import Touched

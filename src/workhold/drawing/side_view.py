@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 
 from workhold.drawing.bench import Bench, contact_of
 from workhold.drawing.scene import View
-from workhold.drawing.sheet_heights import SheetHeights
+from workhold.drawing.sheet_writing import SheetHeights
 from workhold.fixels.contacts import CLAMP_TIP
 from workhold.geometry.loop import checked_vertices, loop_segments
 from workhold.geometry.segment import Box, Point
-from workhold.model.recounted import ChosenSupports
 from workhold.model.solid import Band
+from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["SideContact", "SidePad", "SideView", "side_view"]

@@ -14,12 +14,12 @@ from workhold.drawing.scene import Box, Scene, View, text_width
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, fact_or_field, heading
 from workhold.errors import listed
 from workhold.geometry.segment import Point
-from workhold.model.recounted import ChosenSupports
+from workhold.model.support_triples import ChosenSupports
 from workhold.units import Unit
 
 __all__ = [
-    "PlannedSupports",
     "SUPPORT",
+    "PlannedSupports",
     "draw_pad",
     "draw_supports",
     "draw_tip",

@@ -26,16 +26,16 @@ from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.limits import real
 
 __all__ = [
-    "Arrangement",
     "CLAMP_TIP",
-    "ContactKind",
     "DIRECTIONS",
     "FLAT_PIN",
-    "Flat",
     "ROUND_PIN",
-    "Symmetry",
     "TOWARDS",
     "WALL_END",
+    "Arrangement",
+    "ContactKind",
+    "Flat",
+    "Symmetry",
     "flat_of",
     "peg_outline",
     "resolved_flat",

@@ -19,14 +19,14 @@ from workhold.limits import real, refuse_long, refuse_strong
 
 __all__ = [
     "ANY",
-    "CutMaterial",
-    "CuttingData",
-    "CuttingDirection",
-    "Cylinder",
     "DIRECTIONS",
     "FEED",
     "MATERIALS",
     "SOURCE",
+    "CutMaterial",
+    "CuttingData",
+    "CuttingDirection",
+    "Cylinder",
     "Tool",
     "material_named",
 ]

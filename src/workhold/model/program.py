@@ -23,19 +23,20 @@ from workhold.delegates import delegate
 from workhold.errors import InputError
 from workhold.geometry.segment import Box
 from workhold.limits import real, refuse_long
-from workhold.model.cutting_forces import CuttingForces
+from workhold.model.cutting_forces import CuttingForces, beside_block
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
-from workhold.model.moves import Moves, along, shares_between
-from workhold.model.swept_piece import (
+from workhold.model.moves import (
     CUT,
     RAPID,
     MoveKind,
+    Moves,
     PathVertex,
     SweptPiece,
-    beside_block,
+    along,
     box_path,
     moves_of,
     packed_piece,
+    shares_between,
 )
 
 __all__ = ["Cylinder", "MoveKind", "PathVertex", "Program", "SweptPiece", "Tool"]
@@ -62,7 +63,7 @@ def notes_of(values: Iterable[str]) -> tuple[str, ...]:
 
 
 class SweptArrays(NamedTuple):
-    """N swept pieces as arrays, see :class:`workhold.model.swept_piece.SweptPiece`.
+    """N swept pieces as arrays, see :class:`workhold.model.moves.SweptPiece`.
 
     Parameters
     ----------
@@ -324,7 +325,7 @@ class Program:
     def of_entries(cls, entries: Mapping[str, Any]) -> Program:
         """A program of a file's entries; feeds and speeds are not known of it.
 
-        Pieces may be entries, or packed as :func:`workhold.model.swept_piece.packed_piece` does.
+        Pieces may be entries, or packed as :func:`workhold.model.moves.packed_piece` does.
 
         Raises
         ------

@@ -29,9 +29,8 @@ from workhold.model.bodies import (
     way_open,
 )
 from workhold.model.fixture import Fixture
-from workhold.model.recounted import ChosenSupports
 from workhold.model.shown import shown
-from workhold.model.support_triples import SupportPad, Supports, Triple
+from workhold.model.support_triples import ChosenSupports, SupportPad, Supports, Triple
 
 __all__ = [
     "bodies_on_supports",
@@ -114,7 +113,7 @@ def bodies_on_supports(
 
     Parameters
     ----------
-    fixture, pads : as their holes are counted, see ``model.recounted``.
+    fixture, pads : as their holes are counted, see ``model.support_triples``.
     sizes : heights, those of the supports included.
 
     Raises

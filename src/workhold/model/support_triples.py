@@ -1,19 +1,32 @@
-"""What is known of the supports of a planar fixture: triples with their figures, and how many there are."""
+"""What is known of the supports of a planar fixture: triples with their figures, and one that is chosen.
+
+Supports may stand in holes before column A or row 1 of a fixture as it was listed, or nearer the opening than
+its pegs. Then all of the set-up stands elsewhere in the same plates: so many columns and rows further on. The
+part, its pegs and its supports keep their places to one another. So a chosen triple is counted anew from the
+plates' first holes, in which all holes have names.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 from attrs import evolve, frozen
 
 from workhold.delegates import delegate
 from workhold.errors import InputError
-from workhold.fixels.carrier import hole_name, letter_of
-from workhold.model.fixture import Fixture
+from workhold.fixels.carrier import Carrier, hole_name, letter_of
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
-__all__ = ["ClampFigures", "SupportPad", "Supports", "Triple"]
+__all__ = ["ChosenSupports", "ClampFigures", "Recounted", "SupportPad", "Supports", "Triple", "recounted"]
 
 Point = tuple[float, float]
+# Set-ups are moved by no more columns and rows than this.
+FARTHEST = 60
+
+Hole = tuple[int, int]
 
 
 @frozen
@@ -184,3 +197,190 @@ class Supports:
     def best(self, count: int) -> Supports:
         """A copy with the first triples only."""
         return evolve(self, triples=self.triples[:count])
+
+
+@frozen
+class Recounted:
+    """A fixture and its supports in holes that all have names.
+
+    Parameters
+    ----------
+    fixture : the set-up, with its places in mm from the same hole as ever.
+    supports : the three, in their order; ``x`` and ``y`` stay those in the part's coordinates.
+    columns, rows : by how many of the first plate part and pegs stand further on than they were listed.
+    """
+
+    fixture: Fixture
+    supports: tuple[SupportPad, ...]
+    columns: int
+    rows: int
+
+    @property
+    def is_moved(self) -> bool:
+        """Whether holes have other names than in the list of fixtures."""
+        return (self.columns, self.rows) != (0, 0)
+
+
+def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple) -> Recounted:
+    """The set-up of a fixture and three supports in the first holes of the plates that can take it.
+
+    Raises
+    ------
+    InputError
+        When there are no such holes, as of supports that do not fit the toolkit.
+    """
+    plates = [plate for plate in toolkit.carriers if plate.has_lattice]
+    travel = fixture.jaw_separation if triple.travel is None else triple.travel
+    for columns, rows in moves(toolkit):
+        shifts = {
+            plate.name: shift_of(plate, plates[0], (columns, rows), travel - fixture.jaw_separation)
+            for plate in plates
+        }
+        if all(fits(plate, shifts[plate.name], fixture, toolkit, triple) for plate in plates):
+            return moved(fixture, toolkit, triple, (columns, rows), shifts, travel)
+    raise InputError("the supports have no holes in the plates of the toolkit: list them again.")
+
+
+def moves(toolkit: Toolkit) -> Iterator[Hole]:
+    """Columns and rows by which part and pegs may stand further on, the fewest first."""
+    # A wall stays where it is.
+    most_rows = 0 if toolkit.datum.fixes_rows or toolkit.ends_on_walls else FARTHEST
+    for steps in range(FARTHEST + most_rows + 1):
+        for columns in range(-min(steps, FARTHEST), min(steps, FARTHEST) + 1):
+            rows = steps - abs(columns)
+            if rows <= most_rows:
+                yield from ((columns, row) for row in sorted({-rows, rows}))
+
+
+def shift_of(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
+    """Columns and rows by which a plate's holes count further on.
+
+    Parameters
+    ----------
+    move : by how many columns and rows of the first plate all stands further on.
+    opened : how much farther than before the plate that slides has travelled, in mm.
+    """
+    shift = [
+        round((steps * own - (0.0 if plate.travel is None else opened * along)) / pitch)
+        for steps, own, along, pitch in zip(
+            move,
+            first.pitch,
+            (0.0, 0.0) if plate.travel is None else plate.travel.unit,
+            plate.pitch,
+            strict=True,
+        )
+    ]
+    return shift[0], shift[1]
+
+
+def holes_on(
+    plate: Carrier, fixture: Fixture, toolkit: Toolkit, triple: Triple
+) -> Iterator[tuple[int | None, int | None]]:
+    """Columns and rows on a plate that pegs, clamps and supports take up; None for what says nothing."""
+    for peg in fixture.pegs:
+        carrier = toolkit.carrier(peg.carrier)
+        if carrier.stands_on == plate.name:
+            in_column, in_row = carrier.counted
+            yield (peg.column if in_column else None), (peg.row if in_row else None)
+    for pad in triple.supports:
+        if pad.carrier == plate.name:
+            yield pad.column, pad.row
+
+
+def fits(plate: Carrier, shift: Hole, fixture: Fixture, toolkit: Toolkit, triple: Triple) -> bool:
+    """Whether all holes of a plate exist and are open, counted further on by a shift."""
+    for column, row in holes_on(plate, fixture, toolkit, triple):
+        new = [None if old is None else old + by for old, by in zip((column, row), shift, strict=True)]
+        for number, most in zip(new, (plate.columns, plate.rows), strict=True):
+            if number is not None and not 0 <= number < (number + 1 if most is None else most):
+                return False
+        if new[0] is not None and new[1] is not None and plate.is_blocked(new[0], new[1]):
+            return False
+    return True
+
+
+def moved(
+    fixture: Fixture,
+    toolkit: Toolkit,
+    triple: Triple,
+    move: Hole,
+    shifts: dict[str, Hole],
+    travel: float,
+) -> Recounted:
+    """The set-up with its holes counted further on."""
+    first, (columns, rows) = next(plate for plate in toolkit.carriers if plate.has_lattice), move
+    dx, dy = columns * first.pitch[0], rows * first.pitch[1]
+
+    def counted_on(peg: Peg) -> Peg:
+        carrier = toolkit.carrier(peg.carrier)
+        if not carrier.contact.is_placed:
+            return evolve(peg, x=peg.x + dx, y=peg.y + dy)
+        by = shifts[carrier.stands_on]
+        in_column, in_row = carrier.counted
+        column, row = peg.column + in_column * by[0], peg.row + in_row * by[1]
+        place = None if peg.place is None else carrier.place_name(column, row)
+        return evolve(peg, column=column, row=row, x=peg.x + dx, y=peg.y + dy, place=place)
+
+    pads = tuple(
+        evolve(pad, column=pad.column + shifts[pad.carrier][0], row=pad.row + shifts[pad.carrier][1])
+        for pad in triple.supports
+    )
+    pose = evolve(fixture.pose, x=fixture.pose.x + dx, y=fixture.pose.y + dy)
+    # A clamp of which only the line is known is measured from the first column or row.
+    further = [
+        0.0
+        if all(carrier.counted) or carrier.travel is None
+        else dx * carrier.travel.unit[0] + dy * carrier.travel.unit[1]
+        for carrier in (toolkit.carrier(peg.carrier) for peg in fixture.pegs)
+        if carrier.on is not None
+    ]
+    before = fixture.travels
+    ends = further or [0.0]
+    pair = fixture.pair and evolve(fixture.pair, travels=(before[0] + ends[0], before[-1] + ends[-1]))
+    own = travel + (further[0] if further else 0.0)
+    pegs = tuple(map(counted_on, fixture.pegs))
+    new = evolve(fixture, pegs=pegs, pose=pose, jaw_separation=own, pair=pair)
+    return Recounted(new, pads, columns, rows)
+
+
+@frozen
+class ChosenSupports:
+    """One set of three of the supports that were found, to be built.
+
+    Parameters
+    ----------
+    supports : all that is known of them.
+    number : of the set, from 1.
+    recounted : the set-up in holes with names.
+    """
+
+    supports: Supports
+    number: int
+    recounted: Recounted
+
+    @classmethod
+    def of(cls, supports: Supports, number: int = 1) -> ChosenSupports:
+        """The set of a number.
+
+        Raises
+        ------
+        InputError
+            When there is none.
+        """
+        triple = supports.ranked(number)
+        return cls(supports, number, recounted(supports.fixture, supports.query.toolkit, triple))
+
+    @property
+    def triple(self) -> Triple:
+        """The set with its figures, its holes as they were listed."""
+        return self.supports.ranked(self.number)
+
+    @property
+    def clamp(self) -> ClampFigures:
+        """Where the clamp on top presses, and how good it is there."""
+        return self.triple.clamp
+
+    @property
+    def pads(self) -> tuple[SupportPad, ...]:
+        """The supports in holes that have names."""
+        return self.recounted.supports

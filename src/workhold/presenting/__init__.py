@@ -3,7 +3,7 @@
 Methods of the model's classes lead here, see ``delegates``; the command line writes its papers here too.
 
 - ``papers``: pictures, the setup sheet of a fixture, its set-up for a CAM system and its list of pins.
-- ``assembly``, ``cad``: the bodies of a set-up in files, and in build123d and CadQuery.
+- ``assembly``: the bodies of a set-up in files, and in build123d and CadQuery.
 - ``data``: plain data for JSON, and all fixtures as a table of pandas or Arrow.
 - ``figure_words``: figures, holes and counts as tables write them.
 - ``notebook``, ``further_html``: what objects show of themselves in a notebook.

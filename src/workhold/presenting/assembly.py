@@ -1,6 +1,10 @@
-"""All bodies of a set-up as a GLB file or a STEP assembly: with supports and a clamp on top, or without.
+"""All bodies of a set-up, on supports with a clamp on top or without: in files, build123d and CadQuery.
 
-Both files show the same bodies, in the same places and colours, see ``model.bodies``.
+A GLB file and a STEP assembly show the same bodies, in the same places and colours, see ``model.bodies``.
+
+A solid of build123d or CadQuery becomes a workpiece, a fixture an assembly. Both libraries wrap shapes
+of Open CASCADE, so nothing goes through a file. An assembly stands in the frame of the toolkit, or about the
+part where it lies in its own model.
 """
 
 from __future__ import annotations
@@ -14,11 +18,18 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.glb import bodies_glb, surface_mesh
+from workhold.files.part.data import wrapped_shapes
 from workhold.files.part.finding import read_bytes
-from workhold.model.bodies import BodySizes, FixtureBody, fixture_bodies
-from workhold.model.recounted import ChosenSupports
+from workhold.files.part.load import load
+from workhold.files.step.heights import foot_height
+from workhold.files.step.part_shape import pose_move
+from workhold.files.step.solids import along, axis_named, bounding_box, sub_shapes, turn_along
+from workhold.files.step.writer import named_solids
+from workhold.model.bodies import COLOURS, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.support_bodies import bodies_with_supports, supported_sizes
+from workhold.model.support_triples import ChosenSupports
+from workhold.presenting.data import library
 
 if TYPE_CHECKING:
     from workhold.files.step.part_shape import PartShape
@@ -27,9 +38,31 @@ if TYPE_CHECKING:
     from workhold.model.support_triples import Supports
     from workhold.model.workpiece import Workpiece
 
-__all__ = ["GLB_ENDINGS", "STEP_ENDINGS", "Assembly", "save_glb", "shape_in"]
+__all__ = [
+    "GLB_ENDINGS",
+    "STEP_ENDINGS",
+    "Assembly",
+    "from_build123d",
+    "from_cadquery",
+    "save_glb",
+    "shape_in",
+    "to_build123d",
+    "to_cadquery",
+]
 
 GLB_ENDINGS, STEP_ENDINGS = (".glb",), (".step", ".stp")
+AXES = {
+    (1.0, 0.0, 0.0): "x",
+    (0.0, 1.0, 0.0): "y",
+    (0.0, 0.0, 1.0): "z",
+    (-1.0, 0.0, 0.0): "-x",
+    (0.0, -1.0, 0.0): "-y",
+    (0.0, 0.0, -1.0): "-z",
+}
+# Of a direction's coordinates.
+SAME = 1e-9
+# Of a part's size in mm.
+SAME_SIZE = 1e-3
 
 
 @frozen(eq=False)
@@ -161,3 +194,170 @@ def save_glb(
     shape = shape_in(part, result.workpiece)
     assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen, shape)
     write_bytes(path, assembly.content(GLB_ENDINGS[0]))
+
+
+def from_build123d(part: Any, up: Any = "z", **choices: Any) -> Workpiece:
+    """Makes a workpiece of a part of build123d, as :func:`workhold.load` does of a file.
+
+    Parameters
+    ----------
+    part : a solid, part, sketch, face or builder.
+    up : what points up: an ``Axis``, a ``Plane`` or a vector along an axis, or a name such as "-z".
+    choices : more of :func:`workhold.load`, such as ``name`` and ``peg_height``.
+
+    Raises
+    ------
+    InputError
+        For a direction along no axis, and as :func:`workhold.load`.
+    """
+    return load(part, axis=axis_name(up), **choices)
+
+
+def from_cadquery(part: Any, up: Any = "z", **choices: Any) -> Workpiece:
+    """Makes a workpiece of a work plane or a shape of CadQuery, as :func:`from_build123d` does.
+
+    Parameters
+    ----------
+    part : a work plane, solid or compound.
+    up : what points up in the set-up: a vector or plane along an axis, or its name, such as "-z".
+    choices : more of :func:`workhold.load`.
+
+    Raises
+    ------
+    InputError
+        As :func:`from_build123d`.
+    """
+    return load(part, axis=axis_name(up), **choices)
+
+
+def axis_name(up: Any) -> str:
+    """The name of the axis along a direction, which may be an axis, a plane, a vector or a name.
+
+    >>> axis_name((0, 0, -2))
+    '-z'
+
+    Raises
+    ------
+    InputError
+        For a direction along no axis.
+    """
+    if isinstance(up, str):
+        return axis_named(up)
+    vector = next((getattr(up, name) for name in ("direction", "zDir", "z_dir") if hasattr(up, name)), up)
+    to_tuple = getattr(vector, "toTuple", None)
+    try:
+        x, y, z = map(float, to_tuple() if to_tuple else vector)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{type(up).__name__} is no direction: give an axis, a plane, a vector, or a name such as '-z'."
+        ) from error
+    length = max(abs(x), abs(y), abs(z))
+    for direction, name in AXES.items():
+        if length and all(
+            abs(one / length - other) <= SAME for one, other in zip((x, y, z), direction, strict=True)
+        ):
+            return name
+    raise InputError(f"the direction ({x:g}, {y:g}, {z:g}) is along none of x, y and z: turn the part first.")
+
+
+def to_build123d(
+    fixture: Fixture,
+    around: Any = None,
+    *,
+    thickness: float | None = None,
+    supports: Supports | None = None,
+    best: int = 1,
+) -> Any:
+    """Makes a compound of build123d, see :meth:`workhold.Fixture.to_build123d`."""
+    cad = library("build123d")
+    children = []
+    for name, shape, colour in bodies_of(fixture, around, thickness, supports, best):
+        child = cad.Compound.cast(shape)
+        child.label = name
+        child.color = cad.Color(*colour)
+        children.append(child)
+    return cad.Compound(label=title(fixture), children=children)
+
+
+def to_cadquery(
+    fixture: Fixture,
+    around: Any = None,
+    *,
+    thickness: float | None = None,
+    supports: Supports | None = None,
+    best: int = 1,
+) -> Any:
+    """Makes an assembly of CadQuery, see :meth:`workhold.Fixture.to_cadquery`."""
+    cad = library("cadquery")
+    assembly = cad.Assembly(name=title(fixture))
+    for name, shape, colour in bodies_of(fixture, around, thickness, supports, best):
+        assembly.add(cad.Shape.cast(shape), name=name, color=cad.Color(*colour, 1.0))
+    return assembly
+
+
+def title(fixture: Fixture) -> str:
+    """What an assembly is called."""
+    listed = fixture.listing
+    return f"{listed.result.workpiece.name} fixture {listed.rank}"
+
+
+def bodies_of(
+    fixture: Fixture, around: Any, thickness: float | None, supports: Supports | None, best: int
+) -> list[tuple[str, Any, tuple[float, float, float]]]:
+    """The bodies of a fixture with their names and colours, about a part where one is given.
+
+    Raises
+    ------
+    InputError
+        As :meth:`workhold.Fixture.to_build123d`.
+    """
+    result = fixture.listing.result
+    chosen = None if supports is None else ChosenSupports.of(supports, best)
+    assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen)
+    if around is None:
+        return named_solids(assembly.bodies)
+    own = own_shape(around)
+    move = to_model(own, result.workpiece, assembly.fixture)
+    part, *others = assembly.bodies
+    moved = [(name, shape.Moved(move), colour) for name, shape, colour in named_solids(others)]
+    return [(part.name, own, COLOURS[part.kind]), *moved]
+
+
+def own_shape(part: Any) -> Any:
+    """The shape of Open CASCADE of a part, with one solid.
+
+    Raises
+    ------
+    InputError
+        For a part with no solid, or with several.
+    """
+    solids = [solid for shape in wrapped_shapes(part) for solid in sub_shapes(shape, "SOLID")]
+    if len(solids) != 1:
+        raise InputError(f"around is a part with {len(solids)} solids: give the one that was designed for.")
+    return solids[0]
+
+
+def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
+    """The location that carries the frame of the toolkit into the model of the part's solid.
+
+    Raises
+    ------
+    InputError
+        For a part that was not read from a solid, and for a solid of another size.
+    """
+    from OCP.gp import gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
+
+    solid = workpiece.solid
+    if solid is None:
+        raise InputError("the part was not read from a solid, so nobody knows where its model lies.")
+    turned = along(shape, solid.axis)
+    low, high = bounding_box(turned)
+    x0, y0, x1, y1 = workpiece.bounds
+    room = min(x0 - low[0], y0 - low[1], high[0] - x1, high[1] - y1)
+    if room < -SAME_SIZE or abs(high[2] - low[2] - solid.height) > SAME_SIZE:
+        raise InputError(f"around is another part than {workpiece.name}: give the one that was designed for.")
+    foot = gp_Trsf()
+    foot.SetTranslation(gp_Vec(0.0, 0.0, -foot_height(turned)))
+    there = pose_move(fixture.pose).Multiplied(foot).Multiplied(turn_along(solid.axis))
+    return TopLoc_Location(there.Inverted())

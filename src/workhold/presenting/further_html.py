@@ -19,9 +19,9 @@ from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.errors import InputError
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.query import Query
-from workhold.model.recounted import ChosenSupports
 from workhold.model.result import Result
 from workhold.model.search_report import Explanation
+from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.data import REQUIREMENTS
 from workhold.presenting.figure_words import figure_text, rounded, unit_of
 from workhold.presenting.markup import Markup, image, paragraph, safe, table

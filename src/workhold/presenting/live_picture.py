@@ -33,10 +33,9 @@ from workhold.errors import InputError
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
-from workhold.model.recounted import ChosenSupports
 from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.model.support_triples import SupportPad, Supports
+from workhold.model.support_triples import ChosenSupports, SupportPad, Supports
 from workhold.presenting.figure_words import figure_text, figures_shown, unit_of
 from workhold.presenting.notebook import fixture_title
 from workhold.statics.loads import jaw_words, load_cases

@@ -16,8 +16,8 @@ from workhold.drawing.sheet_facts import PAPERS
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.listing.identity import entries
-from workhold.model.recounted import ChosenSupports
 from workhold.model.setup import part_zero
+from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.assembly import STEP_ENDINGS, Assembly, shape_in
 from workhold.presenting.markup import LARGE, image
 from workhold.units import unit_named

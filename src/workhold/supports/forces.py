@@ -36,9 +36,9 @@ from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 
 __all__ = [
+    "ON_ONE_LINE",
     "Corners",
     "Lines",
-    "ON_ONE_LINE",
     "PegForces",
     "Sides",
     "Triangles",

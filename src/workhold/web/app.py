@@ -17,11 +17,11 @@ from workhold.version import __version__
 from workhold.web import fixture_routes, job_routes, part_routes
 from workhold.web.answers import place_in
 from workhold.web.description import described
-from workhold.web.form import sentence_of
 from workhold.web.guard import BASES, Guard, Hosts, ServerLimits
 from workhold.web.jobs import TooManyError
 from workhold.web.origins import Origins
 from workhold.web.pool import BusyError, FailedError, StoppedError
+from workhold.web.request_forms import sentence_of
 from workhold.web.state import ServerState, state_of
 
 __all__ = ["create_app"]

@@ -12,9 +12,8 @@ from pydantic import Field
 from workhold.errors import InputError
 from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
-from workhold.web.form import LARGEST, Form, Name
 from workhold.web.forms import HeldIn, ToleranceForm
-from workhold.web.part_forms import WorkpieceForm
+from workhold.web.request_forms import LARGEST, Form, Name, WorkpieceForm
 from workhold.web.worker import Order
 
 if TYPE_CHECKING:

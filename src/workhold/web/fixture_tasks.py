@@ -24,16 +24,15 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.query import Query
-from workhold.model.recounted import ChosenSupports
 from workhold.model.result import Result
 from workhold.model.seating import Seating
+from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite
 from workhold.seating.clamping import ByHand, by_hand
 from workhold.seating.pattern import Pattern
 from workhold.units import unit_named
-from workhold.web.form import LARGEST, Form, Number
-from workhold.web.support_forms import ChosenSupportsForm
+from workhold.web.request_forms import LARGEST, ChosenSupportsForm, Form, Number
 from workhold.web.support_tasks import SupportsOrder, chosen_supports
 from workhold.web.worker import Order
 

@@ -20,7 +20,8 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
-from workhold.web.form import (
+from workhold.web.program_forms import ProgramForm
+from workhold.web.request_forms import (
     LARGEST,
     MOST_LOADS,
     MOST_POINTS,
@@ -31,10 +32,9 @@ from workhold.web.form import (
     Name,
     Number,
     Point,
+    WorkpieceForm,
     of_address,
 )
-from workhold.web.part_forms import WorkpieceForm
-from workhold.web.program_forms import ProgramForm
 
 __all__ = [
     "ExploreForm",

@@ -12,9 +12,9 @@ from workhold.version import __version__
 from workhold.web.answers import figures_answer, toolkit_answer
 from workhold.web.fixture_tasks import has_step
 from workhold.web.job_routes import found_job
-from workhold.web.part_forms import WorkpieceForm, asked_heights
 from workhold.web.part_tasks import ShapeOrder, Upload
 from workhold.web.program_forms import ProgramQuestion
+from workhold.web.request_forms import WorkpieceForm, asked_heights
 from workhold.web.state import at_desk, at_desk_while_heard, state_of
 
 __all__ = ["router"]

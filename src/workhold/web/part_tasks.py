@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from workhold.files.part.loaded import Loaded
     from workhold.files.part.survey import Survey
     from workhold.files.step.part_shape import PartShape
-    from workhold.web.part_forms import WorkpieceForm
+    from workhold.web.request_forms import WorkpieceForm
 
 __all__ = [
     "ShapeOrder",
@@ -153,7 +153,7 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
         For more segments than this server takes.
     """
     from workhold.web.answers import part_answer
-    from workhold.web.part_forms import checked_part
+    from workhold.web.request_forms import checked_part
 
     part, sent_as = loaded.workpiece, upload.name.rpartition(".")[0] or upload.name
     checked_size = checked_part(

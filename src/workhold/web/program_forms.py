@@ -15,7 +15,7 @@ from pydantic import ConfigDict, Field
 from workhold.errors import InputError
 from workhold.model.program import Program
 from workhold.model.solid import SolidOutline
-from workhold.web.form import LARGEST, Form, Name, Point
+from workhold.web.request_forms import LARGEST, Form, Name, Point
 
 if TYPE_CHECKING:
     from workhold.files.program.reader import ReadProgram

@@ -19,13 +19,12 @@ from workhold.geometry.segment import bounding_box
 from workhold.model.bodies import BodySizes
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
-from workhold.model.recounted import ChosenSupports, recounted
 from workhold.model.requirements import zone_of
 from workhold.model.support_bodies import bodies_on_supports, supported_sizes
 from workhold.model.support_request import SupportRequest
-from workhold.model.support_triples import Supports, Triple
+from workhold.model.support_triples import ChosenSupports, Supports, Triple, recounted
 from workhold.units import unit_named
-from workhold.web.support_forms import SupportsForm
+from workhold.web.request_forms import SupportsForm
 from workhold.web.worker import Order
 
 __all__ = ["SupportsOrder", "chosen_supports", "find_supports"]

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.web.families import FamilyForm
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm
-    from workhold.web.part_forms import WorkpieceForm
+    from workhold.web.request_forms import WorkpieceForm
 
 __all__ = ["TASKS", "Found", "NamedQuery", "warm_up", "work"]
 

@@ -15,7 +15,7 @@ from workhold.files.result import heads
 from workhold.files.result.heads import head_texts, head_value, program_text
 from workhold.files.result.reader import read_result
 from workhold.model.cutting_tool import Tool
-from workhold.model.swept_piece import SweptPiece, moves_of, packed_piece
+from workhold.model.moves import SweptPiece, moves_of, packed_piece
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 

@@ -14,9 +14,8 @@ from files.step_shapes import box, fused
 from workhold import Result, Vise, design, load
 from workhold.errors import InputError
 from workhold.files.supports_file import read_supports, write_supports
-from workhold.model.recounted import ChosenSupports
 from workhold.model.support_bodies import bodies_with_supports
-from workhold.model.support_triples import Supports
+from workhold.model.support_triples import ChosenSupports, Supports
 from workhold.presenting.assembly import Assembly
 from workhold.verification.supports import verify_supports_file
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from attrs import evolve
@@ -40,9 +40,6 @@ from workhold.files.questions import (
 )
 from workhold.model.workpiece import Workpiece
 from workhold.units import unit_named
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["Loaded", "builtin_parts", "load", "read_workpiece"]
 

@@ -11,18 +11,18 @@ from math import isfinite
 from attrs import define, field
 
 from workhold.errors import InputError
-from workhold.files.program.codes import (
+from workhold.files.program.path import AXES, PathWriter, Reached, arc_about, arc_of_radius, drill
+from workhold.files.program.words import (
     CANCEL,
     FUNCTIONS,
     GROUPS,
     UNITS,
     Modes,
+    ProgramBlock,
     code_of,
     refuse_code,
     refuse_function,
 )
-from workhold.files.program.path import AXES, PathWriter, Reached, arc_about, arc_of_radius, drill
-from workhold.files.program.words import ProgramBlock
 
 __all__ = ["Interpreter"]
 

@@ -14,7 +14,7 @@ from attrs import define, field, frozen
 
 from workhold.conventions import ARC_RADII
 from workhold.errors import InputError
-from workhold.files.program.codes import Modes
+from workhold.files.program.words import Modes
 from workhold.limits import MOST_LENGTH
 
 __all__ = ["AXES", "PathWriter", "Place", "PlaneArc", "Reached", "arc_about", "arc_of_radius", "drill"]

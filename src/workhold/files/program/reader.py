@@ -12,18 +12,15 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.files.program.codes import UNITS, code_of
 from workhold.files.program.interpreter import Interpreter
-from workhold.files.program.tool_fields import SHAPE, is_bare, tool_of_fields
-from workhold.files.program.tool_tables import commented_tools, read_tools
-from workhold.files.program.words import ProgramText, program_text
+from workhold.files.program.tool_tables import SHAPE, commented_tools, is_bare, read_tools, tool_of_fields
+from workhold.files.program.words import UNITS, ProgramText, code_of, program_text
 from workhold.files.text import read_limited
 from workhold.limits import real
-from workhold.model.cutting_forces import forces_on
+from workhold.model.cutting_forces import above_block, forces_on
 from workhold.model.cutting_tool import CuttingData, Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
-from workhold.model.swept_piece import above_block
 from workhold.units import Unit
 
 __all__ = ["ReadProgram", "read_program", "read_program_with_calls"]

@@ -15,9 +15,9 @@ from workhold.archive import Column, Columns
 from workhold.errors import InputError
 from workhold.files.text import json_value
 from workhold.fixels.fields import CLAMPS
+from workhold.model.moves import PIECE_KEYS, packed_piece
 from workhold.model.program import Program
 from workhold.model.quality import FIGURES
-from workhold.model.swept_piece import PIECE_KEYS, packed_piece
 
 __all__ = [
     "COLUMNS",

@@ -1,0 +1,317 @@
+"""Requests that send a part or ask for supports, checked by pydantic, and what every request has in common.
+
+A part is sent as an outline or a solid, with outlines of carriers' own heights. Lengths are in mm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from workhold.errors import InputError
+from workhold.files.input_forms import TAGS
+from workhold.model.own_outlines import with_own_outlines
+from workhold.model.solid import SolidOutline
+from workhold.model.support_request import SpatialLoad
+from workhold.model.workpiece import Workpiece
+
+__all__ = [
+    "LARGEST",
+    "MOST_LOADS",
+    "MOST_POINTS",
+    "MOST_RANGES",
+    "MOST_VERTICES",
+    "BandForm",
+    "ChosenSupportsForm",
+    "FirstSideForm",
+    "Form",
+    "LoopForm",
+    "Name",
+    "Number",
+    "Point",
+    "SpatialLoadForm",
+    "SupportsForm",
+    "WorkpieceForm",
+    "asked_heights",
+    "asked_of",
+    "checked_part",
+    "of_address",
+    "sentence_of",
+]
+
+Asked = TypeVar("Asked")
+
+# Beyond this, in mm, degrees, N or N mm, a number is a mistake.
+LARGEST = 1e9
+MOST_VERTICES, MOST_LOADS, MOST_POINTS, MOST_RANGES = 20_000, 50, 500, 50
+
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Vertex = Annotated[list[Number], Field(min_length=3, max_length=3)]
+LoopForm = Annotated[list[Vertex], Field(min_length=1, max_length=MOST_VERTICES)]
+BandForm = Annotated[list[Annotated[float, Field(ge=0, le=LARGEST)]], Field(min_length=2, max_length=2)]
+Name = Annotated[str, Field(max_length=200)]
+FacesForm = Annotated[list[Annotated[int, Field(ge=0, le=1_000_000)]], Field(max_length=10_000)]
+AskedForm = TypeVar("AskedForm", bound="Form")
+
+# Sets of three supports that are listed at most.
+MOST_SETS = 50
+
+Length = Annotated[float, Field(ge=0, le=LARGEST)]
+Ring = Annotated[list[Number], Field(min_length=4, max_length=4)]
+Zones = Annotated[list[LoopForm], Field(max_length=MOST_RANGES)]
+
+EXAMPLE: dict[str, Any] = {
+    "thickness": 12,
+    "pad_radius": 4,
+    "tip_radius": 5,
+    "loads": [{"points": [[20, 15]], "force": 150, "heights": [8, 12], "axial": [-20, 60]}],
+    "best": 3,
+}
+
+
+class Form(BaseModel):
+    """The base of all requests.
+
+    Keys that are not known are refused. So are numbers written as text, and numbers that are not finite.
+    What is too long or too many is refused as well, and the sentence says how much is taken.
+    """
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+
+def of_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
+    """A value of an address that is JSON.
+
+    Raises
+    ------
+    InputError
+        For anything that the adapter does not take.
+    """
+    try:
+        return adapter.validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        raise InputError(sentence_of({**first, "loc": ("query", name, *map(str, first["loc"]))})) from error
+
+
+def sentence_of(error: dict[str, Any]) -> str:
+    """One thing that pydantic finds wrong with a request, as a sentence."""
+    loc = [str(part) for part in error.get("loc", ()) if part not in TAGS]
+    if error.get("type") == "json_invalid":
+        return "The request is not valid JSON: send one object."
+    where, rest = (loc[0], loc[1:]) if loc else ("body", [])
+    place = ".".join(rest)[:120]
+    message = str(error.get("msg", "not what it should be")).strip().rstrip(".")
+    message = message[:1].lower() + message[1:200]
+    if where == "body":
+        return f"The request is not as it should be{f' at {place}' if place else ''}: {message}."
+    return f"The {where} value {place} of the address is not as it should be: {message}."
+
+
+class SolidForm(Form):
+    """How the solid of an outline stands, and the heights at which each segment is touched; lengths in mm."""
+
+    axis: Literal["x", "y", "z", "-x", "-y", "-z"]
+    height: Annotated[float, Field(gt=0, le=LARGEST)]
+    peg_height: Annotated[float, Field(gt=0, le=LARGEST)]
+    head_room: Annotated[float, Field(ge=0, le=LARGEST)]
+    least_band: Annotated[float, Field(ge=0, le=LARGEST)]
+    bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
+    faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    bottom: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    top: Annotated[list[LoopForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+    top_heights: Annotated[list[Number], Field(max_length=MOST_VERTICES)] = Field(default=[])
+
+
+class OwnOutlineForm(Form):
+    """What a carrier meets that touches between two heights of its own, as a result file has it."""
+
+    heights: Point
+    loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
+    bands: Annotated[list[BandForm | None], Field(max_length=MOST_VERTICES)]
+    solid_faces: Annotated[list[FacesForm], Field(max_length=MOST_VERTICES)] = Field(default=[])
+
+
+class WorkpieceForm(Form):
+    """A part; lengths in mm. Of a solid ``outlines`` are by role those of carriers with own heights."""
+
+    name: Name = "part"
+    loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
+    departure: Annotated[float, Field(ge=0, le=LARGEST)] = 0.0
+    solid: SolidForm | None = None
+    outlines: Annotated[dict[Name, OwnOutlineForm], Field(max_length=MOST_RANGES)] = Field(default={})
+
+    def workpiece(self, most_segments: int) -> Workpiece:
+        """The part.
+
+        Raises
+        ------
+        InputError
+            For loops that cannot be used, and for too many segments.
+        """
+        solid = None if self.solid is None else SolidOutline(**self.solid.model_dump())
+        workpiece = checked_part(self.name, self.loops, most_segments, self.departure, solid)
+        if not self.outlines:
+            return workpiece
+        refuse_many(sum(len(loop) for one in self.outlines.values() for loop in one.loops), most_segments)
+        entries = {role: one.model_dump() for role, one in self.outlines.items()}
+        heights = {role: (one.heights[0], one.heights[1]) for role, one in self.outlines.items()}
+        with numbers_too_large():
+            return with_own_outlines(workpiece, entries, heights)
+
+
+def checked_part(
+    name: str,
+    loops: Sequence[Sequence[Sequence[float]]],
+    most_segments: int,
+    departure: float = 0.0,
+    solid: SolidOutline | None = None,
+) -> Workpiece:
+    """A part of loops in mm, with how far they may be from what was drawn.
+
+    Raises
+    ------
+    InputError
+        For loops that cannot be used, and for more segments than this server takes.
+    """
+    refuse_many(sum(map(len, loops)), most_segments)
+    with numbers_too_large():
+        return Workpiece.from_loops(name, loops, departure=departure, solid=solid)
+
+
+def refuse_many(count: int, most: int) -> None:
+    """Refuses a part of more segments than a server takes.
+
+    Raises
+    ------
+    InputError
+        With both numbers.
+    """
+    if count > most:
+        raise InputError(
+            f"The part has {count} segments, more than the {most} this server takes: draw its outline with "
+            "lines and arcs instead of many short pieces."
+        )
+
+
+@contextmanager
+def numbers_too_large() -> Iterator[None]:
+    """Says of numbers with which arithmetic fails that they are too large or too small.
+
+    Raises
+    ------
+    InputError
+        Instead of errors of arithmetic.
+    """
+    try:
+        yield
+    except (ArithmeticError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(
+            "The part's numbers are too large or too small to compute with: check its units."
+        ) from error
+
+
+SeveralHeights = TypeAdapter(Annotated[dict[Name, Point], Field(max_length=MOST_RANGES)])
+
+
+def asked_heights(text: str | None) -> dict[str, tuple[float, float]] | None:
+    """The heights of carriers in an address, JSON by role in mm; None where none are given.
+
+    Raises
+    ------
+    InputError
+        For anything else, and for heights of which the lower does not come first.
+    """
+    if text is None:
+        return None
+    found = {role: (low, high) for role, (low, high) in of_address(SeveralHeights, "heights", text).items()}
+    for role, (low, high) in found.items():
+        if not (low < high and high > 0.0):
+            raise InputError(
+                f"the heights {low:g} and {high:g} of the {role} are none: give the lower end first, and the "
+                "upper one above 0 mm."
+            )
+    return found
+
+
+class SpatialLoadForm(Form):
+    """A load in space, in N, mm, degrees and N mm; without heights it acts at the part's upper side.
+
+    ``axial`` is the force downward, negative where a tool pulls; ``tilt`` are the moments about x and y.
+    """
+
+    name: Name = ""
+    points: list[Point] = Field(default=[], max_length=MOST_POINTS)
+    force: Number = 0.0
+    directions: Point = Field(default=[0.0, 360.0])
+    heights: BandForm | None = None
+    axial: Point = Field(default=[0.0, 0.0])
+    moment: Number = 0.0
+    tilt: Point = Field(default=[0.0, 0.0])
+
+    def load(self) -> SpatialLoad:
+        """The load.
+
+        Raises
+        ------
+        InputError
+            When it is none.
+        """
+        return SpatialLoad(**self.model_dump())
+
+
+class SupportsForm(Form):
+    """What supports and the clamp on top are, and what acts on the part.
+
+    Of a solid the thickness, the level faces and the heights of its walls are known. What is left out is as
+    usual. ``bottom_zones`` keep pads off, ``top_zones`` the clamp. Loads are those of the search where none
+    are given.
+    """
+
+    model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE]})
+
+    thickness: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
+    band: BandForm | None = None
+    pad_radius: Length | None = None
+    pad_margin: Length | None = None
+    tip_radius: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
+    inside: Annotated[float, Field(gt=0, le=LARGEST)] | None = None
+    bottom_zones: Zones = Field(default=[])
+    top_zones: Zones = Field(default=[])
+    reach: Annotated[list[Ring], Field(max_length=MOST_RANGES)] | None = None
+    point: Point | None = None
+    loads: Annotated[list[SpatialLoadForm], Field(max_length=MOST_LOADS)] | None = None
+    jaw_force: Length | None = None
+    best: Annotated[int, Field(ge=1, le=MOST_SETS)] = 3
+    unit: Literal["mm", "inch"] = "mm"
+
+
+class ChosenSupportsForm(SupportsForm):
+    """One of the sets of three that are answered to the same request, from 1."""
+
+    chosen: Annotated[int, Field(ge=1, le=MOST_SETS)] = 1
+
+
+class FirstSideForm(Form):
+    """The set-up before: a fixture of another job, and which faces of its part it cuts."""
+
+    job: Name
+    rank: Annotated[int, Field(ge=1, le=10**9)]
+    cut: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
+
+
+def asked_of(form: type[AskedForm], name: str, text: str | None) -> AskedForm | None:
+    """A value of an address that is JSON of a form; None where none is given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    return None if text is None else of_address(TypeAdapter(form), name, text)
