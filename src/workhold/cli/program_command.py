@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from attrs import asdict
 
 from workhold.cli.commands import option
-from workhold.cli.cutting_options import (
+from workhold.cli.options import SHOWN_UNIT
+from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.program_options import (
     CUT_DEPTH,
     CUT_WIDTH,
     CUTTING_DIRECTION,
@@ -17,14 +19,14 @@ from workhold.cli.cutting_options import (
     MATERIAL,
     POWER,
     TEETH,
-    CuttingWords,
+    ProgramWords,
     asked_cutting,
+    asked_height,
+    asked_rapid,
+    asked_zero,
 )
-from workhold.cli.options import SHOWN_UNIT
-from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import choice, length, length_unit, optional_positive_length
-from workhold.errors import InputError
+from workhold.cli.values import choice, length_unit, optional_positive_length
 
 if TYPE_CHECKING:
     import numpy as np
@@ -86,8 +88,16 @@ def program(
     picture = asked_picture(draw, (program_file, tools), force)
     height = None if thickness is None else optional_positive_length("--thickness", thickness, shown)
     asked_unit = None if program_unit is None else choice("--program-unit", program_unit, ("mm", "inch"))
-    typed = (cutting_force, power, material, teeth, cut_depth, cut_width, cutting_direction)
-    cutting = asked_cutting(CuttingWords(*typed), shown)
+    typed = ProgramWords(
+        cutting_force=cutting_force,
+        power=power,
+        material=material,
+        teeth=teeth,
+        cut_depth=cut_depth,
+        cut_width=cut_width,
+        cutting_direction=cutting_direction,
+    )
+    cutting = asked_cutting(typed, shown)
     from workhold.files.program.reader import read_program_with_calls
 
     read = read_program_with_calls(
@@ -110,34 +120,6 @@ def program(
     report(read, shown, from_z_zero=z_zero == "top" and height is None)
     if picture is not None:
         print_tables(f"Written to {picture}.")
-
-
-def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
-    """The place of the program's zero on the part, in mm.
-
-    Raises
-    ------
-    InputError
-        For anything but two lengths.
-    """
-    words = text.split(",")
-    if len(words) != 2:
-        raise InputError(f"--zero {text!r} is not a place here: give two lengths, such as 10,5.")
-    return length("--zero", words[0], unit), length("--zero", words[1], unit)
-
-
-def asked_height(text: str, thickness: float | None, unit: Unit) -> float | Literal["top", "bottom"]:
-    """The height of the program's Z0: a side of the part, or in mm; 0 for the top of a part nobody knows."""
-    if text == "top":
-        return "top" if thickness is not None else 0.0
-    if text == "bottom":
-        return "bottom"
-    return length("--z-zero", text, unit)
-
-
-def asked_rapid(text: str) -> Literal["straight", "box"]:
-    """How rapid moves go."""
-    return "box" if choice("--rapid", text, ("straight", "box")) == "box" else "straight"
 
 
 def data_of(read: ReadProgram) -> dict[str, Any]:

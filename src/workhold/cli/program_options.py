@@ -1,39 +1,77 @@
-"""Options of a program that fixtures are to let pass, and how near its tools come to one."""
+"""Options of a program: where its zero is, how its tools cut, and that fixtures are to let it pass.
+
+How tools cut is asked where the table of tools does not say it. The answer is how near the tools come to
+a fixture, and which forces they ask for.
+"""
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from attrs import evolve, fields, frozen
 
 from workhold.cli.commands import option, print_remark
-from workhold.cli.cutting_options import (
-    CUT_DEPTH,
-    CUT_WIDTH,
-    CUTTING_DIRECTION,
-    CUTTING_FORCE,
-    MATERIAL,
-    POWER,
-    TEETH,
-    asked_cutting,
-)
 from workhold.cli.options import PartWords
-from workhold.cli.program_command import asked_height, asked_rapid, asked_zero
-from workhold.cli.values import choice, length, optional_positive_length
+from workhold.cli.values import (
+    choice,
+    in_unit,
+    length,
+    optional_force,
+    optional_positive_length,
+    whole_number,
+)
 from workhold.errors import InputError
-from workhold.units import MILLIMETRE
+from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
+    from workhold.model.cutting_tool import CuttingData
     from workhold.model.program import Program
     from workhold.model.result import Result
     from workhold.model.workpiece import Workpiece
-    from workhold.units import Unit
 
-__all__ = ["ProgramWords", "passing_data", "passing_words"]
+__all__ = [
+    "CUTTING_DIRECTION",
+    "CUTTING_FORCE",
+    "CUT_DEPTH",
+    "CUT_WIDTH",
+    "MATERIAL",
+    "POWER",
+    "ProgramWords",
+    "TEETH",
+    "asked_cutting",
+    "asked_height",
+    "asked_rapid",
+    "asked_zero",
+    "passing_data",
+    "passing_words",
+]
 
+FORCES = "Cutting forces"
+CUTTING_FORCE = option(
+    FORCES, "FORCE", "Force at the periphery of every tool whose own the table does not give, in N or 1.5kN."
+)
+POWER = option(FORCES, "KW", "Power at the spindle, from which the force follows by S; also 3hp.")
+MATERIAL = option(
+    FORCES,
+    "NAME|KC,MC",
+    "What is cut, such as steel, stainless, cast-iron, aluminium, brass or titanium, or kc1.1 in N/mm2 and "
+    "mc: the force follows from F, S, teeth and the cut.",
+)
+TEETH = option(FORCES, "N", "Teeth of every tool whose own the table does not give.")
+CUT_DEPTH = option(FORCES, "LENGTH", "How deep tools cut at most at once, along their axes.")
+CUT_WIDTH = option(FORCES, "LENGTH", "How broad they cut, across the feed; the tool's diameter if not given.")
+CUTTING_DIRECTION = option(
+    FORCES,
+    "any|feed",
+    "Whether a force may act in any direction, or within 60 degrees of against the feed; any if not given.",
+)
+POWER_WORDS = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>kW|hp)?\s*", re.IGNORECASE | re.DOTALL)
+# kW in a unit; 550 foot-pounds a second.
+POWERS = {"kw": 1.0, "hp": 0.7456998715822702}
 PROGRAM = "The program"
 SOLIDS = (".step", ".stp")
 
@@ -160,6 +198,82 @@ class ProgramWords:
             )
         zero = zero_on(workpiece, self.zero, unit)
         return {"program": read_once(self, unit, thick, zero), "peg_height": high or thick}
+
+
+def asked_cutting(typed: ProgramWords, unit: Unit) -> CuttingData:
+    """How tools cut, from the options of cutting forces.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing, and what cannot be.
+    """
+    from workhold.model.cutting_tool import CuttingData
+
+    given: dict[str, Any] = {
+        "cutting_force": no_force(typed.cutting_force),
+        "power": asked_power(typed.power),
+        "material": typed.material,
+        "teeth": None if typed.teeth is None else whole_number("--teeth", typed.teeth),
+        "cut_depth": optional_positive_length("--cut-depth", typed.cut_depth, unit),
+        "cut_width": optional_positive_length("--cut-width", typed.cut_width, unit),
+        "direction": None,
+    }
+    if typed.cutting_direction is not None:
+        given["direction"] = choice("--cutting-direction", typed.cutting_direction, ("any", "feed"))
+    return CuttingData(**given)
+
+
+def no_force(text: str | None) -> float | None:
+    """A cutting force in N, 0 included; None where it is not given."""
+    return 0.0 if text is not None and text.strip() == "0" else optional_force("--cutting-force", text)
+
+
+def asked_power(text: str | None) -> float | None:
+    """A power in kW, or None where it is not given.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> asked_power("2.2"), round(asked_power("3 hp"), 3)
+    (2.2, 2.237)
+    """
+    if text is None:
+        return None
+    remedy = "a power above 0: give it in kW, such as 2.2, or as 3hp."
+    return in_unit("--power", text, POWER_WORDS, POWERS, "kw", remedy)
+
+
+def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
+    """The place of the program's zero on the part, in mm.
+
+    Raises
+    ------
+    InputError
+        For anything but two lengths.
+    """
+    words = text.split(",")
+    if len(words) != 2:
+        raise InputError(f"--zero {text!r} is not a place here: give two lengths, such as 10,5.")
+    return length("--zero", words[0], unit), length("--zero", words[1], unit)
+
+
+def asked_height(text: str, thickness: float | None, unit: Unit) -> float | Literal["top", "bottom"]:
+    """The height of the program's Z0: a side of the part, or in mm; 0 for the top of a part nobody knows."""
+    if text == "top":
+        return "top" if thickness is not None else 0.0
+    if text == "bottom":
+        return "bottom"
+    return length("--z-zero", text, unit)
+
+
+def asked_rapid(text: str) -> Literal["straight", "box"]:
+    """How rapid moves go."""
+    return "box" if choice("--rapid", text, ("straight", "box")) == "box" else "straight"
 
 
 def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
