@@ -9,6 +9,7 @@ set-up before has cut or located on.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
 from math import atan2, hypot, pi
 
@@ -203,29 +204,29 @@ def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
 
 def face_words(before: FirstSide) -> list[str]:
     """Sentences on faces that were cut before, and on those that both set-ups touch."""
-    found = []
-    cut = listed([str(number) for number in before.cut_of_solid]) if before.cut_of_solid else ""
-    cut_faces = f"face {cut}" if len(before.cut_of_solid) == 1 else f"faces {cut}"
+    cut, found = numbered_faces(before.cut_of_solid), list[str]()
     if before.cut:
-        faces = listed([str(number) for number in before.cut])
-        noun = "Face" if len(before.cut) == 1 else "Faces"
         found.append(
-            f"{noun} {faces} of this outline must not be touched: the first set-up cuts {cut_faces} of the "
-            "solid."
+            f"{numbered_faces(before.cut).capitalize()} of this outline must not be touched: the first "
+            f"set-up cuts {cut} of the solid."
         )
     elif before.cut_of_solid:
-        found.append(
-            f"What the first set-up cuts ({cut_faces} of the solid) is not in reach of the pegs here."
-        )
+        found.append(f"What the first set-up cuts ({cut} of the solid) is not in reach of the pegs here.")
     else:
         found.append("The first set-up names no face that it cuts.")
     if before.shared:
-        faces = listed([str(number) for number in before.shared])
-        noun = "Face" if len(before.shared) == 1 else "Faces"
         found.append(
-            f"{noun} {faces} of the solid {'is' if len(before.shared) == 1 else 'are'} touched in both "
-            "set-ups, in the first by its best fixture."
+            f"{numbered_faces(before.shared).capitalize()} of the solid "
+            f"{'is' if len(before.shared) == 1 else 'are'} touched in both set-ups, in the first by its best "
+            "fixture."
         )
     else:
         found.append("No face is touched in both set-ups: what one locates on, the other does not.")
     return found
+
+
+def numbered_faces(numbers: Sequence[int]) -> str:
+    """Faces by their numbers, such as ``faces 1, 2 and 5``; empty where there are none."""
+    if not numbers:
+        return ""
+    return f"{'face' if len(numbers) == 1 else 'faces'} {listed([str(number) for number in numbers])}"

@@ -39,11 +39,6 @@ Loops = tuple[NDArray[np.float64], ...]
 Span = tuple[float, float]
 
 
-def optional_real(value: Any) -> float | None:
-    """A number, or None."""
-    return None if value is None else real(value)
-
-
 def optional_reals(values: Iterable[Any] | None) -> tuple[float, ...] | None:
     """Numbers as a tuple, or None."""
     return None if values is None else tuple(real(value) for value in values)

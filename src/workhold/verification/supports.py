@@ -78,7 +78,6 @@ class SupportsJudge:
     jaw_force: float
     pegs: Array = field(init=False)
     pushes: Array = field(init=False)
-    solvers: dict[str, Array] = field(factory=dict, init=False)
 
     def __attrs_post_init__(self) -> None:
         inverse = self.fixture.pose.inverse

@@ -19,7 +19,7 @@ from OCP.Geom import Geom_BezierCurve
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import box, cut, cylinder, fused
 
-from workhold.files.step.crossings import bisected, crossing
+from workhold.files.step.edge_curves import bisected, crossing
 from workhold.files.step.heights import standing
 from workhold.files.step.projected import OtherCurveError
 from workhold.files.step.which_height import measures

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from attrs import evolve, frozen
 
-from workhold.errors import InputError
+from workhold.errors import InputError, listed
 from workhold.files.program.interpreter import Interpreter
 from workhold.files.program.tool_tables import SHAPE, commented_tools, is_bare, read_tools, tool_of_fields
 from workhold.files.program.words import UNITS, ProgramText, code_of, program_text
@@ -275,15 +275,6 @@ def lacking(used: Sequence[int], missing: Sequence[int]) -> str:
         f"{called} is not known: give a file of tools with a line for each, such as "
         f"{SHAPE.format(number=missing[0])}."
     )
-
-
-def listed(words: Sequence[str]) -> str:
-    """Words as a list in a sentence.
-
-    >>> listed(["T1", "T2", "T3"])
-    'T1, T2 and T3'
-    """
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def lines_named(lines: Sequence[int]) -> str:

@@ -20,8 +20,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SHORTEST
-from workhold.files.step.crossings import crossing
-from workhold.files.step.edge_curves import Found, Point3, curve_point, extremes, height
+from workhold.files.step.edge_curves import Found, Point3, crossing, curve_point, extremes, height
 from workhold.files.step.faces import SolidFace, surface_of
 from workhold.geometry.segment import Arc, Line
 

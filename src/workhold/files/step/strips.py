@@ -16,8 +16,7 @@ from attrs import frozen
 
 from workhold.conventions import SAME_HEIGHT
 from workhold.files.step.bands import Walls, length
-from workhold.files.step.crossings import bisected, narrowed
-from workhold.files.step.edge_curves import ONE_HEIGHT
+from workhold.files.step.edge_curves import ONE_HEIGHT, bisected, narrowed
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
 from workhold.model.solid import Band

@@ -35,7 +35,6 @@ SILENT = {
     "filter",
 }
 SILENT |= {"linearGradient", "radialGradient", "view", "namedview"}
-CUT_OFF = ("hidden", "scroll", "clip")
 FEATURES = "http://www.w3.org/TR/SVG11/feature#"
 MARKED = ("path", "line", "polyline", "polygon")
 
