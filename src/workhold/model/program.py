@@ -281,7 +281,7 @@ class Program:
         return boxed
 
     def pressing_on(self, part: Box) -> Program:
-        """The program without forces on moves that stay beside the raw block of a part; see ``raw_block``.
+        """The program without forces on moves that stay beside the raw block of a part.
 
         Parameters
         ----------

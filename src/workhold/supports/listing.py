@@ -117,7 +117,8 @@ class SupportSearch:
             None if request.point is None else np.array(request.point),
         )
         chosen = choice.chosen(best, cancel, progress)
-        triples = Describing(choice, holes, toolkit_names(self.query), request).triples(chosen)
+        names = [one.name for one in toolkit.carriers]
+        triples = Describing(choice, holes, names, request).triples(chosen)
         return Supports(
             self.query,
             fixture,
@@ -129,11 +130,6 @@ class SupportSearch:
             triples,
             chosen.stopped,
         )
-
-
-def toolkit_names(query: Query) -> list[str]:
-    """Names of the carriers of a query's toolkit."""
-    return [one.name for one in query.toolkit.carriers]
 
 
 @define(frozen=True, eq=False)
