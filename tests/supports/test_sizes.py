@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import pytest
 from attrs import evolve
 
 from supports.cases import case
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.model.query import Query
+from workhold.model.support_request import SpatialLoad
+from workhold.model.support_triples import Supports
+from workhold.supports.acting import WeakJawError
 from workhold.supports.asking import SMALLER, requests_by_size, supported_by_size
 
 
@@ -28,6 +32,29 @@ def test_sizes_fall_and_the_toolkits_own_stay() -> None:
     own = evolve(query, toolkit=evolve(query.toolkit, supports=pads, top_clamp=clamp))
     assert sizes(own) == [(2.5, 6.0)]
     assert [one.inside for one in requests_by_size(query, 12.0)] == [5.0, 4.0, 3.0]
+
+
+def test_who_asks_for_a_size_is_given_no_other() -> None:
+    """A margin or a distance inside is a size as well; a band of heights is none."""
+    query = case("bracketL").query
+    for asked in ({"pad_radius": 4.0}, {"tip_radius": 5.0}, {"pad_margin": 0.5}, {"inside": 2.0}):
+        assert len(list(requests_by_size(query, 12.0, asked))) == 1, asked
+    assert [one.band for one in requests_by_size(query, 12.0, {"band": (2.0, 9.0)})] == [(2.0, 9.0)] * 3
+
+
+def test_a_jaw_force_that_is_too_weak_is_refused_or_dropped() -> None:
+    """Dropped it is as if none had been given: the force that keeps all pegs in contact."""
+    one = case("bracketL")
+    load = SpatialLoad(points=((20.0, 15.0),), force=200.0)
+
+    def found(force: float | None, drops: bool) -> Supports:
+        requests = requests_by_size(one.query, 12.0)
+        asked = [one.fixture], one.query, requests, [load], force
+        return supported_by_size(*asked, drops_weak_force=drops)[0][0]
+
+    with pytest.raises(WeakJawError):
+        found(1.0, False)
+    assert found(1.0, True).jaw_force == found(None, False).jaw_force > 1.0
 
 
 def test_the_largest_sizes_that_hold_any_are_taken() -> None:

@@ -244,7 +244,7 @@ def first_supported(
             return rank, said_to_be_there(rank, ranks[0], ChosenSupports.of(known[rank]))
     fixtures, requests = [result[rank - 1] for rank in ranks], requests_by_size(query, thickness)
     found, _ = supported_by_size(
-        fixtures, query, requests, None, query.jaw_force, first_only=True, spares_weak=True
+        fixtures, query, requests, None, query.jaw_force, first_only=True, drops_weak_force=True
     )
     if found[-1].triples:
         rank = ranks[len(found) - 1]
@@ -314,7 +314,9 @@ def chosen_supports(
         raise InputError("how thick the part is, is not known: give --thickness.")
     query = result.query
     requests = requests_by_size(query, thickness)
-    (found,), _ = supported_by_size([result[rank - 1]], query, requests, loads, jaw_force, spares_weak=True)
+    (found,), _ = supported_by_size(
+        [result[rank - 1]], query, requests, loads, jaw_force, drops_weak_force=True
+    )
     if not found.triples:
         raise InputError(
             f"under fixture {rank} no three supports hold the part: see workhold supports with its "

@@ -21,7 +21,7 @@ from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
-from workhold.supports.listing import each_supported, supports_of, supports_of_best
+from workhold.supports.listing import supports_of, supports_of_best, supports_one_by_one
 
 __all__ = [
     "SMALLER",
@@ -111,7 +111,7 @@ def supported_by_size(
     each: int | None = 1,
     *,
     first_only: bool = False,
-    spares_weak: bool = False,
+    drops_weak_force: bool = False,
     cancel: Event | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
@@ -120,8 +120,8 @@ def supported_by_size(
     Parameters
     ----------
     requests : to be tried in turn, see :func:`requests_by_size`.
-    each, spares_weak, cancel, progress : as of :func:`workhold.supports.listing.each_supported`; once
-        ``cancel`` is set no further request is tried.
+    each, drops_weak_force, cancel, progress : see :func:`workhold.supports.listing.supports_one_by_one`;
+        once ``cancel`` is set no further request is tried.
     first_only : whether fixtures behind the first that has some are passed over.
 
     Returns
@@ -135,14 +135,14 @@ def supported_by_size(
     """
     usual = found = tuple[Supports, ...]()
     for request in requests:
-        every = each_supported(
+        every = supports_one_by_one(
             fixtures,
             query,
             request,
             loads,
             jaw_force,
             each,
-            spares_weak=spares_weak,
+            drops_weak_force=drops_weak_force,
             cancel=cancel,
             progress=progress,
         )

@@ -27,7 +27,7 @@ from workhold.supports.forces import PegForces, Sides, lifted_by_jaws
 from workhold.supports.holes import CarrierRoom, HolesUnderPart, holes_under
 from workhold.supports.program_zones import with_program
 
-__all__ = ["SupportSearch", "each_supported", "supports_of", "supports_of_best"]
+__all__ = ["SupportSearch", "supports_one_by_one", "supports_of", "supports_of_best"]
 
 Array = NDArray[np.float64]
 # More holes than these leave more triples than can be looked at.
@@ -240,7 +240,7 @@ def supports_of(
         For pads too large for the holes, and a jaw force too small for a load. For more holes than can be
         looked at, and for all triples where there are too many.
     """
-    every = each_supported(
+    every = supports_one_by_one(
         (fixture,), query, request, loads, jaw_force, best, cancel=cancel, progress=progress
     )
     return next(every)
@@ -266,11 +266,11 @@ def supports_of_best(
     """
     every = list(fixtures)
     return tuple(
-        each_supported(every, query, request, loads, jaw_force, each, cancel=cancel, progress=progress)
+        supports_one_by_one(every, query, request, loads, jaw_force, each, cancel=cancel, progress=progress)
     )
 
 
-def each_supported(
+def supports_one_by_one(
     fixtures: Sequence[Fixture],
     query: Query,
     request: SupportRequest,
@@ -278,7 +278,7 @@ def each_supported(
     jaw_force: float | None = None,
     each: int | None = 3,
     *,
-    spares_weak: bool = False,
+    drops_weak_force: bool = False,
     cancel: Event | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Iterator[Supports]:
@@ -287,7 +287,7 @@ def each_supported(
     Parameters
     ----------
     each : how many triples of each fixture, None for all; others as of :func:`supports_of`.
-    spares_weak : whether a jaw force that is too small for a load is left out, not refused.
+    drops_weak_force : whether a jaw force that is too small for a load is left out, not refused.
     """
     acting = acting_on(query, request.thickness) if loads is None else loads
     asked = spatial(acting, request.thickness)
@@ -302,7 +302,7 @@ def each_supported(
         try:
             found = search.supports(fixture, force, each, cancel, share)
         except WeakJawError:
-            if not spares_weak:
+            if not drops_weak_force:
                 raise
             found = search.supports(fixture, None, each, cancel, share)
         yield found
