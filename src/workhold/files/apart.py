@@ -85,14 +85,14 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
             clock.start()
             # Its pipe stays open until it has answered: the process ends when it closes.
             answered = first + process.stdout.read()
-            process.wait()
+            code = process.wait()
         finally:
             process.kill()
             clock.cancel()
             with suppress(BrokenPipeError):
                 process.stdin.close()
-    given_up = late.is_set() or process.returncode == -getattr(signal, "SIGXCPU", 0)
-    return outcome(answered, process.returncode, given_up, (seconds, memory), what)
+    given_up = late.is_set() or code == -getattr(signal, "SIGXCPU", 0)
+    return outcome(answered, code, given_up, (seconds, memory), what)
 
 
 def started(module: str) -> ForkedProcess | subprocess.Popen[bytes]:

@@ -95,7 +95,7 @@ class ForkServer:
         ours, its = socket.socketpair()
         with its:
             process = subprocess.Popen(
-                command, stdin=its, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+                command, stdin=its.fileno(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
             )
         return cls(process, ours, (os.getpid(), tuple(command), dict(os.environ)))
 
