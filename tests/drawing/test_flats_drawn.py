@@ -19,7 +19,7 @@ from workhold.drawing.sheet import draw_sheet
 from workhold.drawing.sheet_facts import SheetDetails
 from workhold.files.dxf.writer import setup_dxf
 from workhold.files.result.fixture_text import pin_list
-from workhold.fixels.contacts import Flat, peg_outline
+from workhold.fixels.pegs import Flat, peg_outline
 from workhold.geometry.segment import Line
 from workhold.units import MILLIMETRE
 

@@ -19,7 +19,7 @@ from workhold import Fence, Fixture, InputError, Plate, Query, Vise, design
 from workhold.algebra.engine import answer_by_algebra
 from workhold.contact.features import contact_features
 from workhold.files.toolkit_file import load_toolkit
-from workhold.fixels.contacts import Flat, flat_of, standoff
+from workhold.fixels.pegs import Flat, flat_of, standoff
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.offset import trimmed_offsets
 from workhold.geometry.segment import Arc, Line

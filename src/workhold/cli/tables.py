@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from workhold.cli.table import Table
 from workhold.fixels.contacts import FLAT_PIN
-from workhold.model.solid import FileSolid, HeightRow, other_way_up
-from workhold.model.workpiece import Workpiece
+from workhold.model.solid import other_way_up
 from workhold.presenting.figure_words import (
     counted_text,
     figure_text,
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from workhold.model.result import Result
     from workhold.model.search_report import Proof, Undecided
     from workhold.model.setup import LengthSetting
+    from workhold.model.solid import FileSolid, HeightRow
     from workhold.model.workpiece import Workpiece
 
 __all__ = [

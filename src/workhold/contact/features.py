@@ -19,7 +19,7 @@ from workhold.contact.trimming import most_in_the_way, parts_clear_of
 from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
-from workhold.fixels.contacts import Flat
+from workhold.fixels.pegs import Flat
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y

@@ -16,7 +16,8 @@ from typing import Any, Literal
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, TOWARDS, WALL_END, ContactKind, Flat
+from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, TOWARDS, WALL_END, ContactKind
+from workhold.fixels.pegs import Flat
 
 __all__ = [
     "WALL",

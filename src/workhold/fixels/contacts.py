@@ -1,12 +1,7 @@
-"""The contacts that hold a part: kinds of them, how carriers share them, symmetries, and outlines of pegs.
+"""The contacts that hold a part: their kinds, how carriers share them, and the symmetries of that.
 
 The kinds are round pins, pins with a flat, a straight wall, and the tips of clamps. Clamps push in directions
 that have names in files.
-
-Pegs in holes are round, or have a flat, which lies on straight faces (Wallack and Canny 1996, section
-2.3). Such a peg is turned in its hole so that its flat lies on the face: there its centre stands nearer to
-the part than its radius. On arcs it touches with its round side. Where its body may be turned any way, it
-must be clear of all else.
 
 Reference: R. C. Brost and K. Y. Goldberg, *A complete algorithm for designing planar fixtures using modular
 components*, IEEE Transactions on Robotics and Automation 12 (1996), who call such elements of a fixture
@@ -15,15 +10,10 @@ fixels.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from math import acos, cos, isfinite, nan, pi, radians, sin, sqrt
-from typing import Any, Literal
+from math import pi
+from typing import Literal
 
-from attrs import evolve, field, frozen
-
-from workhold.errors import InputError
-from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.limits import real
+from attrs import frozen
 
 __all__ = [
     "CLAMP_TIP",
@@ -34,16 +24,8 @@ __all__ = [
     "WALL_END",
     "Arrangement",
     "ContactKind",
-    "Flat",
     "Symmetry",
-    "flat_of",
-    "peg_outline",
-    "resolved_flat",
-    "standoff",
 ]
-
-# Parts of the peg radius; a width that was rounded when it was written down is one still.
-ROUNDED = 1e-6
 
 
 @frozen
@@ -147,92 +129,3 @@ class Symmetry:
 
     half_turns: int
     carriers: tuple[int, ...]
-
-
-@frozen
-class Flat:
-    """The flat of a peg.
-
-    Parameters
-    ----------
-    distance : from the peg's centre to its flat, in mm; no more than the peg radius.
-    half_width : of the flat in mm; NaN means all that there is at this distance.
-    """
-
-    distance: float = field(converter=real)
-    half_width: float = field(default=nan, converter=real)
-
-
-def flat_of(value: Any) -> Flat | None:
-    """A flat from what stands for it: its distance, that and half its width, or a mapping of both.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-
-    Examples
-    --------
-    >>> flat_of({"distance": 2.0, "half_width": 1.5}) == flat_of((2.0, 1.5))
-    True
-    """
-    if value is None or isinstance(value, Flat):
-        return value
-    if isinstance(value, Mapping) and "distance" in value and set(value) <= {"distance", "half_width"}:
-        return Flat(**value)
-    numbers = (
-        tuple(value) if isinstance(value, Iterable) and not isinstance(value, (str, Mapping)) else (value,)
-    )
-    if not 1 <= len(numbers) <= 2 or any(isinstance(number, (str, Mapping)) for number in numbers):
-        raise InputError(
-            f"flat {value!r} is none: give its distance from the peg's centre, and half its width, in mm."
-        )
-    return Flat(*numbers)
-
-
-def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
-    """A flat on a peg of a radius in mm, as wide as it is.
-
-    Raises
-    ------
-    InputError
-        For a flat that such a peg cannot have.
-    """
-    if flat is None:
-        return None
-    if not (isfinite(flat.distance) and 0 <= flat.distance <= peg_radius):
-        raise InputError(
-            f"a flat {flat.distance:g} mm from the centre is none of a peg of radius {peg_radius:g}: give 0 "
-            "or more, and no more than the radius."
-        )
-    widest = sqrt(peg_radius**2 - flat.distance**2)
-    half_width = widest if flat.half_width != flat.half_width else flat.half_width
-    if not 0 <= half_width <= widest + ROUNDED * peg_radius:
-        raise InputError(
-            f"half a width of {half_width:g} mm is none of a flat {flat.distance:g} mm from the centre of a "
-            f"peg of radius {peg_radius:g}: give up to {widest:.4g}."
-        )
-    return evolve(flat, half_width=half_width)
-
-
-def standoff(peg_radius: float, flat: Flat | None, face: Segment) -> float:
-    """Distance in mm from a face to the centre of a peg that touches it."""
-    return flat.distance if flat is not None and isinstance(face, Line) else peg_radius
-
-
-def peg_outline(
-    center: Point, radius: float, flat: Flat | None = None, flat_deg: float | None = None
-) -> list[Segment]:
-    """The outline of a peg in mm, counter-clockwise: a circle, cut off by the flat if there is one.
-
-    The flat looks in the direction ``flat_deg`` in degrees.
-    """
-    if flat is None or flat_deg is None or flat.distance >= radius:
-        return [Arc(center, radius, 0.0, pi, 1.0)]
-    looks, half = radians(flat_deg), acos(flat.distance / radius)
-    arc = Arc(center, radius, looks + pi, pi - half, 1.0)
-    end, start = (
-        (center[0] + radius * cos(looks + turn), center[1] + radius * sin(looks + turn))
-        for turn in (-half, half)
-    )
-    return [arc, Line(end, start)]

@@ -10,7 +10,6 @@ from math import pi
 from typing import ClassVar
 
 from workhold.fixels.carrier import Heights
-from workhold.fixels.contacts import Flat
 from workhold.fixels.fields import (
     FLAT,
     JAW_HEIGHTS,
@@ -22,6 +21,7 @@ from workhold.fixels.fields import (
     WALL_HEIGHTS,
 )
 from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle, wall_carrier
+from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording

@@ -18,8 +18,9 @@ from attrs.converters import optional
 
 from workhold.errors import InputError
 from workhold.fixels.carrier import WALL, Carrier, Holes, holes_named
-from workhold.fixels.contacts import DIRECTIONS, flat_of, resolved_flat
+from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import PITCH
+from workhold.fixels.pegs import flat_of, resolved_flat
 from workhold.fixels.support_hardware import HARDWARE, hardware_of
 from workhold.fixels.table import SILENT, ToolkitField
 from workhold.fixels.toolkit import Change, Toolkit

@@ -16,7 +16,7 @@ from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.fixels.carrier import Heights
-from workhold.fixels.contacts import DIRECTIONS, Flat
+from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import (
     CLAMP_HEIGHTS,
     CLAMP_RADIUS,
@@ -30,6 +30,7 @@ from workhold.fixels.fields import (
     TRAVEL,
 )
 from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle
+from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording

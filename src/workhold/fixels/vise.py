@@ -9,7 +9,6 @@ from typing import ClassVar
 from attrs import evolve
 
 from workhold.fixels.carrier import Heights, Holes
-from workhold.fixels.contacts import Flat
 from workhold.fixels.fields import (
     BLOCKED,
     BODY_RADIUS,
@@ -25,6 +24,7 @@ from workhold.fixels.fields import (
     ROWS,
 )
 from workhold.fixels.making import lattice_carrier, made_from_table, settle
+from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
 from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording

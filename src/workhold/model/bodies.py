@@ -19,7 +19,7 @@ from attrs import frozen
 
 from workhold.errors import InputError, plain, shortened
 from workhold.fixels.carrier import Carrier, hole_name
-from workhold.fixels.contacts import peg_outline
+from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import LoopShape, encloses, signed_area
 from workhold.geometry.segment import Arc, Box, Line, Point, Segment

@@ -14,7 +14,7 @@ from math import pi
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.fixels.contacts import peg_outline
+from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, distance_to_segment, segment_rows
 from workhold.kernels.base.distance import is_inside

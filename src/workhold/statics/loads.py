@@ -42,7 +42,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import FLAT, NO_FORCE, OUTSIDE
 from workhold.errors import InputError
-from workhold.fixels.contacts import standoff
+from workhold.fixels.pegs import standoff
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.contact.quality import HALF, HIGH_X, HIGH_Y, LOW_X, LOW_Y, MIDDLE_X, MIDDLE_Y
 from workhold.limits import MOST_FRICTION, real, refuse_strong

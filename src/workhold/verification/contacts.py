@@ -31,7 +31,7 @@ from typing import Any, ClassVar
 from attrs import evolve, field, frozen
 from flint import arb, arb_mat
 
-from workhold.fixels.contacts import Flat
+from workhold.fixels.pegs import Flat
 from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
 from workhold.verification.ball_geometry import (

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import outlines_entry, proof_entry, tolerance_entry, toolkit_fields
 from workhold.fixels.carrier import Carrier
-from workhold.fixels.contacts import WALL_END, standoff
+from workhold.fixels.contacts import WALL_END
+from workhold.fixels.pegs import standoff
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Box, Segment
 from workhold.model.clamps import ShownClamp, order_words

@@ -23,7 +23,7 @@ from ezdxf.filemanagement import new
 
 from workhold.files.atomic import write_bytes
 from workhold.fixels.carrier import Carrier, column_letters
-from workhold.fixels.contacts import peg_outline
+from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.dowels import JawPlate, plate_places

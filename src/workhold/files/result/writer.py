@@ -21,8 +21,8 @@ from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
 from workhold.files.result.heads import program_text
 from workhold.fixels.carrier import Holes
-from workhold.fixels.contacts import Flat
 from workhold.fixels.kinds import USUAL
+from workhold.fixels.pegs import Flat
 from workhold.fixels.support_hardware import HARDWARE, SupportPads, TopClamp
 from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
