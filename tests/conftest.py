@@ -4,6 +4,7 @@ tests."""
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -19,6 +20,9 @@ import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture.providers import HypothesisProvider
 from hypothesis.internal.constants_ast import Constants
+
+# Ten thousand tests are many objects to look through: seldom, or every fifteenth second goes into it.
+gc.set_threshold(20_000, 20, 20)
 
 # And so do the processes that share the tests: to prepare the asserts of all modules takes ten seconds.
 sys.dont_write_bytecode = False
@@ -55,3 +59,9 @@ def pytest_configure(config: pytest.Config) -> None:
         # What cannot be compiled is told by the first test that needs it.
         for process in [subprocess.Popen([sys.executable, "-c", PREPARE, *share]) for share in SHARES]:
             process.wait()
+
+
+def pytest_collection_finish() -> None:
+    """Leave what collecting has made out of all later garbage collections: it stays until the end."""
+    gc.collect()
+    gc.freeze()
