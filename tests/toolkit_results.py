@@ -63,12 +63,15 @@ def check_and_read_back(result: Result, folder: Path) -> None:
 
 
 def assert_all_proven(result: Result, folder: Path, search_files: bool = False) -> None:
-    """Everything that a search lists is proven, as a result and in files of both forms, which say the same; and so it is
-    when it is searched again, for the files if asked for."""
-    for source in (result, folder / "r.json", folder / "r.npz"):
+    """Everything that a search lists is proven, as a result and in a file, of which that in columns says the same; and so it
+    is when it is searched again, for the files if asked for."""
+    of_files = [folder / "r.json", folder / "r.npz"]
+    for path in of_files:
+        workhold.save(result, path)
+    workhold.save(workhold.open(of_files[1]), folder / "columns.json")
+    assert (folder / "columns.json").read_bytes() == of_files[0].read_bytes()
+    for source in (result, *(of_files if search_files else of_files[:1])):
         searched = search_files or isinstance(source, Result)
-        if isinstance(source, Path):
-            workhold.save(result, source)
         outcome = verify_completely(source, complete=searched)
         assert (outcome.proven, outcome.undecided, outcome.refuted) == (len(result), 0, 0), outcome.unproven
         assert outcome.faults == () and outcome.bits == 128 and outcome.is_compared == searched

@@ -97,7 +97,7 @@ def test_plates_agree_with_a_slow_search(
 
 
 @pytest.mark.parametrize(
-    "seed", [1, 7, *(pytest.param(seed, marks=pytest.mark.prove) for seed in (2, 4, 5, 6, 8, 9, 10))]
+    "seed", [7, *(pytest.param(seed, marks=pytest.mark.prove) for seed in (1, 2, 4, 5, 6, 8, 9, 10))]
 )
 def test_fences_agree_with_a_slow_search(seed: int) -> None:
     """A row that grazes a bore (7) presses as the drawing has it, not as an arc's centre was rounded."""

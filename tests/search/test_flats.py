@@ -104,7 +104,7 @@ def test_a_flat_at_the_radius_is_none() -> None:
     assert all(peg.flat_deg is None for fixture in round_one for peg in fixture.pegs)
 
 
-@pytest.mark.parametrize("loop", [NOTCHED, EAR])
+@pytest.mark.parametrize("loop", [pytest.param(NOTCHED, marks=pytest.mark.prove), EAR])
 def test_both_engines_agree(loop: Any) -> None:
     """The curves and the paper's algebra, which share no solver, on lines and arcs."""
     vise = Vise((9, 8), 2, 2.5, flat=(1.5, 1.0))

@@ -39,7 +39,7 @@ OWN: dict[str, tuple[Toolkit, dict[str, Any]]] = {
     "plate": (attrs.evolve(PLATE, clamp_heights=TIP), {"clamp": (TIP, STEM)}),
     "roof": (attrs.evolve(PLATE, clamp_heights=TIP), {"clamp": (TIP, ROOF)}),
     "stroke": (
-        attrs.evolve(PLATE, columns=None, rows=None, travel=(6.0, 40.0), clamp_heights=TIP),
+        Plate(pitch=(20, 17), peg_radius=3, clamp_radius=4, travel=(6.0, 40.0), clamp_heights=TIP),
         {"clamp": (TIP, STEM)},
     ),
     "locators": (
@@ -137,17 +137,23 @@ def test_a_prism_gives_the_same_list_whatever_the_heights(name: str) -> None:
         assert len(found) == len(usual) + more
 
 
-@pytest.mark.parametrize("name", ["plate", "roof", "two clamps"])
-def test_a_slow_search_of_a_plate_finds_the_same(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "rows"),
+    [
+        *((name, 3) for name in ("plate", "roof", "two clamps")),
+        *(pytest.param(name, 4, marks=pytest.mark.prove) for name in ("plate", "roof")),
+    ],
+)
+def test_a_slow_search_of_a_plate_finds_the_same(name: str, rows: int) -> None:
     """By functions of the orientation on a grid, locators on one outline and clamps on another."""
     toolkit, own = OWN[name]
     assert isinstance(toolkit, Plate)
-    plate = attrs.evolve(toolkit, columns=3, rows=4 if toolkit.clamps == 1 else 3)
+    plate = attrs.evolve(toolkit, columns=3, rows=rows)
     workpiece = stepped(own, clamp=[2])
     result = design(workpiece, plate, listing=None if plate.clamps == 1 else "all")
     slow = slow_plate.slow_plate(workpiece, plate, workpiece.outline_of("clamp")[0])
     assert slow_plate.seen(result) == slow
-    assert len(slow) > 10
+    assert len(slow) > 5
 
 
 def fence_places(result: Result) -> set[tuple[Any, ...]]:
@@ -218,7 +224,7 @@ def test_two_left_pegs_and_two_right_ones_are_found_by_a_slow_search() -> None:
     The difference of their heights is a function of the orientation, whose zeros are found on a grid. Two pegs of
     one jaw on one face slide along it, and are left to other tests.
     """
-    vise = Vise(pitch=(22, 11), columns=1, peg_radius=2.5, min_gap=9, left_heights=LEFT, right_heights=RIGHT)
+    vise = Vise(pitch=(22, 15), columns=1, peg_radius=2.5, min_gap=9, left_heights=LEFT, right_heights=RIGHT)
     workpiece = stepped({"left": (LEFT, FOOT), "right": (RIGHT, STEM)})
     result = design(workpiece, vise, types=("I",))
     left, right = (workpiece.outline_of(role)[0] for role in ("left", "right"))

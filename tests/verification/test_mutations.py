@@ -22,7 +22,9 @@ from workhold.verification import verify_file
 Data = dict[str, Any]
 Where = tuple[Any, ...]
 
-VISE = Vise(pitch=15, columns=2, peg_radius=2, rows=9, max_opening=200, body_radius=2.5, blocked=["R-A9"])
+VISE = Vise(
+    pitch=18, min_gap=15, columns=2, peg_radius=2, rows=9, max_opening=200, body_radius=2.5, blocked=["R-A9"]
+)
 PLATE = Plate((22, 20), 2, columns=4, rows=4, clamp_radius=2.5, travel=(3, 24), directions=("-x", "-y"))
 
 MISSING = object()
@@ -74,13 +76,16 @@ OF_VISE: Changes = {
     ANOTHER: {
         "vise.rows": "more emptied",
         "vise.max_opening": "more less emptied",
-        "vise.min_gap": "less emptied",
+        "vise.min_gap": "less",
         "vise.body_radius": "more emptied",
         "vise.blocked": "emptied",
         "vise.blocked.0": "deleted",
         "restrictions.angles.0.0": "more",
     },
 }
+# Of the vise with a dozen fixtures alone, and of the one with four times as many alone.
+OF_FEW: Changes = {ORDER: {"ranking.1": "deleted"}}
+OF_MANY: Changes = {ANOTHER: {"vise.min_gap": "emptied"}}
 OF_PLATE: Changes = {
     ANOTHER: {
         "toolkit.columns": "more less emptied",
@@ -173,10 +178,13 @@ def holds(content: Data, path: Path) -> bool:
 @pytest.mark.parametrize(
     ("toolkit", "passes"),
     [
-        (VISE, harmless(ALWAYS, OF_VISE)),
+        (VISE, harmless(ALWAYS, OF_VISE, OF_FEW)),
+        pytest.param(
+            attrs.evolve(VISE, pitch=15), harmless(ALWAYS, OF_VISE, OF_MANY), marks=pytest.mark.prove
+        ),
         pytest.param(PLATE, harmless(ALWAYS, OF_PLATE), marks=pytest.mark.prove),
     ],
-    ids=["vise", "plate"],
+    ids=["vise", "many", "plate"],
 )
 def test_every_mutation_is_refused_or_harmless_by_name(
     toolkit: Toolkit, passes: set[tuple[str, str]], tmp_path: Path

@@ -39,6 +39,12 @@ CASES = [
     # Two clamps about half circles have very many double roots.
     if not (name == "slot" and toolkit.travels > 1)
 ]
+# Every second one here, in which every part and every toolkit is met; all by ``make prove``.
+SOME = [
+    case
+    for number, part in enumerate(PARTS)
+    for case in [case for case in CASES if case[0] == part][number % 2 :: 2]
+]
 
 
 @cache
@@ -54,7 +60,10 @@ def counted(result: Result, case: Symmetric) -> dict[str, int]:
     return {kind: sets[kind] for kind in result.distinct}
 
 
-@pytest.mark.parametrize(("name", "kind", "listing"), CASES)
+@pytest.mark.parametrize(
+    ("name", "kind", "listing"),
+    [case if case in SOME else pytest.param(*case, marks=pytest.mark.prove) for case in CASES],
+)
 def test_search_verification_and_trying_each_rotation_count_alike(
     name: str, kind: str, listing: str | None
 ) -> None:
@@ -73,7 +82,7 @@ def test_search_verification_and_trying_each_rotation_count_alike(
 
 def test_every_kind_and_symmetry_is_met() -> None:
     """Of each toolkit some part above has fixtures, and of each part but the disc some toolkit."""
-    held = [(name, kind) for name, kind, listing in CASES if len(full(name, kind, listing))]
+    held = [(name, kind) for name, kind, listing in SOME if len(full(name, kind, listing))]
     assert {name for name, _ in held} == set(PARTS) - {"disc"} and {kind for _, kind in held} == set(TOOLKITS)
 
 
