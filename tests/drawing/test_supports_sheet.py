@@ -165,6 +165,8 @@ def test_pegs_as_high_as_the_part_may_be_as_short_as_they_press(name: str, high:
     peg = TOOLKITS[name].plates[0].peg
     words = f"No {peg} presses above {high:.3f} mm, so {peg}s of {high + 10:.3f} mm do as well."
     assert (words in text) is said and ("do as well" in text) is said
+    if not said:
+        return
     chosen_height = evolve(tall, solid=evolve(tall.solid, peg_height=HEIGHT - 0.5))
     assert "do as well" not in printed(sheet(design(chosen_height, TOOLKITS[name], best=1)))
 

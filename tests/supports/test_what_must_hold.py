@@ -29,6 +29,7 @@ def found(one, request=None, loads=None, force=None, best=None):
 
 @pytest.mark.parametrize("name", NAMES)
 @given(height=st.floats(0.5, 11), more=st.floats(0, 1000))
+@settings(max_examples=20)
 def test_with_all_bands_at_one_height_the_jaw_force_changes_nothing(name, height, more):
     one = CASES[name]
     request = evolve(one.request, band=(height, height))
@@ -40,6 +41,7 @@ def test_with_all_bands_at_one_height_the_jaw_force_changes_nothing(name, height
 
 @pytest.mark.parametrize("name", NAMES)
 @given(up=st.floats(0, 30))
+@settings(max_examples=20)
 def test_nothing_changes_when_bands_and_loads_are_raised_alike(name, up):
     one = CASES[name]
     low, high = one.request.band
@@ -64,6 +66,7 @@ def test_a_thrust_inside_the_triangle_alone_needs_no_clamp(name):
 
 @pytest.mark.parametrize("name", NAMES)
 @given(more=st.floats(0, 3))
+@settings(max_examples=20)
 def test_a_larger_pad_never_adds_a_triple(name, more):
     one = CASES[name]
     radius = min(one.request.pad_radius + more, min(one.query.toolkit.pitch) / 2)
