@@ -33,9 +33,14 @@ def run(root: Path, cache: Path) -> float:
 
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
+    """A copy that a test may change."""
+    return copied(tmp_path)
+
+
+def copied(folder: Path) -> Path:
     """A folder with just enough of the package to compile the distance kernels."""
     source = Path(workhold.__file__).parent
-    package = tmp_path / "source" / "workhold"
+    package = folder / "source" / "workhold"
     room = package / "kernels" / "base"
     room.mkdir(parents=True)
     for name in (
@@ -56,7 +61,15 @@ def copy(tmp_path: Path) -> Path:
     (package / "kernels" / "other" / "callee.py").write_text(head + "@inner\ndef segment_distance" + callee)
     bridge = "from workhold.kernels.other.callee import segment_distance\n\n\n@inner\ndef outline_distance("
     (room / "distance.py").write_text(head + bridge + caller)
-    return tmp_path / "source"
+    return folder / "source"
+
+
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A copy that stays as it is, and its cache, which holds what was compiled."""
+    folder = tmp_path_factory.mktemp("filled")
+    run(copied(folder), folder / "cache")
+    return folder / "source", folder / "cache"
 
 
 def test_a_changed_callee_gives_the_new_answer_though_its_caller_is_unchanged(copy, tmp_path):
@@ -82,15 +95,15 @@ def test_a_cache_that_cannot_be_written_is_done_without(copy, tmp_path):
 
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
 @pytest.mark.parametrize("damage", [lambda old: b"", lambda old: old[: len(old) // 2]], ids=["empty", "half"])
-def test_a_damaged_cache_is_thrown_away_and_made_anew(copy, tmp_path, ending, damage):
+def test_a_damaged_cache_is_thrown_away_and_made_anew(filled, tmp_path, ending, damage):
     """Empty, halved, zeroed and garbled files, as a loss of power leaves them: same answer, and whole files afterwards."""
-    cache = tmp_path / "cache"
-    run(copy, cache)
+    (source, full), cache = filled, tmp_path / "cache"
+    shutil.copytree(full, cache)
     whole = {path: path.read_bytes() for path in cache.rglob(f"*.{ending}")}
     assert whole
     for path, content in whole.items():
         path.write_bytes(damage(content))
-    assert run(copy, cache) == pytest.approx(5.0, abs=1e-8)
+    assert run(source, cache) == pytest.approx(5.0, abs=1e-8)
     assert all(path.read_bytes() != damage(content) for path, content in whole.items())
 
 

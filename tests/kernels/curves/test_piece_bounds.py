@@ -8,7 +8,7 @@ from random import Random
 import numpy as np
 import pytest
 from flint import arb
-from hypothesis import given
+from hypothesis import given, settings
 
 from chord_examples import SPECIAL, is_rounded_coincidence
 from curve_examples import HEIGHT, POSITION, pieces_of, pitch_of, random_table, special_table, steps_of
@@ -230,6 +230,7 @@ def test_pieces_next_to_the_ends_of_a_curve_bound_what_they_tell(make):
 
 
 @given(seeds)
+@settings(max_examples=25)
 def test_a_small_part_between_lines_of_action_near_the_middle(seed):
     """The same where the instant centre passes near the centre of the part, so that only its motion bends
     the height."""
