@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import cos, degrees, hypot, pi, radians, sin
 from typing import Any
 
 import numpy as np
 import pytest
-from lesson_page import BRACKET, EXAMPLES, LessonPage
+from lesson_page import BRACKET, EXAMPLES, STATIC, LessonPage
 
 import workhold
 from workhold.kernels.chord.columns import CURVE_REALS
 from workhold.kernels.chord.evaluation import chord_state, write_curve
+
+
+@pytest.fixture(scope="module")
+def shown(lesson_profile: Any) -> Iterator[LessonPage]:
+    """One page for all of these tests: each chooses its example and puts the sliders where it wants them."""
+    page = LessonPage(lesson_profile.new_page(), (STATIC / "index.html").as_uri())
+    yield page
+    page.page.close()
+    assert page.troubles == []
 
 
 def state_of(lesson: dict[str, Any], pair: int, theta: float) -> tuple[float, ...]:
