@@ -120,9 +120,11 @@ def bumps(width: float, smaller: float, tilt: float) -> Workpiece:
     [
         (1e-12, 0.0),
         (-2e-8, 0.0),
-        (0.0, 2e-8),
         (1e-6, 0.0),
-        *(pytest.param(*one, marks=pytest.mark.prove) for one in ((0.0, 1e-10), (3e-9, 0.0), (1e-7, 1e-7))),
+        *(
+            pytest.param(*one, marks=pytest.mark.prove)
+            for one in ((0.0, 2e-8), (0.0, 1e-10), (3e-9, 0.0), (1e-7, 1e-7))
+        ),
     ],
 )
 def test_pairs_that_nearly_slide(misfit: float, smaller: float) -> None:
