@@ -302,9 +302,9 @@ def test_truths_and_numbers_are_words():
 
 def test_the_interpreter_goes_on_while_a_kernel_runs(library):
     """A thread that is never asked to let others run lets them run while it is inside of a kernel."""
-    distances, many = checked(library, distance.outline_distances), np.zeros((1_000_000, 2))
+    distances, many = checked(library, distance.outline_distances), np.zeros((500_000, 2))
     before = sys.getswitchinterval()
-    sys.setswitchinterval(4.0)
+    sys.setswitchinterval(1.0)
     try:
         # On a busy machine this thread may not get its turn before the kernel is done.
         assert any(counted_during(Thread(target=distances, args=(many, SQUARE))) for _ in range(20))
