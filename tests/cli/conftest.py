@@ -17,10 +17,18 @@ from typer.testing import Result as Outcome
 
 from fakes import fake_result
 from workhold.cli.main import app
+from workhold.drawing.render import svg_to_png
 from workhold.model.query import Query
 from workhold.model.result import Result
 
 Run = Callable[..., Outcome]
+
+
+@pytest.fixture(autouse=True)
+def small_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw pictures an eighth as wide within this process; how wide they are is tested where they are rendered."""
+    monkeypatch.setattr(svg_to_png, "__defaults__", (300,))
+    monkeypatch.setattr("workhold.presenting.papers.PNG_WIDTH", 300)
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ from drawing_examples import example
 from workhold.drawing import draw_features, draw_fixture, render, svg_to_png
 from workhold.drawing.scene import FOLDER, advance_widths, text_width
 from workhold.errors import InputError
+from workhold.presenting.papers import PNG_WIDTH
 
 
 def pixels(png: bytes) -> bytes:
@@ -32,6 +33,13 @@ def test_png_has_the_width_asked_for_and_is_not_blank(width: int) -> None:
     wide, high = struct.unpack(">II", png[16:24])
     assert wide == width and high == pytest.approx(width * 210 / 297, abs=1)
     assert len(set(pixels(png))) > 20
+
+
+def test_pictures_and_sheets_are_wide_enough_to_be_read() -> None:
+    """A picture file is 2400 pixels wide, a sheet no less."""
+    strip = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 800 4"><rect width="9" height="4"/></svg>'
+    assert struct.unpack(">I", render(strip, ".png")[16:20]) == (2400,)
+    assert PNG_WIDTH >= 2400
 
 
 def test_text_is_drawn_with_the_bundled_font() -> None:
