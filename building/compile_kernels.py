@@ -216,11 +216,10 @@ def emit(part: str, folder: Path) -> None:
         )
         module.link_in(llvm.parse_assembly(taking_words(kernel.__name__, arguments, kinds, results)))
         own.linkage = "internal"
-        tuning = llvm.create_pipeline_tuning_options(speed_level=0)
-        builder = llvm.create_pass_builder(machine, tuning)
-        passes = llvm.create_new_module_pass_manager()
-        passes.add_global_dead_code_eliminate_pass()
-        passes.run(module, builder)
+        # Once more, now that nothing but the kernel calls what it calls: records that are handed on were copied whole,
+        # and only what is needed of them is now.
+        builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+        builder.getModulePassManager().run(module, builder)
         (folder / f"{kernel.__name__}.o").write_bytes(machine.emit_object(module))
         told = {"arguments": arguments, "result": described(compiled.signature.return_type)}
         (folder / f"{kernel.__name__}.json").write_text(json.dumps(told))
