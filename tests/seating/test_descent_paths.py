@@ -112,7 +112,8 @@ def test_a_part_is_not_taken_away_through_a_wall():
     lying = np.array([[0.0, *part.center, 40.0]])
     for wall, is_free in (((0.0, 0.0, 0.0), 1), ((0.0, 1.0, 0.0), 0), ((0.0, -1.0, 0.0), 1)):
         out, room = np.zeros(1), RANGES * len(obstacles.pegs) * len(obstacles.rows) + 1
-        leave(lying, obstacles._replace(half_plane=np.array(wall)), np.empty((room, 2)), out)
+        axes = np.empty(len(obstacles.rows))
+        leave(lying, obstacles._replace(half_plane=np.array(wall)), axes, np.empty((room, 2)), out)
         assert np.isfinite(out[0]) == is_free
 
 

@@ -290,7 +290,7 @@ def seats_and_passes() -> Calls:
     crossings, intervals = np.zeros((1, 2)), np.zeros((2, 1, 2))
     yield free_poses, (one, 1.0, 0, np.ones(2), 0.0, 1.0, obstacles, crossings, intervals, np.zeros((0, 5)))
     yield cover_same, (one, ways, known, outline, points, 0.0, np.zeros(0, np.int8))
-    yield leave, (ways, obstacles, points, np.zeros(0))
+    yield leave, (ways, obstacles, np.zeros(0), points, np.zeros(0))
 
 
 # Kernels of seating of which many call the same ones: half of the work.

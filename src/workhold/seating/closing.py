@@ -188,7 +188,8 @@ class Closing:
             out[~asked] = np.nan
         if len(out):
             room = RANGES * len(obstacles.pegs) * len(obstacles.rows) + 1
-            leave(np.ascontiguousarray(configs), obstacles, np.empty((room, 2)), out)
+            axes, ranges = np.empty(len(obstacles.rows)), np.empty((room, 2))
+            leave(np.ascontiguousarray(configs), obstacles, axes, ranges, out)
         return out
 
     def leaves(self, starts: Array, ends: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -340,7 +340,7 @@ class ManifoldFinder:
             every.across[k] = motion.across or nan
             for peg, piece in motion.contacts:
                 every.pieces[k, peg] = piece
-        count = keep_free(every, self.around, np.empty((len(self.pattern.pegs), 4)))
+        count = keep_free(every, self.around, np.empty((len(self.pattern.pegs) + 1, 4)))
         return every.first(count)
 
     def cut(self, motions: SelfMotions) -> Manifolds:
@@ -351,7 +351,7 @@ class ManifoldFinder:
         most, pegs = len(motions.configs) // 2 + len(motions.counts), len(self.pattern.pegs)
         out = Manifolds.room(most, len(motions.configs) + 2 * most)
         low, high = self.pattern.stop + SAME, self.pattern.widest - SAME
-        clear, seen = np.empty((len(motions.configs), self.obstacles)), np.empty((pegs, 4))
+        clear, seen = np.empty((len(motions.configs), self.obstacles)), np.empty((pegs + 1, 4))
         touched, work = np.empty(pegs, np.int64), np.empty((4, 4))
         return out.first(free_runs(motions, low, high, self.around, clear, seen, touched, work, out))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, pi, sin, sqrt, tau
+from math import atan2, cos, hypot, inf, pi, sin, sqrt, tau
 from typing import Any
 
 import numpy as np
@@ -63,7 +63,7 @@ def test_directions_that_meet_a_piece_are_its_ranges(row):
         if abs(hypot(x - row[1], y - row[2]) - row[6]) < 0.01:
             continue
         ranges = np.empty((free_space.RANGES, 2))
-        told = ranges[: INNER["add_piece"](row, x, y, ranges, 0)]
+        told = ranges[: INNER["add_piece"](row, atan2(row[4], row[3]), x, y, ranges, 0)]
         for angle in rng.uniform(-pi, pi, 60):
             found, near = is_within(angle, told)
             assert near < 1e-6 or found == meets(row, x, y, angle), (x, y, angle, told)
@@ -93,7 +93,8 @@ def test_a_peg_goes_along_what_it_touches_and_not_into_it():
         ([cup], 0.0, 0.0, (pi / 2.0, 0.6), (0.0, pi, 0.4, -1.0)),
     ):
         ranges = np.empty((8, 2))
-        count = INNER["add_peg"](x, y, np.array(rows), 0, len(rows), ranges, 0)
+        axes = np.array([atan2(row[4], row[3]) for row in rows])
+        count = INNER["add_peg"](x, y, np.array(rows), axes, 0, len(rows), ranges, 0)
         assert [is_within(angle, ranges[:count])[0] for angle in (*free, *met)] == [False] * len(free) + [
             True
         ] * len(met)

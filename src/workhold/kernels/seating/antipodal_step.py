@@ -17,7 +17,13 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import DescentWorkSpace, Obstacles
-from workhold.kernels.seating.obstacles import angle_from_middle, nearest_piece, off_wall, place_on_part
+from workhold.kernels.seating.obstacles import (
+    angle_from_middle,
+    cosine_and_sine,
+    nearest_piece,
+    off_wall,
+    turned_place,
+)
 
 Array = NDArray[np.float64]
 
@@ -98,11 +104,21 @@ def newton_step(haa: float, hab: float, hbb: float, ga: float, gb: float, most: 
 
 @inner
 def antipodal_pose(
-    config: Array, p: int, q: int, x: float, y: float, v: float, w: float, obstacles: Obstacles, trial: Array
+    config: Array,
+    p: int,
+    q: int,
+    x: float,
+    y: float,
+    v: float,
+    w: float,
+    obstacles: Obstacles,
+    with_angle: bool,
+    trial: Array,
 ) -> tuple[bool, float, float]:
     """Writes the configuration in which pegs p and q stand at two places of the part.
 
-    Returns whether there is one above the stop, and the cosine and the sine of its orientation.
+    Returns whether there is one above the stop, and the cosine and the sine of its orientation, which itself
+    is written only where it is asked for.
     """
     run, rise = obstacles.pegs[q, 0] - obstacles.pegs[p, 0], obstacles.pegs[q, 1] - obstacles.pegs[p, 1]
     dx, dy = v - x, w - y
@@ -112,9 +128,10 @@ def antipodal_pose(
     # From the direction of both places on the part to that of both pegs.
     along = sqrt(square - rise * rise)
     cosine, sine = (along * dx + rise * dy) / square, (rise * dx - along * dy) / square
-    theta = atan2(sine, cosine)
-    theta += 2.0 * pi * floor((config[0] - theta) / (2.0 * pi) + 0.5)
-    trial[0], trial[3] = theta, along - run
+    if with_angle:
+        theta = atan2(sine, cosine)
+        trial[0] = theta + 2.0 * pi * floor((config[0] - theta) / (2.0 * pi) + 0.5)
+    trial[3] = along - run
     trial[1] = obstacles.pegs[p, 0] - (cosine * x - sine * y)
     trial[2] = obstacles.pegs[p, 1] - (sine * x + cosine * y)
     return (trial[3] > obstacles.stop, cosine, sine)
@@ -128,9 +145,8 @@ def is_free(
     for peg in range(obstacles.pegs.shape[0]):
         if peg in (p, q):
             continue
-        x = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
-        y = obstacles.pegs[peg, 1] - config[2]
-        if not is_peg_free(cosine * x + sine * y, cosine * y - sine * x, peg, obstacles, known):
+        x, y = turned_place(config, cosine, sine, obstacles, peg)
+        if not is_peg_free(x, y, peg, obstacles, known):
             return False
     return off_wall(config, obstacles, 0.0) >= -ENTERED
 
@@ -184,8 +200,9 @@ def antipodal_step(
         # The peg that moves pushes outward.
         return 0.0
     a, b = obstacles.rows[a_number], obstacles.rows[b_number]
-    ax, ay = place_on_part(config, obstacles, p)
-    bx, by = place_on_part(config, obstacles, q)
+    cosine, sine = cosine_and_sine(config[0], work.turn)
+    ax, ay = turned_place(config, cosine, sine, obstacles, p)
+    bx, by = turned_place(config, cosine, sine, obstacles, q)
     d = hypot(bx - ax, by - ay)
     ux, uy = (bx - ax) / d, (by - ay) / d
     sx, sy = tangent_at(a, ax, ay)
@@ -210,7 +227,9 @@ def antipodal_step(
             s, t = along_a * part / PARTS, along_b * part / PARTS
             x, y = moved_along(a, ax, ay, s)
             v, w = moved_along(b, bx, by, t)
-            good, cosine, sine = antipodal_pose(config, p, q, x, y, v, w, obstacles, trial)
+            # A wall sees the part as it is turned.
+            turned = part == PARTS or obstacles.hull.shape[0] > 0
+            good, cosine, sine = antipodal_pose(config, p, q, x, y, v, w, obstacles, turned, trial)
             good = (
                 good
                 and trial[3] < level - GAIN

@@ -12,7 +12,7 @@ one more clearance. So it is connected too, and where it ends something holds th
 
 from __future__ import annotations
 
-from math import cos, floor, inf, pi, sin, sqrt
+from math import floor, inf, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ from workhold.kernels.seating.columns import (
     Obstacles,
 )
 from workhold.kernels.seating.linear_program import Four, best_step, shortest_out
-from workhold.kernels.seating.obstacles import add_wall
+from workhold.kernels.seating.obstacles import add_wall, cosine_and_sine
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -83,7 +83,7 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
     Verlet, Physical Review 159, 1967).
     """
     count, near = 0, work.near
-    cosine, sine = cos(config[0]), sin(config[0])
+    cosine, sine = cosine_and_sine(config[0], work.turn)
     if config[3] - obstacles.stop <= reach:
         near[0, 0], near[0, 1], near[0, 2], near[0, 3], near[0, 4] = (
             0.0,
@@ -176,19 +176,21 @@ def is_in_one_of(config: Array, seats: Array, end: int, size: float) -> bool:
 
 
 @inner
-def add_node(config: Array, trust: float, longest: float, nodes: Array, first: int, at: int) -> int:
+def add_node(
+    config: Array, trust: float, longest: float, turn: Array, nodes: Array, first: int, at: int
+) -> int:
     """Writes a configuration on a path, if there is room, with how long the next steps are.
 
     Returns the next number.
 
-    The nodes of the path begin with a first one.
+    The nodes of the path begin with a first one; ``turn`` is that of ``cosine_and_sine``.
     """
     if at < nodes.shape[0]:
         node = nodes[at]
         for j in range(4):
             node[j] = config[j]
         node[STEP], node[STEP_ALONG] = trust, longest
-        node[COSINE], node[SINE] = cos(config[0]), sin(config[0])
+        node[COSINE], node[SINE] = cosine_and_sine(config[0], turn)
         node[TURNED] = node[MOVED] = 0.0
         if at > first:
             before = nodes[at - 1]
@@ -222,7 +224,7 @@ def close_one(
     count = push_out(config, obstacles, ahead(trust, most), work)
     if count < 0:
         return (GAVE_UP, at)
-    at = add_node(config, trust, longest, nodes, first, at)
+    at = add_node(config, trust, longest, work.turn, nodes, first, at)
     for _ in range(MOST_STEPS):
         if config[3] <= obstacles.stop + 1e-9:
             config[3] = obstacles.stop
@@ -242,7 +244,7 @@ def close_one(
         if length != 0.0:
             for j in range(4):
                 config[j] = trial[j]
-            at = add_node(config, trust, longest, nodes, first, at)
+            at = add_node(config, trust, longest, work.turn, nodes, first, at)
             count = -1
             continue
         gain = best_step(count, trust, work, DOWN)
@@ -265,7 +267,7 @@ def close_one(
         for j in range(4):
             config[j] = trial[j]
         longest = max(longest, trust)
-        at = add_node(config, trust, longest, nodes, first, at)
+        at = add_node(config, trust, longest, work.turn, nodes, first, at)
     return (GAVE_UP, at)
 
 
@@ -332,7 +334,7 @@ def reach_one(
     Returns the next number of a node.
     """
     trial, first, won = work.trial, at, 0.0
-    at = add_node(config, trust, trust, nodes, first, at)
+    at = add_node(config, trust, trust, work.turn, nodes, first, at)
     count = push_out(config, obstacles, ahead(trust, most), work)
     if count < 0:
         return at
@@ -358,7 +360,7 @@ def reach_one(
             trust = min(WIDER * trust, most)
         for j in range(4):
             config[j] = trial[j]
-        at = add_node(config, trust, trust, nodes, first, at)
+        at = add_node(config, trust, trust, work.turn, nodes, first, at)
         if reached(config, aim, obstacles.size) > far:
             break
     return at

@@ -39,7 +39,7 @@ counted.
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -217,6 +217,7 @@ class DescentWorkSpace(NamedTuple):
         The first two are a disc in which the peg is free.
     lists, counts : (4, N) and (4,) pieces near each peg, and how many.
     places : (4, 3) place about which they were listed, and reach in mm.
+    turn : (3,) an orientation in radians, its cosine and its sine; NaN before the first.
     """
 
     near: NDArray[np.float64]
@@ -230,6 +231,7 @@ class DescentWorkSpace(NamedTuple):
     lists: NDArray[np.int64]
     counts: NDArray[np.int64]
     places: NDArray[np.float64]
+    turn: NDArray[np.float64]
 
     @classmethod
     def for_pieces(cls, count: int) -> DescentWorkSpace:
@@ -237,4 +239,6 @@ class DescentWorkSpace(NamedTuple):
         step, way, trial = np.empty(4), np.empty(4), np.empty(4)
         listed = np.empty((4, count), np.int64), np.empty(4, np.int64), np.empty((4, 3))
         normals = np.empty((64, 7)), np.empty((5, 4)), np.empty((5, 6))
-        return cls(*normals, step, way, trial, np.empty(8, np.int64), np.empty((4, 4)), *listed)
+        return cls(
+            *normals, step, way, trial, np.empty(8, np.int64), np.empty((4, 4)), *listed, np.full(3, nan)
+        )

@@ -31,7 +31,7 @@ from workhold.kernels.seating.obstacles import (
     length,
     normal_at,
     on_piece,
-    place_on_part,
+    turned_place,
 )
 from workhold.kernels.seating.two_contact_curves import gap
 
@@ -212,12 +212,12 @@ def is_touched(row: Array, x: float, y: float) -> bool:
 
 
 @inner
-def add_line(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+def add_line(row: Array, axis: float, x: float, y: float, ranges: Array, count: int) -> int:
     """Writes the directions in which a point meets a line; see ``add_piece``."""
     off = gap(row, x, y)
     if off <= 0.0:
         return count
-    axis, along = atan2(row[AXIS_Y], row[AXIS_X]), (x - row[X]) * row[AXIS_X] + (y - row[Y]) * row[AXIS_Y]
+    along = (x - row[X]) * row[AXIS_X] + (y - row[Y]) * row[AXIS_Y]
     low, high = atan2(off, row[HALF_EXTENT] - along), atan2(off, -row[HALF_EXTENT] - along)
     return add_range(axis + low - HAIR, high - low + 2.0 * HAIR, ranges, count)
 
@@ -241,14 +241,16 @@ def seen_inside(radius: float, away: float, angle: float) -> float:
 
 
 @inner
-def add_side(row: Array, away: float, toward: float, near: bool, ranges: Array, count: int) -> int:
+def add_side(
+    row: Array, axis: float, away: float, toward: float, near: bool, ranges: Array, count: int
+) -> int:
     """Writes the directions in which a point outside an arc's circle meets its near or its far side.
 
     The point is ``away`` from the centre in a direction.
     """
     seen = acos(row[RADIUS] / away)
     first, last = (-seen, seen) if near else (seen, TURN - seen)
-    middle = atan2(row[AXIS_Y], row[AXIS_X]) - toward
+    middle = axis - toward
     middle -= TURN * floor(middle / TURN)
     for turns in range(-1, 2):
         around = middle + TURN * turns
@@ -260,7 +262,7 @@ def add_side(row: Array, away: float, toward: float, near: bool, ranges: Array, 
 
 
 @inner
-def add_concave(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
+def add_concave(row: Array, axis: float, x: float, y: float, ranges: Array, count: int) -> int:
     """Writes the directions in which a point meets a concave arc, from inside or through the opening."""
     dx, dy, radius = x - row[X], y - row[Y], row[RADIUS]
     away, toward = length(dx, dy), atan2(dy, dx)
@@ -269,32 +271,35 @@ def add_concave(row: Array, x: float, y: float, ranges: Array, count: int) -> in
         count = add_range(toward - pi / 2.0 - HAIR, pi + 2.0 * HAIR, ranges, count)
         away = min(away, radius)
     if away > radius:
-        return add_side(row, away, toward, False, ranges, count)
+        return add_side(row, axis, away, toward, False, ranges, count)
     if row[HALF_EXTENT] >= pi:
         return add_range(0.0, TURN, ranges, count)
-    middle = atan2(row[AXIS_Y], row[AXIS_X]) - toward
+    middle = axis - toward
     low = seen_inside(radius, away, middle - row[HALF_EXTENT])
     high = seen_inside(radius, away, middle + row[HALF_EXTENT])
     return add_range(toward + low - HAIR, high - low + 2.0 * HAIR, ranges, count)
 
 
 @inner
-def add_piece(row: Array, x: float, y: float, ranges: Array, count: int) -> int:
-    """Writes the directions in which a point that moves straight meets a piece from outside.
+def add_piece(row: Array, axis: float, x: float, y: float, ranges: Array, count: int) -> int:
+    """Writes the directions in which a point that moves straight meets a piece, whose axis has a direction,
+    from outside.
 
     Returns the new count.
     """
     if row[IS_ARC] == 0.0:
-        return add_line(row, x, y, ranges, count)
+        return add_line(row, axis, x, y, ranges, count)
     if row[SIGN] < 0.0:
-        return add_concave(row, x, y, ranges, count)
+        return add_concave(row, axis, x, y, ranges, count)
     dx, dy = x - row[X], y - row[Y]
     away = length(dx, dy)
-    return count if away <= row[RADIUS] else add_side(row, away, atan2(dy, dx), True, ranges, count)
+    return count if away <= row[RADIUS] else add_side(row, axis, away, atan2(dy, dx), True, ranges, count)
 
 
 @inner
-def add_peg(x: float, y: float, rows: Array, first: int, end: int, ranges: Array, count: int) -> int:
+def add_peg(
+    x: float, y: float, rows: Array, axes: Array, first: int, end: int, ranges: Array, count: int
+) -> int:
     """Writes the ranges of directions in which a peg meets the pieces of its boundary; returns the new count.
 
     Of pieces that it touches they are those into them, and of all others those seen from beside what it
@@ -309,7 +314,7 @@ def add_peg(x: float, y: float, rows: Array, first: int, end: int, ranges: Array
     for k in range(first, end):
         # What bends away from where it is touched is met nowhere else.
         if (rows[k, IS_ARC] != 0.0 and rows[k, SIGN] < 0.0) or not is_touched(rows[k], x, y):
-            count = add_piece(rows[k], beside_x, beside_y, ranges, count)
+            count = add_piece(rows[k], axes[k], beside_x, beside_y, ranges, count)
     return count
 
 
@@ -339,7 +344,7 @@ def way_left(ranges: Array, count: int) -> float:
 
 
 @inner
-def way_away(config: Array, obstacles: Obstacles, ranges: Array) -> float:
+def way_away(config: Array, obstacles: Obstacles, axes: Array, ranges: Array) -> float:
     """The direction that ``leave`` writes, of one configuration."""
     count = 0
     if obstacles.half_plane[0] != 0.0 or obstacles.half_plane[1] != 0.0:
@@ -347,16 +352,16 @@ def way_away(config: Array, obstacles: Obstacles, ranges: Array) -> float:
         count = add_range(
             atan2(obstacles.half_plane[1], obstacles.half_plane[0]) - config[0] - pi / 2.0, pi, ranges, count
         )
+    cosine, sine = cos(config[0]), sin(config[0])
     for peg in range(obstacles.pegs.shape[0]):
-        (x, y), side = place_on_part(config, obstacles, peg), obstacles.right[peg]
-        count = add_peg(
-            x, y, obstacles.rows, obstacles.parts[side, 0], obstacles.parts[side, 1], ranges, count
-        )
+        (x, y), side = turned_place(config, cosine, sine, obstacles, peg), obstacles.right[peg]
+        first, end = obstacles.parts[side, 0], obstacles.parts[side, 1]
+        count = add_peg(x, y, obstacles.rows, axes, first, end, ranges, count)
     return way_left(ranges, count)
 
 
 @compiled
-def leave(configs: Array, obstacles: Obstacles, ranges: Array, out: Array) -> None:
+def leave(configs: Array, obstacles: Obstacles, axes: Array, ranges: Array, out: Array) -> None:
     """Writes a direction (N,) along which all pegs can leave a part in configurations (N, 4), or NaN.
 
     It is in radians in the part's frame; no peg enters the part, which comes no nearer to a wall. Entries
@@ -364,8 +369,10 @@ def leave(configs: Array, obstacles: Obstacles, ranges: Array, out: Array) -> No
 
     Parameters
     ----------
-    ranges : (RANGES * K * P + 1, 2) work space, of so many pegs and pieces.
+    axes, ranges : (P,) and (RANGES * K * P + 1, 2) work space, of so many pegs K and pieces P.
     """
+    for piece in range(axes.shape[0]):
+        axes[piece] = atan2(obstacles.rows[piece, AXIS_Y], obstacles.rows[piece, AXIS_X])
     for n in range(configs.shape[0]):
         if not isnan(out[n]):
-            out[n] = way_away(configs[n], obstacles, ranges)
+            out[n] = way_away(configs[n], obstacles, axes, ranges)

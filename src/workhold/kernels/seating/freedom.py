@@ -20,10 +20,12 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.obstacles import (
     SUPPORTS,
     beside_wall,
+    cosine_and_sine,
     nearest_piece,
     off_wall,
     on_piece,
     place_on_part,
+    turned_place,
 )
 from workhold.kernels.seating.two_contact_curves import gap
 
@@ -39,8 +41,8 @@ EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
 
 @inner
-def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
-    """The clearance of a peg in mm in a configuration (4,); -inf where it is off a piece that it has to
+def off_peg(x: float, y: float, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
+    """The clearance of a peg in mm at a place on the part; -inf where it is off a piece that it has to
     touch.
 
     Piece -1 is none.
@@ -48,7 +50,6 @@ def off_peg(config: Array, peg: int, piece: int, around: Obstacles, seen: Array)
     Where none, as far as ``seen`` (4,) has it, a place on the part, its clearance and the nearest piece
     there: no nearer than that, and on its side.
     """
-    x, y = place_on_part(config, around, peg)
     if piece >= 0 and not on_piece(around.rows[piece], x, y, END_SLACK):
         return -inf
     rest = abs(seen[2]) - hypot(x - seen[0], y - seen[1])
@@ -70,11 +71,14 @@ def write_clearances(
     what follows it is not written.
     """
     pegs = around.pegs.shape[0]
+    # Along a slide the part does not turn.
+    cosine, sine = cosine_and_sine(config[0], seen[pegs])
     # What stays on its piece seldom hinders.
     for late in range(2):
         for peg in range(pegs):
             if (touched[peg] >= 0) == (late == 1) and not known >> peg & 1:
-                out[peg] = off_peg(config, peg, touched[peg], around, seen[peg])
+                x, y = turned_place(config, cosine, sine, around, peg)
+                out[peg] = off_peg(x, y, peg, touched[peg], around, seen[peg])
                 if out[peg] <= -TOUCHES:
                     return False
     if around.hull.shape[0] > 0:
@@ -85,9 +89,10 @@ def write_clearances(
 
 @inner
 def nothing_seen(seen: Array) -> None:
-    """Begins anew with what is seen of pegs (K, 4)."""
+    """Begins anew with what is seen of pegs (P, 4) and, last, an orientation with its cosine and its sine."""
     for k in range(seen.shape[0]):
         seen[k, 0], seen[k, 1], seen[k, 2], seen[k, 3] = 0.0, 0.0, 0.0, 0.0
+    seen[seen.shape[0] - 1, 1] = 1.0
 
 
 @compiled
@@ -98,7 +103,7 @@ def keep_free(motions: SelfMotions, around: Obstacles, seen: Array) -> int:
 
     Parameters
     ----------
-    seen : (P, 4) work space, of so many pegs.
+    seen : (P + 1, 4) work space, of so many pegs.
     """
     count, begin, at = 0, 0, 0
     for w in range(motions.counts.shape[0]):
@@ -135,7 +140,7 @@ def last_free(
 
     Parameters
     ----------
-    trial, seen, clear : (4,), (K, 4) and (K,) work space.
+    trial, seen, clear : (4,), (P + 1, 4) and (K,) work space.
     """
     nothing_seen(seen)
     for attempt in range(EDGE_ROUNDS):
@@ -349,7 +354,7 @@ def free_runs(
     Parameters
     ----------
     low, high : in mm, between which the separations of motions are that count.
-    clear, seen, touched, work : (M, K), (P, 4), (P,) and (4, 4) work space, of so many pegs and, last, a
+    clear, seen, touched, work : (M, K), (P + 1, 4), (P,) and (4, 4) work space, of so many pegs and, last, a
         wall.
     out : with room for all, written here.
     """

@@ -35,10 +35,25 @@ def length(x: float, y: float) -> float:
 @inner
 def place_on_part(config: Array, obstacles: Obstacles, peg: int) -> tuple[float, float]:
     """Place of a peg's centre on the part in a configuration (4,)."""
-    cosine, sine = cos(config[0]), sin(config[0])
+    return turned_place(config, cos(config[0]), sin(config[0]), obstacles, peg)
+
+
+@inner
+def turned_place(
+    config: Array, cosine: float, sine: float, obstacles: Obstacles, peg: int
+) -> tuple[float, float]:
+    """Place of a peg's centre on the part in a configuration (4,) of known cosine and sine."""
     x = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
     y = obstacles.pegs[peg, 1] - config[2]
     return (cosine * x + sine * y, cosine * y - sine * x)
+
+
+@inner
+def cosine_and_sine(theta: float, turn: Array) -> tuple[float, float]:
+    """The cosine and the sine of an orientation, which ``turn`` (3,) keeps until another is asked for."""
+    if theta != turn[0]:
+        turn[0], turn[1], turn[2] = theta, cos(theta), sin(theta)
+    return (turn[1], turn[2])
 
 
 @inner
