@@ -28,8 +28,8 @@ from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import Result
 from workhold.model.search_report import best_note, by_hand_note, cut_note, seated_note
 from workhold.model.seating import Seating
+from workhold.seating.closing_frame import refuse_unseated
 from workhold.seating.part_features import refuse_own_outlines
-from workhold.seating.pattern import refuse_unseated
 
 __all__ = ["Sink", "deliver_seated", "refuse_unasked", "seated_answer"]
 

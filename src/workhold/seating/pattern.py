@@ -1,18 +1,11 @@
 """Patterns of four pegs, for which seating is solved once for all fixtures on them, and their subsets.
 
-A toolkit is turned by quarters until what moves in it opens along x, and clamps as its separation S falls.
-Where opening clamps, S is the travel with the other sign. So an opening vise is turned by half, and a clamp
-along a column by a quarter.
-
 Subsets of a pattern's pegs stand to each other in the same way in many patterns of one lattice. With S free
 the equilibria of two or three pegs depend on how the pegs of each jaw stand to each other. They also depend
 on how much higher one jaw's pegs are. The other pegs only decide whether a place is free.
 
 Glossary
 --------
-closing frame : a task frame, which lies as the task is described most easily: M. T. Mason, "Compliance and
-    force control for computer controlled manipulators", IEEE Transactions on Systems, Man, and Cybernetics 11
-    (1981).
 stop : the smallest separation, at which what moves is stopped without the part.
 subset of contacts : two or three contacts of a grasp that balance without the others: E. Rimon and A. Blake,
     "Caging planar bodies by one-parameter two-fingered gripping systems", International Journal of Robotics
@@ -23,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
-from itertools import combinations
+from itertools import chain, combinations
 from math import inf, sqrt
 from typing import Any
 
@@ -31,58 +24,13 @@ import numpy as np
 from attrs import define, evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.errors import InputError
-from workhold.fixels.contacts import WALL_END
-from workhold.fixels.toolkit import Carrier, Toolkit
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
+from workhold.seating.closing_frame import ClosingFrame, CommonToPatterns
 
-__all__ = ["ClosingFrame", "Pattern", "PegSubset", "jaw_subsets", "refuse_unseated", "subsets_of"]
+__all__ = ["Pattern", "PegSubset", "jaw_subsets", "subsets_of"]
 
 Array = NDArray[np.float64]
-QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
-
-
-@frozen
-class ClosingFrame:
-    """A change from a toolkit's frame to that of seating, and back.
-
-    Parameters
-    ----------
-    quarters : by how many quarter turns the toolkit is turned.
-    sign : 1 where S is the travel, -1 where it is the travel with the other sign.
-    """
-
-    quarters: int
-    sign: float
-
-    @classmethod
-    def of(cls, toolkit: Toolkit, carrier: Carrier) -> ClosingFrame:
-        """The closing frame of a toolkit in which a carrier moves."""
-        assert carrier.travel is not None
-        x, y = (toolkit.clamping * part for part in carrier.travel.unit)
-        return cls(-QUARTERS.index((round(x) + 0.0, round(y) + 0.0)) % 4, float(toolkit.clamping))
-
-    def turned(self, points: Array, back: bool = False) -> Array:
-        """Points or directions (..., 2) of the toolkit's frame as they lie in that of seating, or back."""
-        cosine, sine = QUARTERS[self.quarters]
-        sine = -sine if back else sine
-        return np.asarray(points @ np.array([[cosine, sine], [-sine, cosine]]) + 0.0)
-
-    def enter(self, config: Array) -> Array:
-        """A configuration (4,) of theta, x, y and travel as one of theta, x, y and S."""
-        return np.array(
-            [config[0] + self.quarters * np.pi / 2, *self.turned(config[1:3]), self.sign * config[3]]
-        )
-
-    def leave(self, configs: Array) -> Array:
-        """Configurations (..., 4) of theta, x, y and S as those of theta, x, y and travel."""
-        out = np.array(configs)
-        out[..., 0] -= self.quarters * np.pi / 2
-        out[..., 1:3] = self.turned(configs[..., 1:3], back=True)
-        out[..., 3] *= self.sign
-        return out
-
-
 # mm. Peg patterns that agree to this are one: places are whole steps of a lattice.
 SAME_PATTERN = 1e-6
 # mm. A clamp's tip may be in a locator by this much: rounding.
@@ -127,53 +75,29 @@ class Pattern:
         InputError
             With two clamps, for pegs with a flat, and for pegs without a radius.
         """
-        refuse_unseated(toolkit)
-        standing_on = [toolkit.carrier(peg.carrier) for peg in fixture.pegs]
-        numbers = tuple(k for k, carrier in enumerate(standing_on) if carrier.contact.is_placed)
-        carriers = [standing_on[k] for k in numbers]
-        moving = next(carrier for carrier in carriers if carrier.travel is not None)
-        standing = next(carrier for carrier in carriers if carrier.travel is None)
-        frame = ClosingFrame.of(toolkit, moving)
-        right = np.array([int(carrier.travel is not None) for carrier in carriers], dtype=np.int64)
-        pegs = frame.turned(
-            np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in numbers], dtype=np.float64)
-        )
-        half_plane = None
-        if WALL_END in toolkit.contacts:
-            # It runs along x at y = 0, the part above it.
-            x, y = frame.turned(np.array([0.0, 1.0])).tolist()
-            half_plane = x, y, 0.0
-        pegs[:, 0] -= right * (frame.sign * fixture.jaw_separation)
-        pattern = cls(
-            pegs,
-            right,
-            (standing.peg_radius, moving.peg_radius),
-            -inf,
-            inf,
-            frame,
-            numbers,
-            half_plane,
-            toolkit.gap,
-        )
-        stop, widest = pattern.free_of_locators(frame.sign * fixture.jaw_separation)
-        if toolkit.gap is not None:
-            stop, widest = pattern.gap_kept(toolkit.gap)
-        assert moving.travel is not None
+        common = CommonToPatterns.of(toolkit, tuple([peg.carrier for peg in fixture.pegs]))
+        frame, right, gap = common.frame, common.right, toolkit.gap
+        pegs = frame.turned(np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in common.numbers], float))
+        separation = frame.sign * fixture.jaw_separation
+        pegs[:, 0] -= right * separation
+        given = common.radii, -inf, inf, frame, common.numbers, common.half_plane, gap
+        pattern = cls(pegs, right, *given)
+        stop, widest = pattern.free_of_locators(separation) if gap is None else pattern.gap_kept(gap)
         if frame.sign < 0.0:
-            stop = stop if moving.travel.most is None else max(stop, -moving.travel.most)
-        elif toolkit.gap is None:
-            stop = max(stop, moving.travel.least)
-        return evolve(pattern, stop=stop, widest=widest)
+            stop = stop if common.travel.most is None else max(stop, -common.travel.most)
+        elif gap is None:
+            stop = max(stop, common.travel.least)
+        return cls(pegs, right, common.radii, stop, widest, *given[3:])
 
     def gap_kept(self, gap: float) -> tuple[float, float]:
         """The stop and the widest separation that a gap between pegs of both jaws leaves.
 
         Jaws that close have a stop, and jaws that clamp by opening a widest separation.
         """
-        left, right = self.pegs[self.right == 0, 0], self.pegs[self.right == 1, 0]
+        left, right = self.along_x
         if self.frame.sign > 0.0:
-            return float(gap + left.max() - right.min()), inf
-        return -inf, float(left.min() - right.max() - gap)
+            return gap + max(left) - min(right), inf
+        return -inf, min(left) - max(right) - gap
 
     def free_of_locators(self, separation: float) -> tuple[float, float]:
         """The separations, about a given one, at which a clamp's tip meets a locator before or behind it."""
@@ -202,8 +126,16 @@ class Pattern:
 
         Without a stop no peg that moves touches a part of the diameter together with one that stands still.
         """
-        left, right = self.pegs[self.right == 0, 0], self.pegs[self.right == 1, 0]
-        return max(self.stop, float(left.min() - right.max()) - diameter - sum(self.radii) - BEYOND)
+        left, right = self.along_x
+        return max(self.stop, min(left) - max(right) - diameter - sum(self.radii) - BEYOND)
+
+    @property
+    def along_x(self) -> tuple[list[float], list[float]]:
+        """The places in mm along x of the pegs that stand still, and of those that move at separation 0."""
+        both = list[float](), list[float]()
+        for side, x in zip(self.right.tolist(), self.pegs[:, 0].tolist(), strict=True):
+            both[side].append(x)
+        return both
 
     @cached_property
     def order(self) -> NDArray[np.int64]:
@@ -212,17 +144,19 @@ class Pattern:
 
     def key(self) -> tuple[object, ...]:
         """A key that patterns share if they differ by a shift of all pegs and by their order."""
-        moved = self.pegs[self.order] - self.pegs[self.order[0]]
+        order, pegs = self.order.tolist(), self.pegs.tolist()
+        (x, y), sides = pegs[order[0]], [int(self.right[k]) for k in order]
         # Where separations are counted from is of no account.
-        first = -int(self.right.sum())
-        apart = moved[first, 0]
-        moved[first:, 0] -= apart
+        apart = pegs[order[sides.index(1)]][0] - x
+        moved = [
+            (pegs[k][0] - x - side * apart, pegs[k][1] - y) for k, side in zip(order, sides, strict=True)
+        ]
         ends = [self.stop + apart, self.widest + apart]
         if self.half_plane is not None:
             ux, uy, off = self.half_plane
-            ends += [ux / SAME_PATTERN, uy / SAME_PATTERN, off - float(self.pegs[self.order[0]] @ [ux, uy])]
-        steps = np.rint(np.array(ends + moved.ravel().tolist()) / SAME_PATTERN) + 0.0
-        return (*self.radii, *self.right[self.order].tolist(), *steps.tolist())
+            ends += [ux / SAME_PATTERN, uy / SAME_PATTERN, off - (x * ux + y * uy)]
+        steps = np.rint(np.array([*ends, *chain(*moved)]) / SAME_PATTERN) + 0.0
+        return (*self.radii, *sides, *steps.tolist())
 
     def reaches(self, separation: Any, slack: float = 0.0) -> Any:
         """Whether separations, a number or many, are between the stop and the widest."""
@@ -236,25 +170,6 @@ class Pattern:
         out = np.empty((*x.shape, 2))
         out[:, :, 0], out[:, :, 1] = cosine * x + sine * y, cosine * y - sine * x
         return out
-
-
-def refuse_unseated(toolkit: Toolkit) -> None:
-    """Refuses toolkits for which seats of closing are not sought.
-
-    Raises
-    ------
-    InputError
-        With two clamps, where no peg stands still, for pegs with a flat, and for pegs without a radius.
-    """
-    words = "what a part does while it is clamped is stated"
-    if not toolkit.closes_at_once:
-        raise InputError(f"{words} of one clamp: with two the part is put against its locators by hand.")
-    if all(plate.travel is not None for plate in toolkit.plates):
-        raise InputError(f"{words} where some pegs stand still, and no peg of this result stands still.")
-    if toolkit.has_flats:
-        raise InputError(f"{words} of round pegs: those of this result have flats.")
-    if min(carrier.peg_radius for carrier in toolkit.carriers if carrier.contact.is_placed) <= 0.0:
-        raise InputError("pegs of radius 0 roll around no corner: give the pegs a radius, however small.")
 
 
 # Decimals of a mm to which pegs of one subset stand alike: what differs less is rounding, and goes.
