@@ -1,13 +1,15 @@
 """Target 11: what it costs to say where else pegs can hold a part, and from how wide open the vise catches it.
 
 A pattern of pegs is solved once for all fixtures on it, both sides of the part. Cage and placing are told of few fixtures
-and measured by themselves. Seconds are of two threads for the hundred, of one for each pattern.
+and measured by themselves. Seconds are of two threads for the hundred, and for each pattern those of the processor for one
+thread, which what else the machine does changes little. Both are of the fastest of some runs, which solve all anew.
 """
 
 from __future__ import annotations
 
+from math import inf
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 from report import Column, Section, measured, run_alone
@@ -21,6 +23,7 @@ NOTCH = [
 PARTS = (("widget", 8, 2, 2), ("notch", 10, 2, 3), ("oblongPart", 10, 2, 3), ("bracket", 10, 2, 3))
 MOST_MILLISECONDS, MOST_SECONDS = 10.0, 2.0
 FEW, MANY = 5, 100
+RUNS = 3
 
 COLUMNS = (
     Column("part", 12, right=False),
@@ -56,8 +59,8 @@ def run(quick: bool) -> Section:
 
 
 def seconds(name: str, pitch: float, columns: int, peg_radius: float, many: int) -> dict[str, Any]:
-    """Task: the best fixtures' seatings, kernels compiled and loaded: seconds of one thread and of two, of cage and placing
-    of one fixture, the number of patterns and of seats on average."""
+    """Task: the best fixtures' seatings, kernels compiled and loaded: the processor's seconds of one thread, seconds of two,
+    those of cage and placing of one fixture, the number of patterns and of seats on average."""
     import workhold
     from workhold.seating.solver import Solver
 
@@ -66,11 +69,11 @@ def seconds(name: str, pitch: float, columns: int, peg_radius: float, many: int)
     fixtures = list(workhold.design(part, vise, best=many))
     Solver(part, vise).of(fixtures[0])
     out: dict[str, Any] = {}
-    for key, threads in (("alone", 1), ("together", 2)):
+    for key, threads, clock in (("alone", 1, process_time), ("together", 2, perf_counter)) * RUNS:
         solver = Solver(part, vise)
-        start = perf_counter()
+        start = clock()
         told = solver.of_all(fixtures, False, threads)
-        out[key] = perf_counter() - start
+        out[key] = min(clock() - start, out.get(key, inf))
     start = perf_counter()
     for fixture in fixtures[:FEW]:
         solver.of(fixture)
