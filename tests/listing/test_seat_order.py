@@ -23,8 +23,8 @@ from workhold.kernels.contact import record
 from workhold.kernels.contact.seat_numbers import ASIDE
 from workhold.listing import seat_order
 from workhold.listing.packed_contacts import PackedContacts
-from workhold.listing.ranking import ranking_keys
-from workhold.listing.seat_groups import SeatGroups, is_worse
+from workhold.listing.ranking import is_worse, ranking_keys
+from workhold.listing.seat_groups import SeatGroups
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.search_report import best_note

@@ -36,7 +36,7 @@ from workhold.listing.canonical_form import (
 )
 from workhold.listing.identity import Identity
 from workhold.listing.placing import placeable, placed
-from workhold.listing.ranking import best_marked, measured, ranking_keys
+from workhold.listing.ranking import best_marked, is_worse, last_keys, measured, ranking_keys
 from workhold.listing.runs import Runs, SortedRun, in_order, key_of
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import CLOSURE_MARGIN
@@ -119,11 +119,14 @@ class BestFixtures:
     ----------
     problem : what is searched.
     cancel : when set, only what needs no ball arithmetic and the like is decided, and soon after nothing.
+    margin : the closure margin that further fixtures must reach.
+    last : keys (R,) of the last of the best, once more were decided than are kept.
     """
 
     problem: Problem
     cancel: Event | None = None
     margin: float = field(default=0.0, init=False)
+    last: NDArray[np.float64] | None = field(default=None, init=False)
     has_dropped: bool = field(default=False, init=False)
     waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
     kept: Candidates | None = field(default=None, init=False)
@@ -170,10 +173,18 @@ class BestFixtures:
         query = self.problem.query
         chosen = best_marked(table.quality, query.ranking, query.tolerance, self.most, ties)
         self.has_dropped |= not chosen.all()
+        self.last = last_keys(table.quality[chosen], query, self.most)
         # One that is none for a workshop is worse than any that is, whatever its margin.
         if query.by_margin_alone and not unfit(table.quality[chosen], query.tolerance).any():
             self.margin = max(float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK, 0.0)
         return everything.take(chosen)
+
+    def rules_out(self, bound: NDArray[np.float64]) -> bool:
+        """Whether no fixture that ranks after keys (R,) is among the best; they are left out then."""
+        self.decide()
+        is_out = self.last is not None and bool(is_worse(bound[None], self.last)[0])
+        self.has_dropped |= is_out
+        return is_out
 
     def finished(self) -> tuple[Candidates, Account]:
         """The best fixtures and the account of all records, once the search is over."""

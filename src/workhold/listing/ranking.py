@@ -32,7 +32,16 @@ from workhold.statics.contact_matrix import Touched
 from workhold.statics.judging import unfit
 from workhold.statics.quality import quality_of
 
-__all__ = ["best_marked", "figure_keys", "measured", "measured_as", "rank", "ranking_keys"]
+__all__ = [
+    "best_marked",
+    "figure_keys",
+    "is_worse",
+    "last_keys",
+    "measured",
+    "measured_as",
+    "rank",
+    "ranking_keys",
+]
 
 COARSE_DIGITS = 2
 
@@ -113,3 +122,19 @@ def best_marked(
         last = order[most - 1]
         chosen |= np.all([key == key[last] for key in keys], axis=0)
     return chosen
+
+
+def last_keys(quality: NDArray[np.float64], query: Query, most: int) -> NDArray[np.float64]:
+    """The keys (R,) of the last of the best ``most`` of as many fixtures or more, infinite for NaN."""
+    keys = np.stack(ranking_keys(quality, query.ranking, query.tolerance), axis=1)
+    worst = keys[rank(quality, query.ranking, query.tolerance)[most - 1]]
+    return np.asarray(np.where(np.isnan(worst), np.inf, worst))
+
+
+def is_worse(keys: NDArray[np.float64], last: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which keys (N, R) come after others (R,) in lexicographic order."""
+    worse, equal = np.zeros(len(keys), np.bool_), np.ones(len(keys), np.bool_)
+    for values, one in zip(keys.T, last.tolist(), strict=True):
+        worse |= equal & (values > one)
+        equal &= values == one
+    return worse

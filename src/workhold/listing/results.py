@@ -19,7 +19,7 @@ from workhold.contact.problem import Problem, Progress
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.identity import Identity, SetCount, identity_order
-from workhold.listing.ranking import best_marked, measured_as, rank, ranking_keys
+from workhold.listing.ranking import best_marked, is_worse, last_keys, measured_as, rank
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -217,9 +217,14 @@ class RankedTable:
         table, query = self.tables[0], self.query
         if query.best is None or len(table) < query.best:
             return None
-        keys = np.stack(ranking_keys(table.quality, query.ranking, query.tolerance), axis=1)
-        worst = keys[rank(table.quality, query.ranking, query.tolerance)[query.best - 1]]
-        return np.asarray(np.where(np.isnan(worst), np.inf, worst))
+        return last_keys(table.quality, query, query.best)
+
+    def rules_out(self, bound: NDArray[np.float64]) -> bool:
+        """Whether no fixture that ranks after keys (R,) is among the best; they are left out then."""
+        last = self.last
+        is_out = last is not None and bool(is_worse(bound[None], last)[0])
+        self.has_dropped |= is_out
+        return is_out
 
     def together(self) -> FixtureTable:
         """What is kept, in the order of identities."""

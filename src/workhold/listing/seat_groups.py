@@ -9,13 +9,13 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.listing.ranking import is_worse
 from workhold.listing.results import RankedTable
 
-__all__ = ["SeatGroups", "in_order_of_bounds", "is_worse"]
+__all__ = ["SeatGroups", "in_order_of_bounds"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 # Contacts of the first seats that are looked at together; then twice as many each time.
 FIRST_CONTACTS = 1 << 12
@@ -82,15 +82,6 @@ class SeatGroups:
             self.bounds[first:end, :1] == -inf, self.bounds[first:end], self.sharpened(order, starts)
         )
         return in_order_of_bounds(order, starts, bounds)
-
-
-def is_worse(keys: Array, last: Array) -> BoolArray:
-    """Which keys (N, R) come after others (R,) in lexicographic order."""
-    worse, equal = np.zeros(len(keys), np.bool_), np.ones(len(keys), np.bool_)
-    for values, one in zip(keys.T, last.tolist(), strict=True):
-        worse |= equal & (values > one)
-        equal &= values == one
-    return worse
 
 
 def in_order_of_bounds(order: IntArray, starts: IntArray, bounds: Array) -> SeatGroups:

@@ -95,7 +95,7 @@ class Seats:
 
 
 def seats_of(
-    parts: Sequence[ClampContacts], problem: Problem, within: tuple[float, float] = (-inf, inf)
+    parts: Sequence[ClampContacts], problem: Problem, within: Sequence[tuple[float, float]] = ((-inf, inf),)
 ) -> Seats:
     """The seats of the contacts of some directions.
 
@@ -103,8 +103,8 @@ def seats_of(
     ----------
     parts : contacts of each direction.
     problem : the search of one of them.
-    within : orientations in radians, from and up to but without the second, of the seats that are wanted;
-        others are left out, whole.
+    within : ranges of orientation in radians, from and up to but without the second, of the seats that are
+        wanted; others are left out, whole.
     """
     found = ClampContacts.joined(parts)
     words = packed((found.column, found.column.max(initial=0)), (found.row, found.row.max(initial=0)))
@@ -121,7 +121,7 @@ def seats_of(
     first = by_seat[np.diff(seat[by_seat], prepend=-1) > 0]
     theta = np.full(count, inf)
     np.minimum.at(theta, seat, found.theta)
-    wanted = (theta >= within[0]) & (theta < within[1])
+    wanted = np.any([(theta >= low) & (theta < high) for low, high in within], axis=0)
     number, first = np.where(wanted, np.cumsum(wanted) - 1, -1), first[wanted]
     return Seats(
         feature=found.feature[first],

@@ -19,13 +19,12 @@ from workhold.errors import InputError
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import IS_ARC
-from workhold.kernels.curves.block_work import CANDIDATES, CONTACTS
+from workhold.kernels.curves.block_work import CONTACTS
 from workhold.limits import counting_number, thread_count
 from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.ranking import figure_keys
 from workhold.listing.results import (
     MEASURED,
-    Work,
     best_result,
     collected_result,
     joined_ways,
@@ -38,12 +37,13 @@ from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
 from workhold.model.search_report import no_fixture_notes, no_place_note
 from workhold.model.workpiece import Workpiece
-from workhold.search.cells import Block, run_blocks
+from workhold.search.best_first import best_first, work_of
+from workhold.search.cells import run_blocks
 from workhold.search.in_the_way import has_body_to_pass
 from workhold.search.lattice_shares import LatticeShares
 from workhold.search.seated import Sink, deliver_seated, seated_answer
 from workhold.search.shares import Locating, Preview, Previews, answer_in_shares
-from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch, contacts_of
+from workhold.search.toolkit_search import ToolkitSearch, contacts_of
 from workhold.statics.judging import unfit
 
 __all__ = ["Explored", "Sink", "answer", "design", "explore", "first_choice"]
@@ -210,13 +210,14 @@ def answer_of_a_way(
     """The answer in a toolkit of which one carrier moves, see :func:`answer`."""
     problem = Problem.of(query)
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
-    # Smaller blocks learn earlier what margin is to be reached.
-    blocks = search.blocks(query.arrangements, LEAST_BLOCKS if query.best is None else 4 * LEAST_BLOCKS)
     kept = None if query.best is None else BestFixtures(problem, cancel)
-    receive = None if kept is None else kept.add
     look = None if preview is None else Previews(problem, preview).add
     before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
-    if sink is not None and kept is None:
+    if kept is not None:
+        work = best_first(search, kept, threads, before, cancel, look)
+        return deliver(with_reason(best_result(kept, work), search, threads, cancel), sink)
+    blocks = search.blocks(query.arrangements)
+    if sink is not None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
             collector = ResultCollector(problem, pool, 2 * threads, cancel, sink.folder)
             with collector.given_up_on_errors():
@@ -230,12 +231,9 @@ def answer_of_a_way(
                     result = result.cut_short(listed)
                 sink.receive(result, listed, collector.tables(stage(rest, MEASURED, 1.0)))
         return result
-    records, done = run_blocks(blocks, threads, before, cancel, receive, look, search.stop)
+    records, done = run_blocks(blocks, threads, before, cancel, look=look, stop=search.stop)
     work = work_of(search, blocks, done)
-    if kept is not None:
-        result = best_result(kept, work)
-    else:
-        result = listed_result(problem, records, work, progress=rest, cancel=cancel, threads=threads)
+    result = listed_result(problem, records, work, progress=rest, cancel=cancel, threads=threads)
     return deliver(with_reason(result, search, threads, cancel), sink)
 
 
@@ -244,16 +242,6 @@ def deliver(result: Result, sink: Sink | None) -> Result:
     if sink is not None:
         sink.receive(result, len(result), [result.table])
     return result
-
-
-def work_of(search: ToolkitSearch, blocks: Sequence[Block], done: Sequence[Block]) -> Work:
-    """How a search went."""
-    return Work(
-        complete=len(done) == len(blocks),
-        statistics=search.statistics,
-        cells=sum(block.cells for block in done),
-        examined=int(search.totals[CANDIDATES]),
-    )
 
 
 def with_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Event | None) -> Result:

@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from itertools import pairwise
-from math import degrees, tau
+from math import degrees, radians, tau
 from threading import Event
 
 import numpy as np
@@ -30,9 +31,11 @@ from workhold.listing.placing import at_angle
 from workhold.listing.results import Work, stage, summed
 from workhold.listing.seat_order import ordered_groups
 from workhold.listing.seats import ClampedSeats, Seats, seats_of
+from workhold.listing.tilted_bound import square_angles
 from workhold.model.query import Query
 from workhold.model.search_report import no_pair_note
 from workhold.proof.deciding import Account, Course, decided
+from workhold.search.best_first import tilted_bound
 from workhold.search.cells import Block, run_blocks
 from workhold.search.shares import one_clamp
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
@@ -40,6 +43,8 @@ from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 __all__ = ["LatticeShares"]
 
 Array = NDArray[np.float64]
+# Ranges of orientation in radians, from and up to but without the second.
+Ranges = Sequence[tuple[float, float]]
 
 # Blocks of one direction's search that are worked on before seats are made of what they found, and most such
 # ranges.
@@ -64,6 +69,8 @@ class LatticeShares:
     searches : of each direction of the clamp, for contacts that need not close.
     collector : takes the seats.
     whole_turn : blocks of each search that find everything.
+    ranges : those of each share; of the first the square ones where there is a bound.
+    bound : keys (R,) that no tilted fixture ranks before; None where square ones do not come first.
     pool : of so many threads.
     cancel : when set, the search stops soon.
     """
@@ -71,6 +78,8 @@ class LatticeShares:
     searches: Sequence[ToolkitSearch]
     collector: ClampedSeats
     whole_turn: Sequence[list[Block]]
+    ranges: Sequence[Ranges]
+    bound: Array | None
     pool: Executor
     threads: int
     cancel: Event | None
@@ -86,28 +95,29 @@ class LatticeShares:
         blocks = [search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN) for search in searches]
         x0, y0, x1, y1 = query.workpiece.bounds
         refuse_much_work(ways_in(blocks), (x1 - x0, y1 - y0), query.toolkit.carriers[0].pitch)
+        bound, ranges = tilted_bound(query, problems[0], ways_in(blocks)), ranges_of(blocks)
+        if bound is not None:
+            ranges = square_first(ranges, square_angles(query))
+        seats = ClampedSeats(query, problems[0])
         with ThreadPoolExecutor(max_workers=threads) as pool:
-            yield cls(searches, ClampedSeats(query, searches[0].problem), blocks, pool, threads, cancel)
+            yield cls(searches, seats, blocks, ranges, bound, pool, threads, cancel)
 
     @property
     def shares(self) -> int:
-        """How many ranges there are."""
-        large, many = int(ways_in(self.whole_turn) / WAYS_TOGETHER), max(map(len, self.whole_turn))
-        return min(max(many // BLOCKS_TOGETHER, large, 1), MOST_RANGES)
+        """How many shares there are."""
+        return len(self.ranges)
 
     def look(self, share: int, progress: Progress | None) -> tuple[Iterator[Seats], bool]:
-        """The seats of a range, some at a time where only the best are asked for."""
-        low, high = (np.linspace(0.0, tau, self.shares + 1) - SAME_POSE)[share : share + 2].tolist()
-        within, found, is_whole = (
-            (degrees(low - OVERLAP), degrees(high + OVERLAP)),
-            list[PackedContacts](),
-            True,
-        )
+        """The seats of a share, some at a time where only the best are asked for.
+
+        None where all of them are tilted, and a bound shows that no such fixture is among the best.
+        """
+        if share > 0 and self.bound is not None and self.collector.ranked.rules_out(self.bound):
+            return iter(()), True
+        found, is_whole = list[PackedContacts](), True
         for place, search in enumerate(self.searches):
             part = stage(progress, place / len(self.searches), (place + 1) / len(self.searches))
-            blocks = self.whole_turn[place]
-            if self.shares > 1:
-                blocks = search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN, within)
+            blocks = self.blocks_of(share, search, self.whole_turn[place])
             records, done = run_blocks(
                 blocks,
                 self.threads,
@@ -119,9 +129,19 @@ class LatticeShares:
             self.cells += sum(block.cells for block in done)
             is_whole = is_whole and len(done) == len(blocks)
             found.append(PackedContacts.of(records))
-        return self.seats(found, (low, high)), is_whole
+        return self.seats(found, self.ranges[share]), is_whole
 
-    def seats(self, records: Sequence[PackedContacts], within: tuple[float, float]) -> Iterator[Seats]:
+    def blocks_of(self, share: int, search: ToolkitSearch, whole_turn: list[Block]) -> list[Block]:
+        """The blocks of a search in which the seats of a share are, given those of a whole turn."""
+        if self.shares == 1:
+            return whole_turn
+        blocks_in = partial(search.blocks, search.problem.toolkit.types, BLOCKS_PER_HALF_TURN)
+        if share == 0 and self.bound is not None:
+            return blocks_in(first=square_angles(self.collector.query))
+        within = [(degrees(low - OVERLAP), degrees(high + OVERLAP)) for low, high in self.ranges[share]]
+        return blocks_in(within=within)
+
+    def seats(self, records: Sequence[PackedContacts], within: Ranges) -> Iterator[Seats]:
         """The seats of contacts of each direction.
 
         Where only the best are asked for, those that may be at them come first, and none that cannot.
@@ -140,7 +160,7 @@ class LatticeShares:
             ]
             yield self.seats_among(some, within)
 
-    def seats_among(self, records: Sequence[Array], within: tuple[float, float]) -> Seats:
+    def seats_among(self, records: Sequence[Array], within: Ranges) -> Seats:
         """All seats of contacts (N, 19) of each direction."""
         problems = [search.problem for search in self.searches]
         directions = [search.frame.toolkit.arrangements[0].direction or "" for search in self.searches]
@@ -178,6 +198,29 @@ class LatticeShares:
     def why_none(self) -> str:
         """Why a search that came to its end has no fixture."""
         return no_pair_note(self.collector.looked_at, self.account().verified)
+
+
+def ranges_of(whole_turn: Sequence[list[Block]]) -> list[Ranges]:
+    """Equal ranges of a whole turn, each with no more work than is to be done at a time."""
+    large, many = int(ways_in(whole_turn) / WAYS_TOGETHER), max(map(len, whole_turn))
+    count = min(max(many // BLOCKS_TOGETHER, large, 1), MOST_RANGES)
+    return [[pair] for pair in pairwise((np.linspace(0.0, tau, count + 1) - SAME_POSE).tolist())]
+
+
+def square_first(ranges: Sequence[Ranges], square: Ranges) -> list[Ranges]:
+    """Ranges of a whole turn with those, in degrees, before them in which the part lies square, and without
+    these."""
+    begin, end = ranges[0][0][0], ranges[-1][-1][1]
+    turned = [
+        (radians(low) + turn, radians(high) + turn) for low, high in square for turn in (-tau, 0.0, tau)
+    ]
+    first = sorted((max(low, begin), min(high, end)) for low, high in turned if low < end and high > begin)
+    cuts = [begin, *(cut for pair in first for cut in pair), end]
+    rest = [
+        [(max(low, cuts[k]), min(high, cuts[k + 1])) for low, high in each for k in range(0, len(cuts), 2)]
+        for each in ranges
+    ]
+    return [first, *([(low, high) for low, high in each if low < high] for each in rest)]
 
 
 def counting(progress: Progress | None, found: int) -> Progress | None:

@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, joined, loosened
 from workhold.contact.problem import Frame, Problem
-from workhold.conventions import ANGLE_HAIR, GAP_SLACK
+from workhold.conventions import ANGLE_HAIR, GAP_SLACK, PARALLEL
 from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
-from workhold.kernels.base.feature import SEGMENT_LENGTH
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, SEGMENT_LENGTH
 from workhold.kernels.base.given import Features, Limits
-from workhold.kernels.chord.columns import FROM, ORIENTATION, TO
+from workhold.kernels.chord.columns import DIRECTION, FROM, HEAD, ORIENTATION, STEP_LENGTH, TAIL, TO
 from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATISTICS, STOPPED
 from workhold.kernels.curves.sliding_pairs import sliding_fixtures
 from workhold.kernels.curves.three_and_one import three_and_one_cells
@@ -57,6 +57,8 @@ FEWEST_CELLS, MOST_CELLS = 96, 1024
 # half turn.
 PAIRS_PER_BLOCK = 2e6
 LEAST_BLOCKS = 8
+# Radians: sliding pairs that may be off by more are vague. Lengths that make one are off by less, in mm.
+VAGUE, APART = 1e-5, 1e-8
 
 
 def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
@@ -231,12 +233,18 @@ class ToolkitSearch:
         return float((self.table.curves.reals[:, TO] - self.table.curves.reals[:, FROM]).sum()) / tau
 
     def blocks(
-        self, types: Collection[str], least: int = LEAST_BLOCKS, within: tuple[float, float] | None = None
+        self,
+        types: Collection[str],
+        least: int = LEAST_BLOCKS,
+        within: Collection[tuple[float, float]] = (),
+        first: Collection[tuple[float, float]] = (),
+        rest: bool = False,
     ) -> list[Block]:
         """Blocks of work that together find all fixtures of the arrangements of given names.
 
-        There are about ``least`` or more for a half turn. With ``within``, a range of orientations of the
-        workpiece in degrees, they find all fixtures in it, and some near it.
+        There are about ``least`` or more for a half turn. With ``within``, ranges of orientation of the
+        workpiece in degrees, they find all fixtures in these, and some near them. So they do with ``first``,
+        and all others with ``rest`` as well.
         """
         # In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot
         # cross.
@@ -255,18 +263,37 @@ class ToolkitSearch:
             half_turns = 1 if arrangement.pegs[0] == frame.swapped else 2
             edges = cell_edges(half_turns, half_turns * cells)
             wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns, 90.0 * frame.quarters)
-            if within is not None:
-                wanted &= may_lie_at(edges, [within], half_turns, 90.0 * frame.quarters)
-            ranges = np.array(list(neighbours(wanted, together)), np.int64).reshape(-1, 2)
+            if within:
+                wanted &= may_lie_at(edges, within, half_turns, 90.0 * frame.quarters)
+            sliding_pairs, crossing = self.sliding_pair_cells(half_turns, edges), wanted
+            if first:
+                is_first = may_lie_at(edges, first, half_turns, 90.0 * frame.quarters)
+                crossing, vague = wanted & (is_first != rest), self.vague_sliding_pairs
+                sliding_pairs = [
+                    pairs[(vague[pairs] | here) != rest]
+                    for pairs, here in zip(sliding_pairs, is_first, strict=True)
+                ]
+            ranges = np.array(list(neighbours(crossing, together)), np.int64).reshape(-1, 2)
             counts = member_counts(self.table, edges[ranges[:, 0]], edges[ranges[:, 1]])
-            for (first, last), count in zip(ranges.tolist(), counts.tolist(), strict=True):
-                blocks.append(self.crossing_block(arrangement, edges[first : last + 1], count))
-            sliding_pairs = self.sliding_pair_cells(half_turns, edges)
-            for first, last in ranges.tolist():
-                some = [cell for cell in range(first, last) if len(sliding_pairs[cell])]
+            for (begin, end), count in zip(ranges.tolist(), counts.tolist(), strict=True):
+                blocks.append(self.crossing_block(arrangement, edges[begin : end + 1], count))
+            for begin, end in neighbours(wanted, together):
+                some = [cell for cell in range(begin, end) if len(sliding_pairs[cell])]
                 if some:
                     blocks.append(self.sliding_pair_block(arrangement, edges, some, sliding_pairs))
         return blocks
+
+    @property
+    def vague_sliding_pairs(self) -> NDArray[np.bool_]:
+        """Which sliding pairs (P,) may have another orientation than is known, see
+        ``sliding_pairs.sliding_pair_reach``."""
+        whole, reals = self.table.sliding_pairs
+        tail, head = self.loose[whole[:, TAIL]], self.loose[whole[:, HEAD]]
+        direction, d = reals[:, DIRECTION], reals[:, STEP_LENGTH]
+        along = np.abs(np.cos(direction) * tail[:, AXIS_X] + np.sin(direction) * tail[:, AXIS_Y])
+        along[tail[:, IS_ARC] != 0.0] = 1.0
+        off = APART + PARALLEL * (tail[:, HALF_EXTENT] + head[:, HALF_EXTENT] + d)
+        return np.asarray(off > VAGUE * d * along)
 
     def sliding_pair_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
         """Sliding pairs by the cell their orientation falls into."""
