@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from math import cos, sin, tan, tau
+
 import numpy as np
 import pytest
 
-from chord_examples import arc_row, line_row
-from workhold.contact.curves import loosened
+from chord_examples import arc_row, line_row, overshoot, solutions
+from workhold import Query, Vise, Workpiece, count_contacts
+from workhold.contact.curves import curve_table, loosened
+from workhold.contact.problem import Problem
 from workhold.conventions import LOOSE
+from workhold.kernels.chord.columns import BRANCH, FROM, HEAD, LENGTH, TAIL, TO
+from workhold.kernels.chord.intervals import NARROW, chord_intervals
+from workhold.search.toolkit_search import lattice_steps
 
 
 def test_ends_are_moved_out_by_the_same_length_on_lines_and_arcs() -> None:
@@ -18,3 +25,54 @@ def test_ends_are_moved_out_by_the_same_length_on_lines_and_arcs() -> None:
     grown = (loosened(rows) - rows)[:, 5] * np.where(rows[:, 6] == 0.0, 1.0, rows[:, 6])
     assert grown == pytest.approx([LOOSE, LOOSE, LOOSE, LOOSE, 0.0], rel=1e-6)
     assert (loosened(rows)[:, :5] == rows[:, :5]).all()
+
+
+def gear(teeth: int, root: float, head: float) -> Workpiece:
+    """A gear of arcs: root, flank, head and flank of each tooth."""
+    loop = []
+    for k in range(teeth):
+        for share, radius, sweep in (
+            (0.0, root, 0.3),
+            (0.3, root, 0.0),
+            (0.42, head, 0.46),
+            (0.88, head, 0.0),
+        ):
+            angle = tau * (k + share) / teeth
+            loop.append((radius * cos(angle), radius * sin(angle), tan(tau * sweep / teeth / 4.0)))
+    return Workpiece.from_loops("gear", [loop])
+
+
+def test_a_chord_that_just_touches_a_circle_is_of_those_of_its_arcs_that_it_meets() -> None:
+    """The heads of all teeth are on one circle. No narrow range is missing in which a chord reaches both features, and
+    most others are left out."""
+    vise = Vise(pitch=50.0, columns=2, peg_radius=8.0)
+    problem = Problem.of(Query(gear(8, 28.0, 34.0), vise))
+    rows = loosened(problem.rows[:, :10])
+    steps = lattice_steps(problem.frame.carriers, problem.diameter)
+    curves = curve_table(rows, steps).curves
+    kept = {
+        (*whole[[TAIL, HEAD]].tolist(), *real[[LENGTH, FROM, TO, BRANCH]].tolist())
+        for whole, real in zip(curves.integers, curves.reals, strict=True)
+    }
+    left_out = 0
+    for tail, a in enumerate(rows):
+        for head in range(tail, len(rows)):
+            for d in steps.lengths.tolist():
+                for low, high, branch, *_ in chord_intervals(a, rows[head], d).tolist():
+                    there = (tail, head, d, low, high, branch) in kept
+                    if high - low > NARROW:
+                        assert there
+                        continue
+                    alphas = np.linspace(low, high, 5)
+                    reached = False
+                    for alpha, tails in zip(alphas, solutions(a, rows[head], d, alphas), strict=True):
+                        heads = tails + d * np.array([cos(alpha), sin(alpha)])
+                        # The chord moves by far less than this over so narrow a range.
+                        reached |= bool(
+                            (np.maximum(overshoot(a, tails), overshoot(rows[head], heads)) < 1e-6).any()
+                        )
+                    left_out += not there
+                    assert there or not reached
+    assert left_out > 100
+    assert len(kept) < 0.5 * (len(kept) + left_out)
+    assert count_contacts(gear(8, 28.0, 34.0), vise) == 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import cos, hypot, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from workhold.kernels.chord.columns import (
     FIRST_STRETCH,
     FROM,
     HEAD,
+    LENGTH,
     ORIENTATION,
     ROW_STEP,
     SLIDING_PAIR_REALS,
@@ -29,9 +30,10 @@ from workhold.kernels.chord.columns import (
     TANGENT_TO,
     TO,
 )
-from workhold.kernels.chord.evaluation import write_curve, write_shift
-from workhold.kernels.chord.intervals import chord_intervals
+from workhold.kernels.chord.evaluation import parameter_on, write_curve, write_shift
+from workhold.kernels.chord.intervals import NARROW, chord_intervals
 from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
+from workhold.kernels.curves.piece_bounds import tail_disc
 from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
 
 Array = NDArray[np.float64]
@@ -45,6 +47,34 @@ ROUNDING = 1e-9
 def reach(row: Array) -> float:
     """Largest distance of a feature's points from its middle (line) or centre (arc)."""
     return row[HALF_EXTENT] if row[IS_ARC] == 0.0 else row[RADIUS]
+
+
+@inner
+def may_reach(row: Array, x: float, y: float, radius: float) -> bool:
+    """Whether a point of a feature's carrier, known to a radius in mm, may be on the feature."""
+    s, off = abs(parameter_on(row, x, y)), radius + ROUNDING
+    if row[IS_ARC] == 0.0:
+        return not s > row[HALF_EXTENT] + off
+    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either
+    # side.
+    return not (off <= 0.5 * row[RADIUS] and s > row[HALF_EXTENT] + 1.1 * off / row[RADIUS])
+
+
+@inner
+def may_exist(a: Array, b: Array, curve: Array) -> bool:
+    """Whether a chord may lie on both features somewhere in its range.
+
+    Ranges too narrow to be tested in the middle are given wherever the carriers of the features meet. Beside
+    a tangency to a circle of many arcs that is so of each arc, however far from there.
+    """
+    middle = (curve[FROM] + curve[TO]) / 2.0
+    half = (curve[TO] - curve[FROM]) / 2.0 + max(curve[TANGENT_FROM], curve[TANGENT_TO])
+    if half > NARROW:
+        return True
+    x, y, radius = tail_disc(a, b, curve, middle, half)
+    d = curve[LENGTH]
+    at_head = may_reach(b, x + d * cos(middle), y + d * sin(middle), radius + d * half)
+    return at_head and may_reach(a, x, y, radius)
 
 
 @compiled_making_arrays
@@ -96,6 +126,8 @@ def tail_curves(
                 write_curve(curve, a, b, d, ranges[k, 2], 0.0)
                 curve[FROM], curve[TO] = ranges[k, 0], ranges[k, 1]
                 curve[TANGENT_FROM], curve[TANGENT_TO] = ranges[k, 3], ranges[k, 4]
+                if not may_exist(a, b, curve):
+                    continue
                 first = stretch_count
                 stretches, stretch_count = add_stretches(stretches, stretch_count, a, b, curve)
                 for step in range(starts[length], starts[length + 1]):
