@@ -30,7 +30,14 @@ from workhold.kernels.proof.interval_newton import jacobians
 from workhold.listing import collector
 from workhold.model.query import Query
 from workhold.proof import deciding
-from workhold.proof.degenerate import TouchedFeatures, antipodal, hold_nothing, sliding, turning
+from workhold.proof.degenerate import (
+    TouchedFeatures,
+    antipodal,
+    hold_nothing,
+    lined_up,
+    sliding,
+    turning,
+)
 
 Array = NDArray[np.float64]
 LENGTH = 60.0
@@ -138,6 +145,73 @@ def test_a_third_peg_that_slides_past_an_arc_has_a_parallel_normal(
             for pair in ((one, two), (two, one))
         }
         assert found == {expected}
+
+
+# Two bores of 1 mm more than the pegs, 20 mm apart, in a part that is turned by 0.7.
+BORE, BORES, TURN = 3 - 4j, 1.0, complex(cos(0.7), sin(0.7))
+
+
+def lined(
+    third: TouchedFeatures, tail: complex, psi: float = 0.7, apart: float = 20.0, other: float = BORES
+) -> bool:
+    """Whether pegs at (0, 0) and (20, 0) in two bores touch them on one line where a third one touches."""
+    one, two = arc(BORE, BORES, 0), arc(BORE + apart * TURN, other, 20)
+    record = near(tail, psi)
+    record[0, REACH:] = 1e-6
+    found = {bool(lined_up(record, *pair, third, LENGTH)[0]) for pair in ((one, two), (two, one))}
+    assert len(found) == 1
+    return found.pop()
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("off", [-OFF, 0.0, 1e-16, OFF])
+def test_a_third_peg_that_touches_where_two_normals_are_on_one_line_makes_a_double_root(
+    side: int, off: float
+) -> None:
+    """On a line or an arc; not where the two touch elsewhere, where they are otherwise apart, or where it may stay."""
+    tail, exact, place = BORE + side * BORES * TURN, abs(off) < 1e-12, 5 + 30j
+    third = tail + place * TURN
+    for angle in (0.6, 1.5, -1.0):
+        normal = TURN * 1j * complex(cos(angle), sin(angle))
+        on_line, on_arc = (
+            line(third + off * normal + 4j * normal, 1j * normal, place),
+            arc(third + (6.0 + off) * normal, 6.0, place),
+        )
+        for one in (on_line, on_arc):
+            assert lined(one, tail) == lined(one, tail, psi=0.7 + 1e-5) == exact
+            assert not lined(one, tail + 0.5 * TURN)
+            assert not lined(one, tail, psi=0.72)
+            assert not lined(one, tail, apart=20.0 + 1e-9)
+            assert not lined(one, tail, other=BORES + 1e-9)
+    # Around the circle the third peg stays on a line across the bores' own.
+    assert not lined(line(third, 1j * TURN, place), tail)
+    # As the part turns it stays on a line through what it turns about.
+    pivot = BORE + 10 * TURN + side * BORES / 2 * TURN
+    assert not lined(line(third, 1j * (third - pivot), place), tail)
+
+
+def test_a_root_that_is_lined_up_is_the_only_one_nearby() -> None:
+    """On both ways in which two pegs touch their bores the third one is off its feature everywhere else nearby."""
+    tail, place = BORE + BORES * TURN, 5 + 30j
+    normal = TURN * 1j * complex(cos(0.6), sin(0.6))
+    axis = 1j * normal
+    point = tail + place * TURN
+
+    def off(first: complex, psi: float) -> float:
+        """How far the third peg is from its line."""
+        peg = first + place * complex(cos(psi), sin(psi))
+        return abs(((peg - point).conjugate() * (axis * 1j)).real)
+
+    for small in (1e-4, -1e-4, 1e-6, -1e-6):
+        around = BORE + BORES * TURN * complex(cos(small), sin(small))
+        assert off(around, 0.7) > 0.1 * abs(small)
+        # The other way: the two touch on either side of their line, turned by half as much.
+        half = complex(cos(small / 2), sin(small / 2))
+        beside = sqrt(BORES**2 - (20 * sin(small / 2)) ** 2)
+        first = BORE - 20 * TURN * (half**2 - 1) / 2 + beside * TURN * half
+        assert abs(abs(first - BORE) - BORES) < 1e-12
+        assert abs(abs(first + 20 * TURN * half**2 - BORE - 20 * TURN) - BORES) < 1e-12
+        assert off(first, 0.7 + small) > 0.1 * abs(small)
 
 
 def rod(radius: float, half_width: float, half_length: float, hole: float) -> Workpiece:

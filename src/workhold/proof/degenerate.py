@@ -20,6 +20,10 @@ turning : two of three pegs of one carrier, on arcs about one centre, fix where 
 sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is
     left. The third peg's way may be just the radius from an arc's centre. Then it touches that arc where its
     normal is square to the way, as the other two normals are.
+lined up : two of three pegs of one carrier may touch arcs of one radius r whose centres are as far apart as
+    they. Either the part goes around a circle of radius r without a turn, or it turns, and both ways meet
+    where both normals lie on the line through the centres. Where the third peg just touches there, and leaves
+    its feature at once on both ways, that is a double root, and the only one nearby.
 
 Antipodal contacts are those of I.-M. Chen and J. W. Burdick, "Finding antipodal point grasps on irregularly
 shaped objects", IEEE Transactions on Robotics and Automation 9 (1993) 507-512.
@@ -27,7 +31,8 @@ shaped objects", IEEE Transactions on Robotics and Automation 9 (1993) 507-512.
 Centres are one and directions parallel as ``SAME_CENTER`` and ``PARALLEL`` say. Where a length misses the
 exact one by m, normals are off by sqrt(2 m / r), with r the smallest length that bends. In ``turning`` the
 third passes the centre at sqrt(2 m D e / r), on a line at sqrt(2 m D). Lengths agree where that is at most
-``DEPENDENT``, or this part of L.
+``DEPENDENT``, or this part of L. In ``lined up``, with M the distance of the two, normals are off by M / r of
+what turns the part, and moments by M / L of what takes it around the circle.
 """
 
 from __future__ import annotations
@@ -99,6 +104,7 @@ def hold_nothing(records: Array, problem: Problem) -> Bools:
         for k in range(3):
             a, b, c = three[k - 2], three[k - 1], three[k]
             out[left] |= turning(some, a, b, c, problem.wrench_length) | sliding(some, a, b, c)
+            out[left] |= lined_up(some, a, b, c, problem.wrench_length)
     return out
 
 
@@ -200,3 +206,46 @@ def sliding(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFe
         some |= here
         every &= ~here | agree(np.abs(ahead * gap - aside * along - height), c.radius, c.radius)
     return np.asarray(parallel(a, b) & c.is_arc & some & every)
+
+
+def dot(a: Points, b: Points) -> Array:
+    """Scalar products of vectors."""
+    return np.asarray((np.conj(a) * b).real)
+
+
+def lined_up(
+    records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float
+) -> Bools:
+    """Where the pegs of a and b touch equal arcs on the line through their centres, and that of c what it
+    touches."""
+    between, chord, radius = b.middle - a.middle, b.place - a.place, a.radius
+    apart = np.where(between == 0.0, 1.0, np.abs(between))
+    turned, along = between / np.where(chord == 0.0, 1.0, chord), between / apart
+    misfit = np.abs(a.radius - b.radius) + np.abs(np.abs(between) - np.abs(chord))
+    psi, first = records[:, record.PSI], records[:, record.TAIL_X] + 1j * records[:, record.TAIL_Y]
+    turn, off = records[:, record.REACH] + LEAST_REACH, records[:, record.LARGEST_RADIUS] + LEAST_REACH
+    reach = 1.5 * off + turn * np.abs(a.place)
+    # A box that holds the record's and the double root.
+    turn = turn + 1.1 * np.abs(np.exp(1j * psi) - turned)
+    arm, out = turned * (c.place - a.place), np.zeros(len(records), np.bool_)
+    for side in (1.0, -1.0):
+        touch = a.middle + side * radius * along
+        third = touch + arm - c.middle
+        wide = reach + np.abs(first + np.exp(1j * psi) * a.place - touch)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            normal = np.where(c.is_arc, third / np.abs(third), 1j * c.axis)
+            rest = np.abs(dot(normal, third) - c.radius)
+            # How fast the third peg leaves its feature, around the circle and as the part turns.
+            slide = np.abs(dot(normal, 1j * along))
+            rate = np.abs(dot(normal, 1j * (arm - between / 2.0 + side * radius / 2.0 * along)))
+            curved = np.where(c.is_arc, 1.0 / c.radius, 0.0)
+            lever = np.abs(arm) + apart + radius
+            bent = lever + apart**2 / radius + lever**2 * curved
+            alone = (slide * radius > 4.0 * wide * (1.0 + radius * curved)) & (rate > 4.0 * turn * bent)
+            alone &= 4.0 * turn * apart <= radius
+            # What misfits turn the part by, and the normals of the two along the circle.
+            swing = np.sqrt(misfit * radius * slide / (apart * rate)) + rest / rate
+            round_ = swing * np.abs(arm) / (radius * slide) + rest / (radius * slide)
+            exact = swing * apart / radius + round_ * apart / length <= DEPENDENT
+        out |= alone & exact
+    return np.asarray(a.is_arc & b.is_arc & out)
