@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos, pi, sin
 from threading import Event
 from time import sleep
@@ -98,6 +99,62 @@ def test_a_cancel_on_the_way_stops_ball_arithmetic(
     assert len(looked_at) == 3
     assert account.left > 0
     assert account.records + account.left == len(together)
+
+
+@pytest.mark.parametrize(
+    ("slow", "sizes"),
+    [
+        ((), [16, 32, 64, 128, 256, 512, 1024, 1024, 944]),
+        # After a block that takes long few records are looked at again between two looks at the flag.
+        ((3, 4), [16, 32, 64, 128, 16, 16, 32, 64, 128, 256, 512, 1024, 1024, 688]),
+        (range(300), [16] * 250),
+    ],
+)
+def test_more_open_records_are_looked_at_together_as_long_as_that_is_quick(
+    slow: Sequence[int],
+    sizes: list[int],
+    found: tuple[Problem, list[NDArray[np.float64]], Result],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Twice as many after each quick block, up to a limit; each record once, in order."""
+    records = np.arange(4000.0)[:, None] * np.ones(record.RECORD_LENGTH)
+    blocks, clock = list[NDArray[np.float64]](), [0.0]
+
+    def look(block: NDArray[np.float64], *_: object) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        clock[0] += 1.0 if len(blocks) in slow else 0.9 * deciding.QUICK
+        blocks.append(block)
+        return block[:1], block[:0]
+
+    monkeypatch.setattr(deciding, "sifted", lambda records, *_: (records[:0], records))
+    monkeypatch.setattr(deciding, "merged", lambda records, _: records)
+    monkeypatch.setattr(deciding, "interval_newton_in_doubles", look)
+    monkeypatch.setattr(deciding, "perf_counter", lambda: clock[0])
+    course = Course(len(records))
+    proven, reasons, left = deciding.escalated(records, found[0], course)
+    assert [len(block) for block in blocks] == sizes[: len(blocks)]
+    assert len(blocks) == len(sizes)
+    assert np.array_equal(np.concatenate(blocks), records)
+    assert proven[:, 0].tolist() == [block[0, 0] for block in blocks]
+    assert (reasons, left, course.done) == ([], 0, 4000)
+
+
+def test_a_stop_between_blocks_leaves_the_others(
+    found: tuple[Problem, list[NDArray[np.float64]], Result], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those that were looked at are decided, and all others are left."""
+    records, cancel = np.zeros((100, record.RECORD_LENGTH)), Event()
+
+    def look(block: NDArray[np.float64], *_: object) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        if len(block) == 32:
+            cancel.set()
+        return block, block[:0]
+
+    monkeypatch.setattr(deciding, "sifted", lambda records, *_: (records[:0], records))
+    monkeypatch.setattr(deciding, "merged", lambda records, _: records)
+    monkeypatch.setattr(deciding, "interval_newton_in_doubles", look)
+    monkeypatch.setattr(deciding, "QUICK", 1e9)
+    proven, _, left = deciding.escalated(records, found[0], Course(100, cancel=cancel))
+    assert (len(proven), left) == (48, 52)
 
 
 def test_both_kinds_of_interval_arithmetic_decide_alike(
