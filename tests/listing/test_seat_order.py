@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from math import inf
 from random import Random
 from typing import Any
 
@@ -28,7 +29,7 @@ from workhold.listing.seat_groups import SeatGroups
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.search_report import best_note
-from workhold.search import lattice_shares
+from workhold.search import best_first, lattice_shares
 from workhold.verification import verify_file
 
 OF_LOADS = {FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key}
@@ -157,6 +158,7 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.M
 
 def contacts_of(query: Query, monkeypatch: pytest.MonkeyPatch) -> tuple[list[Any], list[Any]]:
     """Contacts of three locators and a clamp of each direction, and the searches that found them."""
+    monkeypatch.setattr(best_first, "SQUARE_FIRST", inf)
     found: list[Any] = []
     ordered = lattice_shares.ordered_groups
 

@@ -27,8 +27,8 @@ __all__ = ["best_first", "tilted_bound", "work_of"]
 
 Array = NDArray[np.float64]
 
-# Searches that cost more begin with what lies square, see ``cells.Block``: those of some tenths of a second.
-SQUARE_FIRST = 4e6
+# Searches that cost more begin with what lies square, see ``cells.Block``: those of a tenth of a second.
+SQUARE_FIRST = 1e6
 
 
 def best_first(
