@@ -31,7 +31,7 @@ from workhold.kernels.chord.columns import (
     TO,
 )
 from workhold.kernels.chord.evaluation import parameter_on, write_curve, write_shift
-from workhold.kernels.chord.intervals import NARROW, chord_intervals
+from workhold.kernels.chord.intervals import NARROW, SLIVER, chord_intervals
 from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
 from workhold.kernels.curves.piece_bounds import tail_disc
 from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
@@ -64,12 +64,13 @@ def may_reach(row: Array, x: float, y: float, radius: float) -> bool:
 def may_exist(a: Array, b: Array, curve: Array) -> bool:
     """Whether a chord may lie on both features somewhere in its range.
 
-    Ranges too narrow to be tested in the middle are given wherever the carriers of the features meet. Beside
-    a tangency to a circle of many arcs that is so of each arc, however far from there.
+    Ranges too narrow to be tested in the middle, but wider than a sliver, are given wherever the carriers of
+    the features meet. Beside a tangency to a circle of many arcs that is so of each arc, however far from
+    there.
     """
     middle = (curve[FROM] + curve[TO]) / 2.0
     half = (curve[TO] - curve[FROM]) / 2.0 + max(curve[TANGENT_FROM], curve[TANGENT_TO])
-    if half > NARROW:
+    if half > NARROW or curve[TO] - curve[FROM] <= 3.0 * SLIVER:
         return True
     x, y, radius = tail_disc(a, b, curve, middle, half)
     d = curve[LENGTH]
