@@ -188,6 +188,9 @@ def test_a_third_peg_that_touches_where_two_normals_are_on_one_line_makes_a_doub
     # As the part turns it stays on a line through what it turns about.
     pivot = BORE + 10 * TURN + side * BORES / 2 * TURN
     assert not lined(line(third, 1j * (third - pivot), place), tail)
+    # So it nearly does on a line turned from that by little: other solutions are not excluded.
+    assert not lined(line(third, 1j * (third - pivot) * (1 + 1e-5j), place), tail)
+    assert lined(line(third, 1j * (third - pivot) * (1 + 0.1j), place), tail)
 
 
 def test_a_root_that_is_lined_up_is_the_only_one_nearby() -> None:
