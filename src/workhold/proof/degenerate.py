@@ -20,10 +20,10 @@ turning : two of three pegs of one carrier, on arcs about one centre, fix where 
 sliding : two of three pegs of one carrier, on parallel lines, fix the orientation; a slide along the lines is
     left. The third peg's way may be just the radius from an arc's centre. Then it touches that arc where its
     normal is square to the way, as the other two normals are.
-lined up : two of three pegs of one carrier may touch arcs of one radius r whose centres are as far apart as
-    they. The part goes around a circle of radius r without a turn, or it turns. Both ways meet where both
-    normals lie on the line through the centres. Where the third peg just touches there, and leaves its feature
-    at once on both ways, that is a double root, and the only one nearby.
+lined up : two of three pegs of one carrier may touch arcs of one radius whose centres are as far apart as
+    they. The part goes around a circle without a turn, or it turns. Both ways meet where both normals lie on
+    the line through the centres. The third peg may just touch there, and leave its feature at once on both
+    ways. That is a double root, and the only one nearby.
 
 Antipodal contacts are those of I.-M. Chen and J. W. Burdick, "Finding antipodal point grasps on irregularly
 shaped objects", IEEE Transactions on Robotics and Automation 9 (1993) 507-512.
