@@ -31,8 +31,8 @@ shaped objects", IEEE Transactions on Robotics and Automation 9 (1993) 507-512.
 Centres are one and directions parallel as ``SAME_CENTER`` and ``PARALLEL`` say. Where a length misses the
 exact one by m, normals are off by sqrt(2 m / r), with r the smallest length that bends. In ``turning`` the
 third passes the centre at sqrt(2 m D e / r), on a line at sqrt(2 m D). Lengths agree where that is at most
-``DEPENDENT``, or this part of L. In ``lined up``, with M the distance of the two, normals are off by M / r of
-what turns the part, and moments by M / L of what takes it around the circle.
+``DEPENDENT``, or this part of L. Let M be the distance of the two in ``lined up``. Normals are off by M / r
+of what turns the part, and moments by M / L of what takes it around the circle.
 """
 
 from __future__ import annotations
