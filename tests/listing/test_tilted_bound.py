@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from workhold.model.ranking import PREFERENCES
 
 from cad_parts import cad_part
 from workhold import OpeningVise, Plate, Query, Result, Vise, Workpiece, answer, load
@@ -18,7 +17,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
 from workhold.listing.ranking import is_worse, ranking_keys
 from workhold.listing.tilted_bound import square_angles, tilted_keys
-from workhold.model.quality import LOCATION_ERROR, TILT
+from workhold.model.quality import LOCATION_ERROR, PREFERENCES, TILT
 from workhold.model.requirements import Tolerance
 
 TOLERANCES = [Tolerance(), Tolerance(peg=0.03, face=0.0), Tolerance(peg=0.0, face=0.02)]
