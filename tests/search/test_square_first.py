@@ -14,9 +14,11 @@ from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
 from workhold import OpeningVise, Plate, Query, Result, Vise, Workpiece, answer, design, load
 from workhold.contact.problem import Problem
+from workhold.conventions import SQUARE_TILT
 from workhold.files.result.writer import write_result
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.tilted_bound import square_angles
+from workhold.model.quality import TILT
 from workhold.model.requirements import Restrictions
 from workhold.model.search_report import best_note
 from workhold.search import best_first
@@ -67,6 +69,15 @@ def test_the_best_are_the_first_of_all(ranking: str) -> None:
             assert best.found == best.counts
     # Where the location error alone counts first, square ones are no better.
     assert set(ended) == ({False} if ranking == "precise" else {True, False})
+
+
+@pytest.mark.parametrize(("seed", "toolkit", "most"), [(1, VISE, 100), (9, CLAMPS, 20), (41, CLAMPS, 15)])
+def test_tilted_ones_between_square_ones_are_found(seed: int, toolkit: Toolkit, most: int) -> None:
+    """The best is square and the last is, so that there are enough; but tilted ones rank between."""
+    full = design(cad_part(seed), toolkit)
+    is_square = full.table.quality[:, TILT] < SQUARE_TILT
+    assert is_square[0] and not is_square[:most].all() and is_square.sum() > most
+    assert list(design(cad_part(seed), toolkit, best=most)) == list(full)[:most]
 
 
 def test_the_file_of_such_a_search_holds_and_does_not_depend_on_threads(tmp_path: Path) -> None:
