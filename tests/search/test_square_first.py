@@ -124,6 +124,18 @@ def test_the_first_blocks_and_the_rest_find_everything(loose: bool, monkeypatch:
     assert len(rest) + len(first) == len(everything)
 
 
+def test_pairs_that_slide_at_any_angle_are_in_the_first_share(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two clamps as well: such a pair may be square though its cell is not."""
+    tilted = []
+    for vague in (1.0, 0.0):
+        monkeypatch.setattr("workhold.search.toolkit_search.VAGUE", vague)
+        with LatticeShares.of(Query(part(NOTCHED), CLAMPS, best=4), 1, None) as shares:
+            blocks = shares.blocks_of(0, shares.searches[0], shares.whole_turn[0])
+        psi = np.degrees(-np.concatenate([block.work(0.0) for block in blocks])[:, 13])
+        tilted.append(int((np.abs((psi + 45.0) % 90.0 - 45.0) > 5.0).sum()))
+    assert tilted[0] == 0 < tilted[1]
+
+
 def test_square_ranges_come_first_and_all_others_after_them() -> None:
     """Each orientation is in one range; shares stay apart, and a range that begins before the first one is cut."""
     edges = np.linspace(0.0, tau, 4) - 0.1
