@@ -36,7 +36,7 @@ from workhold.listing.canonical_form import (
 )
 from workhold.listing.identity import Identity
 from workhold.listing.placing import placeable, placed
-from workhold.listing.ranking import best_marked, is_worse, last_keys, measured, ranking_keys
+from workhold.listing.ranking import best_marked, is_behind, last_keys, measured, ranking_keys
 from workhold.listing.runs import Runs, SortedRun, in_order, key_of
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import CLOSURE_MARGIN
@@ -180,11 +180,10 @@ class BestFixtures:
         return everything.take(chosen)
 
     def rules_out(self, bound: NDArray[np.float64]) -> bool:
-        """Whether no fixture that ranks after keys (R,) is among the best; they are left out then."""
+        """Whether no fixture that ranks after keys (R,) is among the best: so many were decided already that
+        some of them are dropped."""
         self.decide()
-        is_out = self.last is not None and bool(is_worse(bound[None], self.last)[0])
-        self.has_dropped |= is_out
-        return is_out
+        return is_behind(bound, self.last)
 
     def finished(self) -> tuple[Candidates, Account]:
         """The best fixtures and the account of all records, once the search is over."""

@@ -10,6 +10,7 @@ a part at a time.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 from attrs import evolve
@@ -21,6 +22,7 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
+    FIGURES,
     PROGRAM_CLEARANCE,
     PROGRAM_FIGURE,
     RANKED,
@@ -34,7 +36,9 @@ from workhold.statics.quality import quality_of
 
 __all__ = [
     "best_marked",
+    "best_possible",
     "figure_keys",
+    "is_behind",
     "is_worse",
     "last_keys",
     "measured",
@@ -124,11 +128,27 @@ def best_marked(
     return chosen
 
 
+def best_possible(count: int, query: Query) -> NDArray[np.float64]:
+    """Figures of quality of so many fixtures (N, F), none of any fixture of a query being better.
+
+    The closure margin is a share of one, so of all pegs at most an equal one, and clamp freedom 90 degrees.
+    """
+    best = np.array([inf if figure.more_is_better else 0.0 for figure in FIGURES])
+    best[[CLOSURE_MARGIN, CLAMP_FREEDOM]] = 1.0 / query.toolkit.peg_count, 90.0
+    # With a program the clearance of its tools stands behind.
+    return np.tile(best if query.program is None else np.append(best, inf), (count, 1))
+
+
 def last_keys(quality: NDArray[np.float64], query: Query, most: int) -> NDArray[np.float64]:
     """The keys (R,) of the last of the best ``most`` of as many fixtures or more, infinite for NaN."""
     keys = np.stack(ranking_keys(quality, query.ranking, query.tolerance), axis=1)
     worst = keys[rank(quality, query.ranking, query.tolerance)[most - 1]]
     return np.asarray(np.where(np.isnan(worst), np.inf, worst))
+
+
+def is_behind(bound: NDArray[np.float64], last: NDArray[np.float64] | None) -> bool:
+    """Whether keys (R,) come after those of the last of the best; not while there are too few to have one."""
+    return last is not None and bool(is_worse(bound[None], last)[0])
 
 
 def is_worse(keys: NDArray[np.float64], last: NDArray[np.float64]) -> NDArray[np.bool_]:

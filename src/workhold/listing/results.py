@@ -19,7 +19,7 @@ from workhold.contact.problem import Problem, Progress
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.identity import Identity, SetCount, identity_order
-from workhold.listing.ranking import best_marked, is_worse, last_keys, measured_as, rank
+from workhold.listing.ranking import best_marked, is_behind, last_keys, measured_as, rank
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -221,8 +221,7 @@ class RankedTable:
 
     def rules_out(self, bound: NDArray[np.float64]) -> bool:
         """Whether no fixture that ranks after keys (R,) is among the best; they are left out then."""
-        last = self.last
-        is_out = last is not None and bool(is_worse(bound[None], last)[0])
+        is_out = is_behind(bound, self.last)
         self.has_dropped |= is_out
         return is_out
 

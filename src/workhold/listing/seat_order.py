@@ -46,13 +46,11 @@ from workhold.kernels.contact.seat_numbers import numbers_of_seats
 from workhold.listing.canonical_form import candidates_of
 from workhold.listing.packed_contacts import PackedContacts
 from workhold.listing.pair_bounds import BOUNDED, first_of_clamps, pair_bounds
-from workhold.listing.ranking import ranking_keys
+from workhold.listing.ranking import best_possible, ranking_keys
 from workhold.listing.seat_groups import SeatGroups, in_order_of_bounds
 from workhold.model.clamps import LOCATORS
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
-    CLAMP_FREEDOM,
-    CLOSURE_MARGIN,
     EDGE_DISTANCE,
     END_DISTANCE,
     FIGURES,
@@ -95,8 +93,6 @@ NEAR_END = 1e-4
 NO_CONTACT = np.iinfo(np.int64).max
 # How often places of locators are found from what they were before.
 ROUNDS = 3
-# The best that figures can be which locators do not bound; of others infinity, or 0 where less is better.
-BEST = {CLOSURE_MARGIN: 0.2, CLAMP_FREEDOM: 90.0}
 
 
 def ordered_groups(
@@ -309,8 +305,7 @@ def best_figures(
     known = (share < MOST_SHARE) & (ends.min(axis=1, initial=inf) > NEAR_END) & (place < NEAR_END)
     error = out[:, LOCATION_ERROR] * (1.0 - share)
     nearest, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
-    for number, figure in enumerate(FIGURES):
-        out[:, number] = BEST.get(number, inf if figure.more_is_better else 0.0)
+    out = best_possible(len(records), query)
     out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = nearest, np.minimum(edge, touched.length)
     theta = problem.frame.quarters * (pi / 2) - records[:, record.PSI]
     tilt = tilts(theta, main_direction(problem.workpiece))
@@ -320,9 +315,8 @@ def best_figures(
     if pairs is not None:
         for number, column in BOUNDED.items():
             out[:, number] = pairs[:, column]
-    radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
-    judging = Judging.of(2 * (touched.length - radius), query.tolerance, None)
+    judging = Judging.of(touched.length, query.toolkit, query.tolerance)
     near = is_near_edge(edges + place[:, None]).sum(axis=1)
     out[:, WARNINGS] = near + is_astray(error, judging.off) + is_strong(out[:, CLAMP_AMPLIFICATION])
     out[:, PENALTY] = judging.penalty(out)
-    return out if query.program is None else np.hstack([out, np.full((len(out), 1), inf)])
+    return out

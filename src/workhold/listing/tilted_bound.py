@@ -8,7 +8,7 @@ fixtures" of docs/method-theorems.md).
 
 from __future__ import annotations
 
-from math import hypot, inf, sqrt
+from math import hypot, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,17 +16,8 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.geometry.segment import Arc
-from workhold.listing.ranking import ranking_keys
-from workhold.model.quality import (
-    CLAMP_FREEDOM,
-    CLOSURE_MARGIN,
-    FIGURES,
-    LOCATION_ERROR,
-    PENALTY,
-    SMALLEST_FACE,
-    TILT,
-    WARNINGS,
-)
+from workhold.listing.ranking import best_possible, ranking_keys
+from workhold.model.quality import LOCATION_ERROR, PENALTY, SMALLEST_FACE, TILT
 from workhold.model.query import Query
 from workhold.statics.judging import Judging
 from workhold.statics.quality import face_sizes, main_direction
@@ -72,15 +63,10 @@ def least_keys(query: Query, problem: Problem, tilt: float) -> Array:
     cases = [(sqrt(2.0) * off, np.nanmax(sizes))]
     if arcs:
         cases.append((hypot(off, tolerance.peg), sizes[arcs].max()))
-    quality = np.array([[inf if figure.more_is_better else 0.0 for figure in FIGURES]] * len(cases))
+    quality = best_possible(len(cases), query)
     quality[:, LOCATION_ERROR], quality[:, SMALLEST_FACE] = np.transpose(cases)
     quality[:, LOCATION_ERROR] *= 1.0 - SHARE
-    quality[:, CLOSURE_MARGIN], quality[:, CLAMP_FREEDOM] = 1.0 / query.toolkit.peg_count, 90.0
-    quality[:, TILT], quality[:, WARNINGS] = tilt, 0.0
-    radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
-    judging = Judging.of(2 * (problem.wrench_length - radius), tolerance, None)
-    quality[:, PENALTY] = judging.penalty(quality)
-    if query.program is not None:
-        quality = np.hstack([quality, np.full((len(cases), 1), inf)])
+    quality[:, TILT] = tilt
+    quality[:, PENALTY] = Judging.of(problem.wrench_length, query.toolkit, tolerance).penalty(quality)
     keys = np.stack(ranking_keys(quality, query.ranking, tolerance), axis=1)
     return np.asarray(keys[np.lexsort(keys.T[::-1])[0]])

@@ -120,6 +120,11 @@ def touched(records: Array, rows: Array, lattice: Lattice) -> list[TouchedFeatur
     ]
 
 
+def dot(a: Points, b: Points) -> Array:
+    """Scalar products of vectors."""
+    return np.asarray((np.conj(a) * b).real)
+
+
 def cross(a: Points, b: Points) -> Array:
     """Cross products of vectors."""
     return np.asarray((np.conj(a) * b).imag)
@@ -196,7 +201,7 @@ def sliding(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFe
     chord, third = b.place - a.place, c.place - a.place
     size = np.where(chord == 0.0, 1.0, np.abs(chord))
     gap, height = cross(b.middle - a.middle, a.axis), cross(c.middle - a.middle, a.axis)
-    ahead, aside = (np.conj(chord) * third).real / size**2, cross(chord, third) / size**2
+    ahead, aside = dot(chord, third) / size**2, cross(chord, third) / size**2
     turn = records[:, record.REACH] + LEAST_REACH
     some, every = np.zeros(len(records), np.bool_), np.ones(len(records), np.bool_)
     for along in both((size - gap) * (size + gap)):
@@ -206,11 +211,6 @@ def sliding(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFe
         some |= here
         every &= ~here | agree(np.abs(ahead * gap - aside * along - height), c.radius, c.radius)
     return np.asarray(parallel(a, b) & c.is_arc & some & every)
-
-
-def dot(a: Points, b: Points) -> Array:
-    """Scalar products of vectors."""
-    return np.asarray((np.conj(a) * b).real)
 
 
 def lined_up(

@@ -20,7 +20,7 @@ from workhold.listing.collector import BestFixtures
 from workhold.listing.results import Work, stage
 from workhold.listing.tilted_bound import square_angles, tilted_keys
 from workhold.model.query import Query
-from workhold.search.cells import Block, run_blocks
+from workhold.search.cells import Block, cost_of, run_blocks
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
 __all__ = ["best_first", "tilted_bound", "work_of"]
@@ -64,11 +64,6 @@ def tilted_bound(query: Query, problem: Problem, cost: float) -> Array | None:
     None where it does not.
     """
     return tilted_keys(query, problem) if query.best is not None and cost > SQUARE_FIRST else None
-
-
-def cost_of(blocks: Sequence[Block]) -> float:
-    """A guess of how long blocks take, in the unit of ``Block.cost``."""
-    return sum(block.cost for block in blocks)
 
 
 def work_of(search: ToolkitSearch, blocks: Sequence[Block], done: Sequence[Block]) -> Work:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import nullcontext
 from math import pi, tau
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from workhold.contact.curves import CurveTable
 from workhold.contact.problem import Progress
 
-__all__ = ["Block", "cell_edges", "member_counts", "members_of_cell", "run_blocks"]
+__all__ = ["Block", "cell_edges", "cost_of", "member_counts", "members_of_cell", "run_blocks"]
 
 Records = NDArray[np.float64]
 
@@ -48,6 +48,11 @@ class Block:
     work: Callable[[float], Records]
     cost: float
     cells: int = 1
+
+
+def cost_of(blocks: Iterable[Block]) -> float:
+    """A guess of how long blocks take, in the unit of ``Block.cost``."""
+    return sum(block.cost for block in blocks)
 
 
 def cell_edges(half_turns: int, cells: int) -> NDArray[np.float64]:

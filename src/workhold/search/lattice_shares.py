@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import degrees, radians, tau
 from threading import Event
 
@@ -36,7 +36,7 @@ from workhold.model.query import Query
 from workhold.model.search_report import no_pair_note
 from workhold.proof.deciding import Account, Course, decided
 from workhold.search.best_first import tilted_bound
-from workhold.search.cells import Block, run_blocks
+from workhold.search.cells import Block, cost_of, run_blocks
 from workhold.search.shares import one_clamp
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
@@ -230,4 +230,4 @@ def counting(progress: Progress | None, found: int) -> Progress | None:
 
 def ways_in(blocks: Iterable[Iterable[Block]]) -> float:
     """The ways in which two pairs of contacts may go together in the blocks of some searches."""
-    return sum(block.cost for every in blocks for block in every)
+    return cost_of(chain.from_iterable(blocks))

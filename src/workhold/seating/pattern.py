@@ -80,14 +80,13 @@ class Pattern:
         pegs = frame.turned(np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in common.numbers], float))
         separation = frame.sign * fixture.jaw_separation
         pegs[:, 0] -= right * separation
-        given = common.radii, -inf, inf, frame, common.numbers, common.half_plane, gap
-        pattern = cls(pegs, right, *given)
+        pattern = cls(pegs, right, common.radii, -inf, inf, frame, common.numbers, common.half_plane, gap)
         stop, widest = pattern.free_of_locators(separation) if gap is None else pattern.gap_kept(gap)
         if frame.sign < 0.0:
             stop = stop if common.travel.most is None else max(stop, -common.travel.most)
         elif gap is None:
             stop = max(stop, common.travel.least)
-        return cls(pegs, right, common.radii, stop, widest, *given[3:])
+        return evolve(pattern, stop=stop, widest=widest)
 
     def gap_kept(self, gap: float) -> tuple[float, float]:
         """The stop and the widest separation that a gap between pegs of both jaws leaves.

@@ -33,6 +33,7 @@ from workhold.conventions import (
     UNFIT_LOCATION_ERROR,
     WEAK_CLOSURE,
 )
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
     CLOSURE_MARGIN,
@@ -65,8 +66,14 @@ class Judging:
     jaw_force: float | None
 
     @classmethod
-    def of(cls, diameter: float, tolerance: Tolerance, jaw_force: float | None) -> Judging:
-        """Limits for a part of a diameter in mm, a tolerance, and a jaw force in N if it is known."""
+    def of(
+        cls, length: float, toolkit: Toolkit, tolerance: Tolerance, jaw_force: float | None = None
+    ) -> Judging:
+        """Limits for a toolkit, a tolerance, and a jaw force in N if it is known.
+
+        The length L of the wrenches in mm is half the part's diameter and the radius of the largest peg.
+        """
+        diameter = 2 * (length - max(carrier.peg_radius for carrier in toolkit.carriers))
         return cls(tolerance.peg + tolerance.face, SMALL_FACE * diameter, jaw_force)
 
     def warnings(self, quality: Array, edges: Array) -> Array:

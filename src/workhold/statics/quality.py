@@ -129,8 +129,7 @@ def quality_of(
     rows = load_rows(loads, workpiece.center)
     tolerances = np.array([tolerance.peg, tolerance.face])
     direction, sizes = main_direction(workpiece), face_sizes(workpiece)
-    radius = max(carrier.peg_radius for carrier in toolkit.carriers)
-    judging = Judging.of(2 * (known.length - radius), tolerance, jaw_force)
+    judging = Judging.of(known.length, toolkit, tolerance, jaw_force)
     out = np.empty((len(table), len(FIGURES) + (passed is not None)))
 
     def fill(start: int) -> None:
