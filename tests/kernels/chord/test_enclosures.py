@@ -165,7 +165,7 @@ def test_tails_are_within_their_radius(seed, position, depth, reach):
         near = tail_radius(curve, state, reach)
         discs = [
             (state[0], state[1], near),
-            chord_tail(a, b, curve, psi, reach),
+            chord_tail(a, b, curve, psi, cos(psi), sin(psi), reach),
             tail_disc(a, b, curve, psi, reach),
         ]
         with exactly():
@@ -299,7 +299,7 @@ def test_tails_hold_through_a_coincidence(off):
         reach = 10.0 ** random.uniform(-15, -2)
         branch, shift = random.choice([1.0, -1.0]), random.uniform(-pi, pi)
         curve, psi = curve_row(a, b, d, branch, shift), middle + gamma - shift
-        discs = [tail_disc(a, b, curve, psi, reach), chord_tail(a, b, curve, psi, reach)]
+        discs = [tail_disc(a, b, curve, psi, reach), chord_tail(a, b, curve, psi, cos(psi), sin(psi), reach)]
         with exactly():
             for part in (-1.0, 0.0, 0.7, 1.0):
                 place = arb(psi) + shift + reach * part

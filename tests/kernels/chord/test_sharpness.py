@@ -381,7 +381,9 @@ def anywhere(line: bool) -> Callable[[Random, Kernel], float]:
         stub = {"chord_state": lambda *_: (*place, *[0.0] * 8), "tail_radius": lambda *_: inf}
         curve = curve_row(row, row, 1.0, 1.0)
         curve[COINCIDENCE] = NONE
-        x, y, radius = changed(kernel, **stub, disc_radius=lambda *_: inf)(row, row, curve, 0.0, 0.0)
+        x, y, radius = changed(kernel, **stub, disc_radius=lambda *_: inf)(
+            row, row, curve, 0.0, 1.0, 0.0, 0.0
+        )
         ends = [row[1:3] + side * row[5] * axis for side in (-1, 1)] if line else [2 * row[1:3] - place]
         return max(hypot(*(end - (x, y))) for end in ends) / float(radius)
 

@@ -116,7 +116,16 @@ def at_the_edge(rule: str) -> Callable[[Random, Callable[..., Kernel]], float]:
                 pegs = np.column_stack([there, range(4), np.zeros((4, 2)), np.full(4, radius)])
                 reach = abs(turn - psi) * radius / OFF
                 work, out = np.zeros((8, 2)), np.zeros(4)
-                verdict, _ = kernel(pegs, float(contacts.standing), turn, reach, features, asked, work, out)
+                verdict, _ = kernel(
+                    pegs,
+                    float(contacts.standing),
+                    (turn, cos(turn), sin(turn)),
+                    reach,
+                    features,
+                    asked,
+                    work,
+                    out,
+                )
                 return bool(verdict == 2)
 
             worst = max(worst, needed(keeps))

@@ -37,7 +37,7 @@ from workhold.kernels.chord.columns import (
     X_STANDING,
 )
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
-from workhold.kernels.contact.record import PEG_LENGTH, place_peg
+from workhold.kernels.contact.record import PEG_LENGTH, angle_of, place_peg
 from workhold.kernels.contact.rules import is_fixture, minors, outward_normal, share_a_carrier
 from workhold.kernels.curves.block_work import TRIPLE_ROWS, place_chord, place_triple
 from workhold.kernels.curves.moving_pegs import faces_away, may_close, write_triple
@@ -166,11 +166,11 @@ def try_pairs(pieces, features, curves, lattice, limits, standing_force, moving_
             steep = crossings(first, second, loose, curves, HEIGHT, row_offset, pitch_y, flat, stack, fewer)
             for root in range(number):
                 psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
-                place_chord(pegs[:2], one, psi, reach, 0.0, rows, curves)
-                place_chord(pegs[2:], two, psi, reach, roots[root, 2], rows, curves)
+                place_chord(pegs[:2], one, angle_of(psi), reach, 0.0, rows, curves)
+                place_chord(pegs[2:], two, angle_of(psi), reach, roots[root, 2], rows, curves)
                 row = out[count]
                 row[FIRST], row[SECOND], row[ROOT], row[REACH] = i, j, psi, reach
-                row[VERDICT], _ = is_fixture(pegs, 2.0, psi, reach, features, limits, work, null)
+                row[VERDICT], _ = is_fixture(pegs, 2.0, angle_of(psi), reach, features, limits, work, null)
                 row[FORCE_DIRECTIONS] = as_number(
                     first[standing_force] <= first[standing_force + 1]
                     and second[moving_force] <= second[moving_force + 1]
@@ -226,8 +226,8 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
                 if reach >= 1e-6:
                     continue
                 cx, cy = cos(psi), sin(psi)
-                place_triple(pegs, one, two, psi, reach, rows, curves)
-                write_triple(triple, pegs, psi, rows, length)
+                place_triple(pegs, one, two, angle_of(psi), reach, rows, curves)
+                write_triple(triple, pegs, cx, cy, rows, length)
                 base = cx * pegs[0, 1] - cy * pegs[0, 0] + row_offset
                 error = pegs[0, 5] + 4.0 * length * reach
                 gap = limits.gap - GAP_SLACK - HAIR - 4.0 * length * reach
@@ -244,7 +244,9 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
                             if not meets:
                                 continue
                             place_peg(pegs[3], x, y, e, 0.0, float(line), radius)
-                            verdict, _ = is_fixture(pegs, 3.0, psi, reach, features, limits, work, null)
+                            verdict, _ = is_fixture(
+                                pegs, 3.0, angle_of(psi), reach, features, limits, work, null
+                            )
                             if verdict < 2:
                                 continue
                             row = out[count]

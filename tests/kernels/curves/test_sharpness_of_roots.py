@@ -42,7 +42,7 @@ def rest_rounded(random: Random, kernel: Kernel) -> float:
     multiple = round((two - one - offset) / period)
     target = offset + multiple * period
     values = {0: (one, 1.0, 0.0, 0.0), 1: (two, 1.0, 0.0, 0.0)}
-    form = changed(kernel, value_at=lambda _, curve, *__: values[curve])
+    form = changed(kernel, value_turned=lambda _, __, ___, curve, *____: values[curve])
     _, told = form(0.0, 1.0, target - 1, target + 1, 0, 1, None, None, 0.0, target, 0.5)
     rest = Fraction(abs(two - one - target))
     exact = abs(Fraction(two) - Fraction(one) - Fraction(offset) - multiple * Fraction(period))
@@ -130,7 +130,7 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
         given = features, curves, Lattice(1.0, 1.0, 0.0), limits(length, 0.0), False
         work, out = block_work(*given, np.zeros(STATISTICS, np.int64)), np.zeros((16, RECORD_LENGTH))
         work.pegs[:] = 0.0
-        form(out, 0, 0.0, reach, work)
+        form(out, 0, (0.0, 1.0, 0.0), reach, work)
         error, gap = told[:2]
         return 2 * length * sin(reach) / (error if name == "height" else gap)
 

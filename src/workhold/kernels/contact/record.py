@@ -51,6 +51,8 @@ from workhold.kernels.base.given import Lattice
 from workhold.kernels.chord.columns import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL
 
 Array = NDArray[np.float64]
+# An orientation psi in radians, its cosine and its sine.
+Angle = tuple[float, float, float]
 IntArray = NDArray[np.int64]
 
 PEG_X, PEG_Y, PEG_FEATURE, PEG_COLUMN, PEG_ROW, PEG_RADIUS = range(6)
@@ -62,6 +64,12 @@ COLUMNS = 5
 ROWS = 9
 PSI, TAIL_X, TAIL_Y, SEPARATION, REACH, LARGEST_RADIUS = range(13, 19)
 RECORD_LENGTH = 19
+
+
+@inner
+def angle_of(psi: float) -> Angle:
+    """An orientation in radians with its cosine and sine, which all that is placed at it shares."""
+    return (psi, cos(psi), sin(psi))
 
 
 @inner

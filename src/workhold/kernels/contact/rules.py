@@ -20,8 +20,6 @@ breaks a rule everywhere within that radius is discarded.
 
 from __future__ import annotations
 
-from math import cos, sin
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,7 +29,7 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, 
 from workhold.kernels.base.given import Features, Limits
 from workhold.kernels.chord.columns import COLUMN_STEP, ROW_STEP
 from workhold.kernels.chord.evaluation import end_slack
-from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y
+from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle
 
 Array = NDArray[np.float64]
 
@@ -114,7 +112,7 @@ def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> b
 def is_fixture(
     pegs: Array,
     standing: float,
-    psi: float,
+    angle: Angle,
     reach: float,
     features: Features,
     limits: Limits,
@@ -126,7 +124,7 @@ def is_fixture(
     Parameters
     ----------
     pegs : (4, 6) places; the first ``standing`` on the carrier that stands still.
-    psi, reach : orientation of the pegs in the workpiece's frame, and how far it may be off, in radians.
+    angle, reach : orientation of the pegs in the workpiece's frame, and how far in radians it may be off.
     work : (8, 2) work space.
     null : (4,) receives the null vector, not scaled.
 
@@ -137,7 +135,7 @@ def is_fixture(
     The verdict is 2 when it may be a fixture, 1 when the four contacts may be inside their features, 0 when
     they are not.
     """
-    cx, cy = cos(psi), sin(psi)
+    _, cx, cy = angle
     rows, length = features.rows, limits.wrench_length
     leftmost_moving, rightmost_standing = np.inf, -np.inf
     points, normals = work[:4], work[4:]

@@ -16,7 +16,16 @@ from numpy.typing import NDArray
 from workhold.kernels.base.compiling import inner, inner_making_arrays
 from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.chord.columns import COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, Curves
-from workhold.kernels.contact.record import PEG_LENGTH, PEG_RADIUS, PEG_X, PEG_Y, place_peg, write_record
+from workhold.kernels.contact.record import (
+    PEG_LENGTH,
+    PEG_RADIUS,
+    PEG_ROW,
+    PEG_X,
+    PEG_Y,
+    Angle,
+    place_peg,
+    write_record,
+)
 from workhold.kernels.contact.rules import is_fixture, is_listed
 from workhold.kernels.curves.piece_bounds import chord_tail
 from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH
@@ -94,47 +103,64 @@ def is_among(feature: int, touched: tuple[int, int]) -> bool:
 
 
 @inner
-def place_chord(
-    pegs: Array, curve: int, psi: float, reach: float, line: float, features: Array, curves: Curves
+def place_tail(
+    pegs: Array, curve: int, angle: Angle, reach: float, line: float, features: Array, curves: Curves
 ) -> None:
-    """Writes the pegs of a curve's chord to (2, 6) places, the tail in row ``line`` of column 0.
+    """Writes the tail of a curve's chord to the first of some places, in row ``line`` of column 0.
 
-    ``reach`` is how far in radians psi may be off; the pegs' radii follow from it.
+    ``reach`` is how far in radians psi may be off; the peg's radius follows from it.
     """
-    step, reals = curves.integers[curve], curves.reals[curve]
+    step = curves.integers[curve]
     tail, head = step[TAIL], step[HEAD]
-    d, alpha = reals[LENGTH], psi + reals[SHIFT]
-    x, y, radius = chord_tail(features[tail], features[head], reals, psi, reach)
-    column, row = float(step[COLUMN_STEP]), float(step[ROW_STEP])
+    x, y, radius = chord_tail(features[tail], features[head], curves.reals[curve], *angle, reach)
     place_peg(pegs[0], x, y, tail, 0.0, line, radius)
-    place_peg(pegs[1], x + d * cos(alpha), y + d * sin(alpha), head, column, line + row, radius + d * reach)
 
 
 @inner
-def place_triple(
-    pegs: Array, one: int, two: int, psi: float, reach: float, features: Array, curves: Curves
-) -> None:
-    """Writes the three standing pegs of two curves with a common tail; ``reach`` as for ``place_chord``."""
-    place_chord(pegs[:2], one, psi, reach, 0.0, features, curves)
-    step, d, alpha = curves.integers[two], curves.reals[two, LENGTH], psi + curves.reals[two, SHIFT]
+def place_head(pegs: Array, place: int, curve: int, angle: Angle, reach: float, curves: Curves) -> None:
+    """Writes the head of a curve's chord to a place, from the tail in the first; see ``place_tail``."""
+    step, d, alpha = (
+        curves.integers[curve],
+        curves.reals[curve, LENGTH],
+        angle[0] + curves.reals[curve, SHIFT],
+    )
     x, y, radius = (
         pegs[0, PEG_X] + d * cos(alpha),
         pegs[0, PEG_Y] + d * sin(alpha),
         pegs[0, PEG_RADIUS] + d * reach,
     )
-    place_peg(pegs[2], x, y, step[HEAD], float(step[COLUMN_STEP]), float(step[ROW_STEP]), radius)
+    line = pegs[0, PEG_ROW] + float(step[ROW_STEP])
+    place_peg(pegs[place], x, y, step[HEAD], float(step[COLUMN_STEP]), line, radius)
+
+
+@inner
+def place_chord(
+    pegs: Array, curve: int, angle: Angle, reach: float, line: float, features: Array, curves: Curves
+) -> None:
+    """Writes the pegs of a curve's chord to (2, 6) places; see ``place_tail``."""
+    place_tail(pegs, curve, angle, reach, line, features, curves)
+    place_head(pegs, 1, curve, angle, reach, curves)
+
+
+@inner
+def place_triple(
+    pegs: Array, one: int, two: int, angle: Angle, reach: float, features: Array, curves: Curves
+) -> None:
+    """Writes the three standing pegs of two curves with a common tail; see ``place_tail``."""
+    place_chord(pegs, one, angle, reach, 0.0, features, curves)
+    place_head(pegs, 2, two, angle, reach, curves)
 
 
 @inner
 def add_listed(
-    out: Array, count: int, standing: float, psi: float, reach: float, once: bool, work: BlockWork
+    out: Array, count: int, standing: float, angle: Angle, reach: float, once: bool, work: BlockWork
 ) -> int:
     """Examines the four pegs in place, and appends their record to ``out`` where it is listed.
 
     Parameters
     ----------
     standing : how many pegs, the first ones, are on the carrier that stands still.
-    psi, reach : orientation in radians, and how far it may be off.
+    angle, reach : the orientation, and how far in radians it may be off.
     once : whether the contacts count, where other pegs in place are the same ones.
 
     Returns
@@ -143,7 +169,7 @@ def add_listed(
     """
     pegs, limits, stats = work.pegs, work.limits, work.stats
     verdict, separation = is_fixture(
-        pegs, standing, psi, reach, work.features, limits, work.contacts, work.null
+        pegs, standing, angle, reach, work.features, limits, work.contacts, work.null
     )
     stats[CANDIDATES] += 1
     if verdict > 0 and once:
@@ -152,5 +178,5 @@ def add_listed(
         return count
     if count == out.shape[0]:
         return -1
-    write_record(out[count], standing, pegs, psi, separation, reach)
+    write_record(out[count], standing, pegs, angle[0], separation, reach)
     return count + 1

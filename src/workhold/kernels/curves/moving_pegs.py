@@ -5,8 +5,6 @@ The workpiece stands still there, and each row of the moving carrier meets each 
 
 from __future__ import annotations
 
-from math import cos, sin
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,7 +12,7 @@ from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN
 from workhold.kernels.base.given import Limits
-from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, place_peg
+from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle, place_peg
 from workhold.kernels.contact.rules import minor_band, outward_normal
 from workhold.kernels.curves.block_work import BlockWork, add_listed
 from workhold.kernels.curves.piece_bounds import HAIR
@@ -24,9 +22,9 @@ Array = NDArray[np.float64]
 
 
 @inner
-def write_triple(triple: Array, pegs: Array, psi: float, features: Array, length: float) -> None:
+def write_triple(triple: Array, pegs: Array, cx: float, cy: float, features: Array, length: float) -> None:
     """Writes what moving pegs need of three standing pegs in place to (8, 3) rows, the last three of them
-    work space.
+    work space. The x axis of the pegs lies along (cx, cy).
 
     Let w_i = (n_i, t_i) be the wrenches of the standing pegs and D their determinant. Rows 0 to 2 hold the
     cross products of two of them, cyclically, with the sign of D. Let a moving peg have the wrench w. The
@@ -42,7 +40,7 @@ def write_triple(triple: Array, pegs: Array, psi: float, features: Array, length
         row = features[int(pegs[k, PEG_FEATURE])]
         nx, ny = outward_normal(row, x, y)
         first[k, 0], first[k, 1], first[k, 2] = nx, ny, (x * ny - y * nx) / length
-        rightmost = max(rightmost, cos(psi) * x + sin(psi) * y)
+        rightmost = max(rightmost, cx * x + cy * y)
         radius = max(radius, pegs[k, PEG_RADIUS])
         if row[IS_ARC] != 0.0:
             swing = max(swing, pegs[k, PEG_RADIUS] / row[RADIUS])
@@ -107,7 +105,7 @@ def faces_away(row: Array, cx: float, cy: float, clamping: float, doubt: float) 
 
 
 @inner
-def add_moving_pegs(out: Array, count: int, psi: float, reach: float, work: BlockWork) -> int:
+def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: BlockWork) -> int:
     """Tries every moving peg for the three standing pegs in place, and appends the fixtures to ``out``.
 
     Returns
@@ -115,13 +113,13 @@ def add_moving_pegs(out: Array, count: int, psi: float, reach: float, work: Bloc
     how many records there are, -1 when there is no room for another
     """
     pegs, triple, lattice, limits, features = work.pegs, work.triple, work.lattice, work.limits, work.features
-    cx, cy = cos(psi), sin(psi)
+    _, cx, cy = angle
     pitch_y, length, rows = lattice.pitch_y, limits.wrench_length, features.rows
     base = cx * pegs[0, PEG_Y] - cy * pegs[0, PEG_X] + lattice.row_offset
     # Points of the part are at most 2 L apart.
     error = pegs[0, PEG_RADIUS] + 4.0 * length * reach
     gap = limits.gap - GAP_SLACK - HAIR - 4.0 * length * reach
-    write_triple(triple, pegs, psi, rows, length)
+    write_triple(triple, pegs, cx, cy, rows, length)
     asks_closure = not work.counting and limits.pairing == 0.0
     for e in range(features.moving[0], features.moving[1]):
         row = rows[e]
@@ -140,7 +138,7 @@ def add_moving_pegs(out: Array, count: int, psi: float, reach: float, work: Bloc
                 if asks_closure and not may_close(triple, row, x, y, radius, cx, cy, gap, limits):
                     continue
                 place_peg(pegs[3], x, y, e, 0.0, float(line), radius)
-                count = add_listed(out, count, 3.0, psi, reach, True, work)
+                count = add_listed(out, count, 3.0, angle, reach, True, work)
                 if count < 0:
                     return count
     return count

@@ -172,10 +172,15 @@ def tail_disc(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tup
 
 
 @inner
-def chord_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tuple[float, float, float]:
-    """The tail of a chord, and how far in mm the exact one may be from it when psi is off by up to
-    ``reach``."""
-    state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
+def chord_tail(
+    a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float, reach: float
+) -> tuple[float, float, float]:
+    """The tail of a chord at an orientation with its cosine and sine, and how far in mm the exact one may be
+    from it.
+
+    The orientation psi is off by up to ``reach``.
+    """
+    state = chord_state(a, b, curve, psi, cosine, sine)
     radius = tail_radius(curve, state, reach)
     coincides = curve[COINCIDENCE] != NONE
     if coincides:

@@ -13,7 +13,7 @@ its radius. So is every range where two curves run on top of each other.
 
 from __future__ import annotations
 
-from math import ceil, floor, isfinite, isinf
+from math import ceil, cos, floor, isfinite, isinf, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,7 @@ from workhold.kernels.chord.columns import (
     VALUE_LOW,
     Curves,
 )
-from workhold.kernels.chord.evaluation import curve_value
+from workhold.kernels.chord.evaluation import chord_state, valued
 from workhold.kernels.curves.piece_bounds import SAME, value_disc
 
 Array = NDArray[np.float64]
@@ -74,10 +74,23 @@ def value_at(
 ) -> tuple[float, float, float, float]:
     """Value and slope of a curve of the table at an orientation, and bounds of their errors (that of the
     slope may be infinite)."""
-    a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
-    value, slope, error, spread = curve_value(a, b, curves.reals[curve], psi, mode)
+    return value_turned(psi, cos(psi), sin(psi), curve, features, curves, mode)
+
+
+@inner
+def value_turned(
+    psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
+) -> tuple[float, float, float, float]:
+    """What ``value_at`` returns at an orientation of known cosine and sine, which two curves share."""
+    a, b, row = (
+        features[curves.integers[curve, TAIL]],
+        features[curves.integers[curve, HEAD]],
+        curves.reals[curve],
+    )
+    state = chord_state(a, b, row, psi, cosine, sine)
+    value, slope, error, spread = valued(a, b, state, cosine, sine, mode)
     if not isfinite(error):
-        value, error = value_disc(a, b, curves.reals[curve], psi, SAME, mode)
+        value, error = value_disc(a, b, row, psi, SAME, mode)
     return value, slope, error, spread
 
 
@@ -129,8 +142,9 @@ def solve(
     for _ in range(100):
         if not low < psi < high:
             psi = (low + high) / 2.0
-        value_one, slope_one, error_one, _ = value_at(psi, one, features, curves, mode)
-        value_two, slope_two, error_two, _ = value_at(psi, two, features, curves, mode)
+        cosine, sine = cos(psi), sin(psi)
+        value_one, slope_one, error_one, _ = value_turned(psi, cosine, sine, one, features, curves, mode)
+        value_two, slope_two, error_two, _ = value_turned(psi, cosine, sine, two, features, curves, mode)
         rest = value_two - value_one - target
         error = error_one + error_two + ROUNDINGS * (abs(value_one) + abs(value_two) + abs(target))
         # Nothing is gained where rounding is the larger part of what is left.
@@ -353,8 +367,9 @@ def crossings(
             middle = low + width / 4.0
         elif isinf(t1) or isinf(t2):
             middle = high - width / 4.0
-        m1, n1, error1, spread1 = value_at(middle, one, features, curves, mode)
-        m2, n2, error2, spread2 = value_at(middle, two, features, curves, mode)
+        cosine, sine = cos(middle), sin(middle)
+        m1, n1, error1, spread1 = value_turned(middle, cosine, sine, one, features, curves, mode)
+        m2, n2, error2, spread2 = value_turned(middle, cosine, sine, two, features, curves, mode)
         item = stack[depth]
         item[0], item[1] = middle, high
         item[2], item[3], item[4], item[5] = m1, n1, m2, n2

@@ -12,6 +12,7 @@ never make a fixture together. Nor does a sliding pair whose contacts share one 
 from __future__ import annotations
 
 from math import acos, atan2, ceil, cos, hypot, pi, sin
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,17 @@ from workhold.kernels.chord.columns import (
 )
 from workhold.kernels.chord.evaluation import backward_error, parameter_on
 from workhold.kernels.chord.intervals import SLIVER
-from workhold.kernels.contact.record import PEG_RADIUS, PEG_X, PEG_Y, RECORD_LENGTH, place_peg
+from workhold.kernels.contact.record import (
+    PEG_LENGTH,
+    PEG_RADIUS,
+    PEG_ROW,
+    PEG_X,
+    PEG_Y,
+    RECORD_LENGTH,
+    Angle,
+    angle_of,
+    place_peg,
+)
 from workhold.kernels.contact.rules import share_a_carrier
 from workhold.kernels.curves.block_work import (
     CANDIDATES,
@@ -52,7 +63,8 @@ from workhold.kernels.curves.block_work import (
     block_work,
     is_among,
     place_chord,
-    place_triple,
+    place_head,
+    place_tail,
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs
 from workhold.kernels.curves.rows import height_range, lines_between, row_meets
@@ -172,30 +184,43 @@ def sliding_pair_reach(a: Array, b: Array, sliding_pair: Array) -> float:
     )
 
 
+class PlacedPair(NamedTuple):
+    """A sliding pair, and what all fixtures that rest on it share.
+
+    Parameters
+    ----------
+    number : its row in the tables of sliding pairs.
+    angle, reach : its orientation, and how far in radians that may be off.
+    x, y, swing : of the head, from the tail, in mm, and how much farther it may be off than the tail.
+    """
+
+    number: int
+    angle: Angle
+    reach: float
+    x: float
+    y: float
+    swing: float
+
+
+@inner
+def placed_pair(number: int, sliding_pairs: SlidingPairs, loose: Array) -> PlacedPair:
+    """A sliding pair by its number; ``loose`` are the features' rows."""
+    whole, real = sliding_pairs.integers[number], sliding_pairs.reals[number]
+    reach = sliding_pair_reach(loose[whole[TAIL]], loose[whole[HEAD]], real)
+    d, alpha = real[STEP_LENGTH], real[DIRECTION]
+    angle = angle_of(real[ORIENTATION])
+    return PlacedPair(number, angle, reach, d * cos(alpha), d * sin(alpha), d * reach)
+
+
 @inner
 def place_sliding_pair(
-    pegs: Array,
-    x: float,
-    y: float,
-    line: float,
-    whole: IntArray,
-    sliding_pair: Array,
-    radius: float,
-    reach: float,
+    pegs: Array, x: float, y: float, line: float, radius: float, whole: IntArray, pair: PlacedPair
 ) -> None:
     """Writes the pegs of a sliding pair to (2, 6) places, with its tail at (x, y) in row ``line`` of column
     0."""
-    alpha, d = sliding_pair[DIRECTION], sliding_pair[STEP_LENGTH]
     place_peg(pegs[0], x, y, whole[TAIL], 0.0, line, radius)
-    place_peg(
-        pegs[1],
-        x + d * cos(alpha),
-        y + d * sin(alpha),
-        whole[HEAD],
-        float(whole[COLUMN_STEP]),
-        line + whole[ROW_STEP],
-        radius + d * reach,
-    )
+    column, row = float(whole[COLUMN_STEP]), line + whole[ROW_STEP]
+    place_peg(pegs[1], x + pair.x, y + pair.y, whole[HEAD], column, row, radius + pair.swing)
 
 
 @inner
@@ -212,10 +237,9 @@ def tail_inside(row: Array, sliding_pair: Array, x: float, y: float, radius: flo
 def add_lines(
     out: Array,
     count: int,
-    pair: int,
-    reach: float,
+    pair: PlacedPair,
     curve: int,
-    inside: float,
+    inside: Angle,
     sliding_pairs: SlidingPairs,
     work: BlockWork,
 ) -> int:
@@ -224,42 +248,44 @@ def add_lines(
 
     Parameters
     ----------
-    reach : how far the orientation of the pair may be off, in radians.
     inside : the orientation in the curve's range.
 
     Returns
     -------
     how many records there are, -1 when there is no room for another
     """
-    whole, sliding_pair, pegs = sliding_pairs.integers[pair], sliding_pairs.reals[pair], work.pegs
+    whole, real = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number]
     features, curves, lattice = work.features, work.curves, work.lattice
-    pitch_y, psi, wide = lattice.pitch_y, sliding_pair[ORIENTATION], 2.0 * reach + SLIVER
-    ax, ay = -sin(psi), cos(psi)
+    reach, pegs = pair.reach, work.pegs
+    ax, ay, pitch_y = -pair.angle[2], pair.angle[1], lattice.pitch_y
     row = features.loose[whole[TAIL]]
     lowest, highest = height_range(row, ax, ay)
     tail = curves.integers[curve, TAIL]
-    place_chord(pegs[:2], curve, inside, wide, 0.0, features.rows, curves)
-    height = ax * pegs[0, PEG_X] + ay * pegs[0, PEG_Y]
-    error = pegs[0, PEG_RADIUS] + 4.0 * work.limits.wrench_length * reach
+    place_chord(pegs[2:], curve, inside, 2.0 * reach + SLIVER, 0.0, features.rows, curves)
+    height, rise = ax * pegs[2, PEG_X] + ay * pegs[2, PEG_Y], pegs[3, PEG_ROW]
+    error = pegs[2, PEG_RADIUS] + 4.0 * work.limits.wrench_length * reach
     for order in range(2):
         # The sliding pair stands still for order 0, and is on the moving carrier for order 1.
         one, two = (whole[TAIL], tail) if order == 0 else (tail, whole[TAIL])
         if not (is_among(one, features.standing) and is_among(two, features.moving)):
             continue
         sign = 1.0 if order == 0 else -1.0
+        at, other = 2 * order, 2 - 2 * order
+        if order == 1:
+            for n in range(PEG_LENGTH):
+                pegs[0, n], pegs[1, n] = pegs[2, n], pegs[3, n]
         base = height - sign * lattice.row_offset
         first, last = lines_between(lowest, highest, base, pitch_y, error)
         for line in range(first, last + 1):
             for k in range(2):
                 meets, x, y, radius = row_meets(row, ax, ay, base + line * pitch_y, error, 1.0 - 2.0 * k)
-                if not meets or not tail_inside(row, sliding_pair, x, y, radius):
+                if not meets or not tail_inside(row, real, x, y, radius):
                     continue
                 # The first peg of the standing chord is in row 0.
                 slid, turned = (0.0, float(-line)) if order == 0 else (float(line), 0.0)
-                at, other = 2 * order, 2 - 2 * order
-                place_sliding_pair(pegs[at : at + 2], x, y, slid, whole, sliding_pair, radius, reach)
-                place_chord(pegs[other : other + 2], curve, inside, wide, turned, features.rows, curves)
-                count = add_listed(out, count, 2.0, psi, reach, order == 0, work)
+                place_sliding_pair(pegs[at : at + 2], x, y, slid, radius, whole, pair)
+                pegs[other, PEG_ROW], pegs[other + 1, PEG_ROW] = turned, turned + rise
+                count = add_listed(out, count, 2.0, pair.angle, reach, order == 0, work)
                 if count < 0:
                     return count
     return count
@@ -269,33 +295,32 @@ def add_lines(
 def add_third_peg(
     out: Array,
     count: int,
-    pair: int,
-    reach: float,
+    pair: PlacedPair,
     curve: int,
-    inside: float,
+    inside: Angle,
     sliding_pairs: SlidingPairs,
     work: BlockWork,
 ) -> int:
     """Appends the fixtures of three and one peg of a sliding pair and a curve from its tail; parameters and
     result as for :func:`add_lines`."""
-    whole, sliding_pair, pegs = sliding_pairs.integers[pair], sliding_pairs.reals[pair], work.pegs
-    features, curves = work.features, work.curves
-    loose, one = features.loose, curves.integers[curve]
-    if not work.counting and heads_share_a_line(whole, one, loose, work.lattice):
+    whole, real = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number]
+    features, curves, pegs, wide = work.features, work.curves, work.pegs, 2.0 * pair.reach + SLIVER
+    if not work.counting and heads_share_a_line(whole, curves.integers[curve], features.loose, work.lattice):
         return count
-    place_triple(pegs, curve, curve, inside, 2.0 * reach + SLIVER, features.rows, curves)
+    place_tail(pegs, curve, inside, wide, 0.0, features.rows, curves)
     x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]
-    if not tail_inside(loose[whole[TAIL]], sliding_pair, x, y, radius):
+    if not tail_inside(features.loose[whole[TAIL]], real, x, y, radius):
         return count
-    place_sliding_pair(pegs[:2], x, y, 0.0, whole, sliding_pair, radius, reach)
-    return add_moving_pegs(out, count, sliding_pair[ORIENTATION], reach, work)
+    place_head(pegs, 2, curve, inside, wide, curves)
+    place_sliding_pair(pegs[:2], x, y, 0.0, radius, whole, pair)
+    return add_moving_pegs(out, count, pair.angle, pair.reach, work)
 
 
 @inner
 def add_of_pair(
     out: Array,
     count: int,
-    pair: int,
+    pair: PlacedPair,
     standing: int,
     sliding_pairs: SlidingPairs,
     members: IntArray,
@@ -303,25 +328,24 @@ def add_of_pair(
 ) -> int:
     """Appends the fixtures of a sliding pair and the curves, from the member at ``work.at`` on (see
     ``block_work``). Of three standing pegs the third is on a curve from the pair's tail."""
-    at, stats, loose, curves = work.at, work.stats, work.features.loose, work.curves
-    whole, sliding_pair = sliding_pairs.integers[pair], sliding_pairs.reals[pair]
-    psi, tail = sliding_pair[ORIENTATION], whole[TAIL]
-    reach = sliding_pair_reach(loose[tail], loose[whole[HEAD]], sliding_pair)
+    at, stats, curves = work.at, work.stats, work.curves
+    psi, whole = pair.angle[0], sliding_pairs.integers[pair.number]
     for m in range(at[0], members.shape[0]):
         if stats[STOPPED] != 0:
             break
         curve = members[m]
         one = curves.integers[curve]
-        if standing == 3 and (one[TAIL] != tail or not share_a_carrier(whole, one, work.limits)):
+        if standing == 3 and (one[TAIL] != whole[TAIL] or not share_a_carrier(whole, one, work.limits)):
             continue
-        exists, inside = orientation_inside(curve, psi, reach, curves.reals)
-        if not exists or shares_a_line(curves.reals[curve], inside):
+        exists, there = orientation_inside(curve, psi, pair.reach, curves.reals)
+        if not exists or shares_a_line(curves.reals[curve], there):
             continue
+        inside = pair.angle if there == psi else angle_of(there)
         candidates, contacts = stats[CANDIDATES], stats[CONTACTS]
         if standing == 2:
-            more = add_lines(out, count, pair, reach, curve, inside, sliding_pairs, work)
+            more = add_lines(out, count, pair, curve, inside, sliding_pairs, work)
         else:
-            more = add_third_peg(out, count, pair, reach, curve, inside, sliding_pairs, work)
+            more = add_third_peg(out, count, pair, curve, inside, sliding_pairs, work)
         if more < 0:
             at[0], stats[CANDIDATES], stats[CONTACTS] = m, candidates, contacts
             return count
@@ -350,10 +374,10 @@ def sliding_fixtures(
     """
     out, work = np.empty((16, RECORD_LENGTH)), block_work(features, curves, lattice, limits, counting, stats)
     count = int(np.int64(0))
-    for pair in chosen:
-        if standing == 3 and not is_among(sliding_pairs.integers[pair, TAIL], features.standing):
+    for number in chosen:
+        if standing == 3 and not is_among(sliding_pairs.integers[number, TAIL], features.standing):
             continue
-        work.at[0] = 0
+        pair, work.at[0] = placed_pair(number, sliding_pairs, features.loose), 0
         while True:
             count = add_of_pair(out, count, pair, standing, sliding_pairs, members, work)
             if work.at[0] == members.shape[0]:

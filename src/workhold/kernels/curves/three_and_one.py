@@ -34,7 +34,7 @@ from workhold.kernels.chord.columns import (
 )
 from workhold.kernels.chord.evaluation import POSITION
 from workhold.kernels.chord.intervals import share_one_line
-from workhold.kernels.contact.record import RECORD_LENGTH, write_given_up
+from workhold.kernels.contact.record import RECORD_LENGTH, angle_of, write_given_up
 from workhold.kernels.contact.rules import share_a_carrier
 from workhold.kernels.curves.block_work import (
     CANDIDATES,
@@ -101,8 +101,9 @@ def add_triples(out: Array, count: int, number: int, one: int, two: int, work: B
     appends the fixtures to ``out``; result as for :func:`add_moving_pegs`."""
     for root in range(number):
         psi, reach = work.roots[root, ROOT_PSI], work.roots[root, ROOT_RADIUS]
-        place_triple(work.pegs, one, two, psi, reach, work.features.rows, work.curves)
-        count = add_moving_pegs(out, count, psi, reach, work)
+        angle = angle_of(psi)
+        place_triple(work.pegs, one, two, angle, reach, work.features.rows, work.curves)
+        count = add_moving_pegs(out, count, angle, reach, work)
         if count < 0:
             break
     return count

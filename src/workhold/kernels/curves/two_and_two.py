@@ -38,7 +38,7 @@ from workhold.kernels.chord.columns import (
     Curves,
 )
 from workhold.kernels.chord.evaluation import HEIGHT
-from workhold.kernels.contact.record import RECORD_LENGTH, write_given_up
+from workhold.kernels.contact.record import RECORD_LENGTH, angle_of, write_given_up
 from workhold.kernels.curves.block_work import (
     CROSSED,
     PAIRS,
@@ -169,9 +169,10 @@ def add_crossings(out: Array, count: int, number: int, one: int, two: int, work:
     for root in range(number):
         psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
         # The height of the moving chord over the standing one is the row offset and so many pitches.
-        place_chord(pegs[:2], one, psi, reach, 0.0, rows, curves)
-        place_chord(pegs[2:], two, psi, reach, roots[root, MULTIPLE], rows, curves)
-        count = add_listed(out, count, 2.0, psi, reach, True, work)
+        angle = angle_of(psi)
+        place_chord(pegs[:2], one, angle, reach, 0.0, rows, curves)
+        place_chord(pegs[2:], two, angle, reach, roots[root, MULTIPLE], rows, curves)
+        count = add_listed(out, count, 2.0, angle, reach, True, work)
     return count
 
 
