@@ -57,11 +57,11 @@ def point(frame: SingularFrame, t: float) -> tuple[list[arb], arb]:
     with ctx.workprec(400):
         for _ in range(9):
             here = frame.places([*known, arb(t)])
-            values, slopes = frame.values(here), frame.slopes(here)
+            values, slopes = frame.values([*known, arb(t)]), frame.slopes(here)
             inverse = arb_mat([row[:3] for row in slopes[:3]]).mid().inv().mid()
             step = inverse * arb_mat(3, 1, values[:3])
             known = [arb((v - s).mid()) for v, s in zip(known, step.entries(), strict=True)]
-        return known, frame.values(frame.places([*known, arb(t)]))[3]
+        return known, frame.values([*known, arb(t)])[3]
 
 
 def curve_of(frame: SingularFrame) -> SolutionCurve:

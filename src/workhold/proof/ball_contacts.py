@@ -5,7 +5,8 @@ Reference: F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-12
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import combinations
 from math import isfinite, pi
 
 from attrs import frozen
@@ -27,20 +28,22 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.base.given import Limits
-from workhold.proof.narrowing import CandidateBox, contact_value, from_origin
+from workhold.proof.narrowing import CandidateBox, axis_length, contact_value, from_origin, value_of_ray
 
-__all__ = ["BoxContacts", "end_slacks", "is_empty", "places", "slacks", "wrench_minors"]
+__all__ = ["BoxContacts", "end_slacks", "is_empty", "places", "slacks", "values", "wrench_minors"]
 
 
 @frozen(eq=False)
 class BoxContacts:
     """Contacts on a box of unknowns, as balls.
 
-    They are centres, unit normals (outward), arms from the first peg to each, equations and their Jacobian.
+    They are centres, also from the features' origins, unit normals (outward), arms from the first peg to
+    each, equations and their Jacobian.
     """
 
     rows: Sequence[Sequence[float]]
     centers: list[tuple[arb, arb]]
+    rays: list[tuple[arb, arb]]
     normals: list[tuple[arb, arb]]
     arms: list[tuple[arb, arb]]
     values: list[arb]
@@ -48,32 +51,49 @@ class BoxContacts:
     axis: tuple[arb, arb]
 
 
+def turned_pegs(box: CandidateBox, unknowns: Sequence[arb]) -> Iterator[tuple[arb, arb]]:
+    """Yields the axis of the pegs (cosine and sine), and then each peg's arm from the first one."""
+    psi, _, _, separation = unknowns
+    cosine, sine = psi.cos(), psi.sin()
+    yield cosine, sine
+    for k, (dx, dy) in enumerate(box.offsets):
+        across = dx + separation if k >= box.standing else dx
+        if dy == 0.0:
+            yield cosine * across, sine * across
+        else:
+            yield cosine * across - sine * dy, sine * across + cosine * dy
+
+
+def values(box: CandidateBox, unknowns: Sequence[arb]) -> list[arb]:
+    """The four contact equations on a box of unknowns, without all else that ``places`` finds."""
+    _, x, y, _ = unknowns
+    _, *arms = turned_pegs(box, unknowns)
+    return [contact_value(row, (x + arm[0], y + arm[1])) for row, arm in zip(box.features, arms, strict=True)]
+
+
 def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
     """Everything about the four contacts on a box of unknowns."""
-    psi, x, y, separation = unknowns
-    cosine, sine = psi.cos(), psi.sin()
-    centers, normals, arms, values, slopes = [], [], [], [], []
-    for k, (row, (dx, dy)) in enumerate(zip(box.features, box.offsets, strict=True)):
-        moves = int(k >= box.standing)
-        reach = (dx + moves * separation, arb(dy))
-        turned = (cosine * reach[0] - sine * reach[1], sine * reach[0] + cosine * reach[1])
+    _, x, y, _ = unknowns
+    (cosine, sine), *arms = turned_pegs(box, unknowns)
+    centers, rays, normals, values, slopes = [], [], [], [], []
+    for k, (row, turned) in enumerate(zip(box.features, arms, strict=True)):
         center = (x + turned[0], y + turned[1])
+        ray = from_origin(row, center)
         if row[IS_ARC] == 0.0:
-            size = (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
+            size = axis_length(row)
             gradient = (row[AXIS_Y] / size, -row[AXIS_X] / size)
             normal = gradient
         else:
-            ray = from_origin(row, center)
             gradient = (ray[0] / row[RADIUS], ray[1] / row[RADIUS])
             normal = (row[SIGN] * gradient[0], row[SIGN] * gradient[1])
         slope = [gradient[1] * turned[0] - gradient[0] * turned[1], gradient[0], gradient[1]]
-        slope.append((gradient[0] * cosine + gradient[1] * sine) * moves)
+        slope.append(gradient[0] * cosine + gradient[1] * sine if k >= box.standing else arb(0))
         centers.append(center)
+        rays.append(ray)
         normals.append(normal)
-        arms.append(turned)
-        values.append(contact_value(row, center))
+        values.append(value_of_ray(row, ray))
         slopes.append(slope)
-    return BoxContacts(box.features, centers, normals, arms, values, slopes, (cosine, sine))
+    return BoxContacts(box.features, centers, rays, normals, arms, values, slopes, (cosine, sine))
 
 
 def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: Limits) -> list[arb]:
@@ -83,8 +103,8 @@ def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: 
     """
     out = [
         slack
-        for row, center in zip(box.features, here.centers, strict=True)
-        for slack in end_slacks(row, center, limits.contact_margin)
+        for row, ray in zip(box.features, here.rays, strict=True)
+        for slack in end_slacks(row, ray, limits.contact_margin)
     ]
     along = [here.axis[0] * x + here.axis[1] * y for x, y in here.centers]
     if isfinite(limits.gap):
@@ -112,9 +132,12 @@ def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: 
     return out
 
 
-def end_slacks(row: Sequence[float], center: tuple[arb, arb], margin: float) -> list[arb]:
-    """Distances in mm of a contact from breaking the rule of ends at both ends of its feature, in balls."""
-    dx, dy = from_origin(row, center)
+def end_slacks(row: Sequence[float], ray: tuple[arb, arb], margin: float) -> list[arb]:
+    """Distances in mm of a contact from breaking the rule of ends at both ends of its feature, in balls.
+
+    The contact's place is seen from the feature's origin, see ``from_origin``.
+    """
+    dx, dy = ray
     along, across = dx * row[AXIS_X] + dy * row[AXIS_Y], dy * row[AXIS_X] - dx * row[AXIS_Y]
     place, scale, half = along, 1.0, row[HALF_EXTENT]
     if row[IS_ARC] != 0.0:
@@ -145,10 +168,10 @@ def wrench_minors(here: BoxContacts, length: float) -> list[arb]:
         y = here.arms[j][1] - here.arms[i][1] - (arb(two[Y]) - one[Y]) - (arb(two[REST_Y]) - one[REST_Y])
         return (n[i][0] * y - n[i][1] * x) * (two[SIGN] / arb(two[RADIUS]))
 
-    out = []
+    out, crossed = [], {pair: cross(*pair) for pair in combinations(range(4), 2)}
     for k in range(4):
         a, b, c = (i for i in range(4) if i != k)
-        minor = t[a] * cross(b, c) - t[b] * cross(a, c) + t[c] * cross(a, b)
+        minor = t[a] * crossed[b, c] - t[b] * crossed[a, c] + t[c] * crossed[a, b]
         out.append(-minor if k % 2 else minor)
     return out
 

@@ -18,7 +18,7 @@ from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.given import Limits
 
-__all__ = ["CandidateBox", "contact_value", "from_origin", "narrowed"]
+__all__ = ["CandidateBox", "axis_length", "contact_value", "from_origin", "narrowed", "value_of_ray"]
 
 # Newton steps of psi: each squares its error, so that these reach the precision in force.
 STEPS = 4
@@ -51,10 +51,20 @@ def from_origin(row: Sequence[float], point: tuple[arb, arb]) -> tuple[arb, arb]
 
 def contact_value(row: Sequence[float], center: tuple[arb, arb]) -> arb:
     """Contact equation in mm: distance from a line, or (distance² - R²) / 2R from an arc's centre."""
-    x, y = from_origin(row, center)
+    return value_of_ray(row, from_origin(row, center))
+
+
+def value_of_ray(row: Sequence[float], ray: tuple[arb, arb]) -> arb:
+    """``contact_value`` of a place as ``from_origin`` gives it."""
+    x, y = ray
     if row[IS_ARC] == 0.0:
-        return (row[AXIS_Y] * x - row[AXIS_X] * y) / (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
+        return (row[AXIS_Y] * x - row[AXIS_X] * y) / axis_length(row)
     return (x * x + y * y - arb(row[RADIUS]) ** 2) / (2 * arb(row[RADIUS]))
+
+
+def axis_length(row: Sequence[float]) -> arb:
+    """The length of a line's axis, which rounding makes other than 1."""
+    return (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
 
 
 def narrowed(box: CandidateBox, limits: Limits) -> CandidateBox | None:

@@ -18,7 +18,7 @@ from flint import arb, arb_mat
 from numpy.typing import NDArray
 
 from workhold.kernels.base.given import Limits
-from workhold.proof.ball_contacts import BoxContacts, places
+from workhold.proof.ball_contacts import BoxContacts, places, values
 from workhold.proof.narrowing import CandidateBox
 
 __all__ = ["SingularFrame", "is_smaller", "thirds"]
@@ -77,9 +77,9 @@ class SingularFrame:
         """The contacts at a place in the frame."""
         return places(self.box, self.unknowns(place))
 
-    def values(self, here: BoxContacts) -> list[arb]:
-        """The combined contact equations."""
-        return list((self.combining * arb_mat(4, 1, here.values)).entries())
+    def values(self, place: Sequence[arb]) -> list[arb]:
+        """The combined contact equations at a place in the frame."""
+        return list((self.combining * arb_mat(4, 1, values(self.box, self.unknowns(place)))).entries())
 
     def slopes(self, here: BoxContacts) -> list[list[arb]]:
         """The Jacobian of the combined contact equations by the frame's coordinates."""
@@ -98,7 +98,7 @@ class SingularFrame:
         does not separate the directions.
         """
         middle = [arb(p.mid()) for p in place]
-        values, slopes = self.values(self.places(middle)), self.slopes(here)
+        values, slopes = self.values(middle), self.slopes(here)
         if regular:
             try:
                 inverse = arb_mat(slopes).mid().inv().mid()
@@ -108,11 +108,12 @@ class SingularFrame:
             combined = inverse * arb_mat(slopes)
             slopes = [[combined[i, j] for j in range(4)] for i in range(4)]
         out, inside = list(place), True
+        off = [one - at for one, at in zip(out, middle, strict=True)]
         for k in range(4):
-            rest = values[k] + sum((slopes[k][j] * (out[j] - middle[j]) for j in range(4) if j != k), arb(0))
+            rest = values[k] + sum([slopes[k][j] * off[j] for j in range(4) if j != k], arb(0))
             if slopes[k][k].contains(0):
                 inside = False
-                if not (rest + slopes[k][k] * (out[k] - middle[k])).contains(0):
+                if not (rest + slopes[k][k] * off[k]).contains(0):
                     return None, False
                 continue
             image = middle[k] - rest / slopes[k][k]
@@ -120,6 +121,7 @@ class SingularFrame:
                 return None, False
             inside = inside and out[k].contains_interior(image)
             out[k] = image if out[k].contains(image) else out[k].intersection(image)
+            off[k] = out[k] - middle[k]
         return out, inside
 
 

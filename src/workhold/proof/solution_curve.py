@@ -209,7 +209,7 @@ def along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[list[arb
     for _ in range(MOST_STEPS):
         middle = [arb(p.mid()) for p in well]
         slopes = frame.slopes(frame.places([*well, t]))
-        values = frame.values(frame.places([*middle, middle_t]))
+        values = frame.values([*middle, middle_t])
         inverse = inverse_of(slopes, middle=True)
         if inverse is None:
             break
