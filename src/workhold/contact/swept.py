@@ -60,7 +60,7 @@ class Swept:
     line, tool : (N,) of the program, -1 of rows that fill.
     boxes : (N, 4) around each span.
     filled : (B, 4) boxes whose whole inside is swept, x0, y0, x1, y1.
-    filled_radius, filled_line : (B,) of the cylinder there, and of the program.
+    filled_line : (B,) of the program, of each filled box.
     """
 
     tree: SweptTree
@@ -68,7 +68,6 @@ class Swept:
     tool: IntArray
     boxes: Array
     filled: Array
-    filled_radius: Array
     filled_line: IntArray
 
     def __len__(self) -> int:
@@ -86,11 +85,11 @@ class Swept:
                 numbers.append((piece.line, piece.tool))
             if piece.filled:
                 xs, ys = [vertex[0] for vertex in path], [vertex[1] for vertex in path]
-                filled.append((min(xs), min(ys), max(xs), max(ys), piece.radius))
+                filled.append((min(xs), min(ys), max(xs), max(ys)))
                 filled_lines.append(piece.line)
         rows = np.array(spans).reshape(-1, SPAN)
         named = np.array(numbers, np.int64).reshape(-1, 2)
-        return cls.of_spans(rows, named, np.array(filled).reshape(-1, 5), np.array(filled_lines, np.int64))
+        return cls.of_spans(rows, named, np.array(filled).reshape(-1, 4), np.array(filled_lines, np.int64))
 
     @classmethod
     def below(cls, program: Program, height: float) -> Swept:
@@ -100,11 +99,11 @@ class Swept:
         one = program.arrays_of(*program.pairs(), -inf, height)
         rows = np.column_stack([one.start, one.end, one.bulge, one.cylinder[:, 2]])
         named = np.column_stack([one.line, one.tool])
-        return cls.of_spans(rows, named, np.zeros((0, 5)), np.zeros(0, np.int64))
+        return cls.of_spans(rows, named, np.zeros((0, 4)), np.zeros(0, np.int64))
 
     @classmethod
     def of_spans(cls, rows: Array, named: IntArray, inside: Array, filled_lines: IntArray) -> Swept:
-        """Spans from rows (N, 6), with line and tool (N, 2) of each, and filled boxes with radii (B, 5)."""
+        """Spans from rows (N, 6), with line and tool (N, 2) of each, and filled boxes (B, 4)."""
         kept = each_path_once(rows)
         rows, named = rows[kept], named[kept]
         order, boxes = tree_order(rows, (segments := span_rows(rows)))
@@ -118,15 +117,8 @@ class Swept:
         line[~filling], tool[~filling] = named[chosen].T
         around[~filling] = boxes[chosen]
         out.setflags(write=False)
-        return cls(
-            SweptTree(out, radius, nodes_of(around, radius)),
-            line,
-            tool,
-            around,
-            inside[:, :4],
-            inside[:, 4],
-            filled_lines,
-        )
+        tree = SweptTree(out, radius, nodes_of(around, radius))
+        return cls(tree, line, tool, around, inside, filled_lines)
 
     def nearest(self, starts: Array, ends: Array) -> tuple[Array, IntArray]:
         """Least reach (M,) of straight pieces between ends (M, 2), and the number (M,) of the span it is to.
