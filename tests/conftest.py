@@ -6,8 +6,11 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
+from typing import Any
 
 # Before the first kernel is imported.
 os.environ.setdefault("WORKHOLD_KERNELS", "callable")
@@ -40,6 +43,10 @@ settings.load_profile("workhold")
 HypothesisProvider._local_constants = Constants()  # type: ignore[assignment]
 
 
+# The one without windows does the same for two thirds of the processor's time.
+CHROMIUM = (
+    shutil.which("chromium-headless-shell") or shutil.which("chromium") or shutil.which("chromium-browser")
+)
 PREPARE = "import sys; from workhold.kernels.preparing import prepared; list(prepared(*sys.argv[1:]))"
 # Parts of the kernels that take about as long to compile.
 SHARES = (("crossings", "matrices", "seats"), ("distances", "others", "clamps", "curves"))
@@ -65,3 +72,17 @@ def pytest_collection_finish() -> None:
     """Leave what collecting has made out of all later garbage collections: it stays until the end."""
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """Chromium without a window; Playwright can be started once in a process, so all tests share it."""
+    api = pytest.importorskip("playwright.sync_api", reason="Playwright for Python is not installed")
+    if CHROMIUM is None:
+        pytest.skip("no chromium on this machine")
+    with api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=["--no-sandbox", "--enable-unsafe-swiftshader"]
+        )
+        yield browser
+        browser.close()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import pytest
 from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, run_in
@@ -81,32 +82,27 @@ def test_what_there_is_no_room_for_is_told(
     assert f"workhold sheet {store.place(batch.jobs[0].name)} 1 --part-name p30 -o p30.pdf" in text
 
 
-def test_rows_are_sorted_and_chosen_in_a_browser(written: tuple[Path, Report]) -> None:
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright")
-    if not Path("/usr/bin/chromium").exists():
-        pytest.skip("needs /usr/bin/chromium")
-    with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
-        page = browser.new_page()
-        errors: list[str] = []
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda message: errors.append(message.text))
-        page.goto((written[0] / "report.html").as_uri())
+def test_rows_are_sorted_and_chosen_in_a_browser(written: tuple[Path, Report], browser: Any) -> None:
+    page = browser.new_page()
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("console", lambda message: errors.append(message.text))
+    page.goto((written[0] / "report.html").as_uri())
 
-        def column(place: int) -> list[str]:
-            return page.locator(f"#jobs tbody tr:visible td:nth-child({place})").evaluate_all(
-                "cells => cells.map(cell => cell.dataset.key ?? cell.textContent)"
-            )
+    def column(place: int) -> list[str]:
+        return page.locator(f"#jobs tbody tr:visible td:nth-child({place})").evaluate_all(
+            "cells => cells.map(cell => cell.dataset.key ?? cell.textContent)"
+        )
 
-        for downward in (False, True):
-            page.get_by_role("button", name="fixtures").click()
-            numbers = [float(text) for text in column(5) if text]
-            assert len(numbers) == 4 and numbers == sorted(numbers, reverse=downward)
-            assert column(5)[4:] == [""] * 6
-        page.get_by_role("button", name="part", exact=True).click()
-        names = [name for text in column(2) if (name := Path(text).name).startswith("p")]
-        assert names == ["p30.json"] * 2 + ["p44.json"] * 2 + ["p52.json"] * 2
-        page.get_by_label("Only rows with").fill("coarse p4")
-        assert [Path(text).name for text in column(2)] == ["p44.json"]
-        assert errors == []
-        browser.close()
+    for downward in (False, True):
+        page.get_by_role("button", name="fixtures").click()
+        numbers = [float(text) for text in column(5) if text]
+        assert len(numbers) == 4 and numbers == sorted(numbers, reverse=downward)
+        assert column(5)[4:] == [""] * 6
+    page.get_by_role("button", name="part", exact=True).click()
+    names = [name for text in column(2) if (name := Path(text).name).startswith("p")]
+    assert names == ["p30.json"] * 2 + ["p44.json"] * 2 + ["p52.json"] * 2
+    page.get_by_label("Only rows with").fill("coarse p4")
+    assert [Path(text).name for text in column(2)] == ["p44.json"]
+    assert errors == []
+    page.close()
