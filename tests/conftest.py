@@ -14,6 +14,8 @@ from typing import Any
 
 # Before the first kernel is imported.
 os.environ.setdefault("WORKHOLD_KERNELS", "callable")
+# Each process that shares the tests has a processor; waiting threads of OpenBLAS would take it from the others.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # Commands that tests run have buffered streams, and keep the bytecode of what they import, as a user's do.
 os.environ.pop("PYTHONUNBUFFERED", None)

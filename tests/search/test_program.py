@@ -104,8 +104,8 @@ def test_what_is_listed_is_what_a_slow_walk_leaves(kind: str) -> None:
 
 @pytest.mark.prove
 @pytest.mark.parametrize("kind", KINDS)
-def test_of_thirty_random_pairs_as_well(kind: str) -> None:
-    cases = [differences(seed, kind) for seed in (2, 5, *range(100, 128))]
+def test_of_fifteen_random_pairs_as_well(kind: str) -> None:
+    cases = [differences(seed, kind) for seed in (2, 5, *range(100, 113))]
     assert [wrong for wrong, _, _ in cases if wrong] == []
     assert sum(0 < some < full for _, some, full in cases) >= 5
 
