@@ -140,8 +140,11 @@ def test_a_prism_gives_the_same_list_whatever_the_heights(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "rows"),
     [
-        *((name, 3) for name in ("plate", "roof", "two clamps")),
-        *(pytest.param(name, 4, marks=pytest.mark.prove) for name in ("plate", "roof")),
+        *((name, 3) for name in ("plate", "two clamps")),
+        *(
+            pytest.param(name, rows, marks=pytest.mark.prove)
+            for name, rows in (("roof", 3), ("plate", 4), ("roof", 4))
+        ),
     ],
 )
 def test_a_slow_search_of_a_plate_finds_the_same(name: str, rows: int) -> None:
