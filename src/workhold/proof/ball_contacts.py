@@ -85,7 +85,7 @@ def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
             normal = gradient
         else:
             gradient = (ray[0] / row[RADIUS], ray[1] / row[RADIUS])
-            normal = (row[SIGN] * gradient[0], row[SIGN] * gradient[1])
+            normal = gradient if row[SIGN] > 0.0 else (-gradient[0], -gradient[1])
         slope = [gradient[1] * turned[0] - gradient[0] * turned[1], gradient[0], gradient[1]]
         slope.append(gradient[0] * cosine + gradient[1] * sine if k >= box.standing else arb(0))
         centers.append(center)
@@ -138,16 +138,14 @@ def end_slacks(row: Sequence[float], ray: tuple[arb, arb], margin: float) -> lis
     The contact's place is seen from the feature's origin, see ``from_origin``.
     """
     dx, dy = ray
-    along, across = dx * row[AXIS_X] + dy * row[AXIS_Y], dy * row[AXIS_X] - dx * row[AXIS_Y]
-    place, scale, half = along, 1.0, row[HALF_EXTENT]
+    along = dx * row[AXIS_X] + dy * row[AXIS_Y]
+    to_high, to_low = row[HALF_EXTENT] - along, row[HALF_EXTENT] + along
     if row[IS_ARC] != 0.0:
-        if half >= pi:
+        if row[HALF_EXTENT] >= pi:
             return []
-        place, scale = arb.atan2(across, along), row[RADIUS]
-    return [
-        (half - place) * scale - margin + row[HIGH_SLACK],
-        (half + place) * scale - margin + row[LOW_SLACK],
-    ]
+        angle = arb.atan2(dy * row[AXIS_X] - dx * row[AXIS_Y], along)
+        to_high, to_low = ((row[HALF_EXTENT] + way) * row[RADIUS] for way in (-angle, angle))
+    return [to_high - margin + row[HIGH_SLACK], to_low - margin + row[LOW_SLACK]]
 
 
 def wrench_minors(here: BoxContacts, length: float) -> list[arb]:

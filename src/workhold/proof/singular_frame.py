@@ -84,8 +84,7 @@ class SingularFrame:
     def slopes(self, here: BoxContacts) -> list[list[arb]]:
         """The Jacobian of the combined contact equations by the frame's coordinates."""
         scaled = [[row[0] / self.length, *row[1:]] for row in here.slopes]
-        slopes = self.combining * arb_mat(scaled) * self.turning
-        return [[slopes[i, j] for j in range(4)] for i in range(4)]
+        return rows_of(self.combining * arb_mat(scaled) * self.turning)
 
     def step(
         self, place: list[arb], here: BoxContacts, regular: bool = False
@@ -105,24 +104,30 @@ class SingularFrame:
             except ZeroDivisionError:
                 return place, False
             values = list((inverse * arb_mat(4, 1, values)).entries())
-            combined = inverse * arb_mat(slopes)
-            slopes = [[combined[i, j] for j in range(4)] for i in range(4)]
+            slopes = rows_of(inverse * arb_mat(slopes))
         out, inside = list(place), True
         off = [one - at for one, at in zip(out, middle, strict=True)]
         for k in range(4):
-            rest = values[k] + sum([slopes[k][j] * off[j] for j in range(4) if j != k], arb(0))
-            if slopes[k][k].contains(0):
+            row = slopes[k]
+            rest = values[k] + sum([row[j] * off[j] for j in range(4) if j != k], arb(0))
+            if row[k].contains(0):
                 inside = False
-                if not (rest + slopes[k][k] * off[k]).contains(0):
+                if not (rest + row[k] * off[k]).contains(0):
                     return None, False
                 continue
-            image = middle[k] - rest / slopes[k][k]
+            image = middle[k] - rest / row[k]
             if not image.overlaps(out[k]):
                 return None, False
             inside = inside and out[k].contains_interior(image)
             out[k] = image if out[k].contains(image) else out[k].intersection(image)
             off[k] = out[k] - middle[k]
         return out, inside
+
+
+def rows_of(matrix: arb_mat) -> list[list[arb]]:
+    """The rows of a 4 x 4 matrix."""
+    every = list(matrix.entries())
+    return [every[k : k + 4] for k in range(0, 16, 4)]
 
 
 def is_smaller(part: list[arb], place: list[arb], share: float = SMALLER) -> bool:
