@@ -32,7 +32,7 @@ wheel: | $(BIN)/python
 
 # Every test and every example of the documentation.
 test: $(INSTALLED_DEV)
-	$(BIN)/python -m pytest -n 4 --dist worksteal
+	$(BIN)/python -m pytest -n 3 --dist worksteal
 
 # What a change must pass: format, lint, types, layers, tests.
 check: $(INSTALLED_DEV)

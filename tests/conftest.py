@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -68,6 +69,18 @@ def pytest_configure(config: pytest.Config) -> None:
         # What cannot be compiled is told by the first test that needs it.
         for process in [subprocess.Popen([sys.executable, "-c", PREPARE, *share]) for share in SHARES]:
             process.wait()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Leave all but one case in so many to ``make prove``, of laws that are tried on many like cases."""
+    seen = Counter[str]()
+    for item in items:
+        if mark := item.get_closest_marker("sampled"):
+            law = item.nodeid.partition("[")[0]
+            if seen[law] % mark.args[0]:
+                item.add_marker(pytest.mark.prove)
+            seen[law] += 1
 
 
 def pytest_collection_finish() -> None:

@@ -88,6 +88,7 @@ def test_a_picture_shows_tip_body_and_bolt_to_scale(way: str, bolted: bool, size
     assert fixture.pegs[3].hole in words
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH], ids=["mm", "inch"])

@@ -45,6 +45,7 @@ def facts(pages: tuple[str, ...]) -> str:
     return " ".join(word for page in pages for word in texts(page))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("way", WAYS)
 @BOLTED
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)])

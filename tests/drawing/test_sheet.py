@@ -57,6 +57,7 @@ def joined(pages: tuple[str, ...]) -> str:
     return " ".join(word for page in pages for word in texts(page))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("size", [0.01, 1.0, 40.0], ids=["tiny", "usual", "huge"])
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)])
 @pytest.mark.parametrize("name", ["plate", LONG_NAME], ids=["named", "long name"])
@@ -79,6 +80,7 @@ def test_nothing_is_covered_or_cut_off(
 
 
 # The last ones are crowds in which the opening lay under a peg's name, or the letters of two jaws ran together.
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [*range(60), 64, 148, 184, 190, 232])
 def test_no_two_labels_overlap_on_any_sheet(seed: int) -> None:
     """Column letters of jaws that all but meet, names of pegs in one row, the opening over them: all can be read."""

@@ -116,6 +116,7 @@ def touched(peg: Peg) -> str:
     return f"{peg.face}" if peg.beside is None else f"{peg.face}/{peg.beside}"
 
 
+@pytest.mark.sampled(2)
 @EVERY
 def test_a_picture_tells_the_fixture(held: Held) -> None:
     """Title, settings, pose, margin and every row of the table; no way is named but those in which its clamps push."""
@@ -207,6 +208,7 @@ def numbers(path: str) -> list[tuple[float, float]]:
     return list(zip(found[::2], found[1::2], strict=True))
 
 
+@pytest.mark.sampled(2)
 @EVERY
 def test_a_sheet_tells_what_stands_where(held: Held) -> None:
     """Every peg with its hole, face, place and forces; what is set, how it is measured, and which way clamps push."""

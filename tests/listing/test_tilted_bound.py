@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from math import hypot, sqrt
 from random import Random
 from typing import Any
@@ -21,22 +21,13 @@ from workhold.model.quality import LOCATION_ERROR, PREFERENCES, TILT
 from workhold.model.requirements import Tolerance
 
 TOLERANCES = [Tolerance(), Tolerance(peg=0.03, face=0.0), Tolerance(peg=0.0, face=0.02)]
-TOOLKITS: dict[str, Toolkit] = {
-    "vise": Vise(pitch=10, columns=2, peg_radius=3),
-    "opening": OpeningVise(pitch=10, columns=2, peg_radius=3),
-    "plate": Plate(pitch=20, peg_radius=3),
-    "two clamps": Plate(pitch=30, peg_radius=3, clamps=2),
-}
+TOOLKITS: list[Toolkit] = [
+    Vise(pitch=10, columns=2, peg_radius=3),
+    OpeningVise(pitch=10, columns=2, peg_radius=3),
+    Plate(pitch=20, peg_radius=3),
+    Plate(pitch=30, peg_radius=3, clamps=2),
+]
 PARTS = [load("widget"), load("flange"), load("oblongPart"), cad_part(2), cad_part(7)]
-
-
-def every_second(some: Iterable[Any], others: Iterable[Any]) -> list[Any]:
-    """All pairs of two lists, of which every second one is left to ``make prove``; each of both is met here."""
-    return [
-        (one, other) if (j + k) % 2 == 0 else pytest.param(one, other, marks=pytest.mark.prove)
-        for j, one in enumerate(some)
-        for k, other in enumerate(others)
-    ]
 
 
 def share_an_arc(result: Result) -> np.ndarray[Any, np.dtype[np.bool_]]:
@@ -46,10 +37,11 @@ def share_an_arc(result: Result) -> np.ndarray[Any, np.dtype[np.bool_]]:
     return np.array([any((row == arc).sum() > 1 for arc in arcs) for row in faces], np.bool_)
 
 
-@pytest.mark.parametrize(("kind", "tolerance"), every_second(TOOLKITS, TOLERANCES))
-def test_no_location_error_is_below_what_tolerances_make(kind: str, tolerance: Tolerance) -> None:
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("toolkit", TOOLKITS, ids=["vise", "opening", "plate", "two clamps"])
+@pytest.mark.parametrize("tolerance", TOLERANCES, ids=str)
+def test_no_location_error_is_below_what_tolerances_make(toolkit: Toolkit, tolerance: Tolerance) -> None:
     """It is the contact's own error and as much along its tangent, or that of the peg where an arc is shared."""
-    toolkit = TOOLKITS[kind]
     off, shared = tolerance.peg + tolerance.face, []
     for part in PARTS:
         result = answer(Query(part, toolkit, tolerance=tolerance))
@@ -68,10 +60,11 @@ RANKINGS: dict[str, Mapping[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize(("kind", "ranking"), every_second(TOOLKITS, RANKINGS))
-def test_no_tilted_fixture_ranks_before_the_bound(kind: str, ranking: str) -> None:
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("toolkit", TOOLKITS, ids=["vise", "opening", "plate", "two clamps"])
+@pytest.mark.parametrize("ranking", RANKINGS)
+def test_no_tilted_fixture_ranks_before_the_bound(toolkit: Toolkit, ranking: str) -> None:
     """And what lies square is at one of the angles that are searched first."""
-    toolkit = TOOLKITS[kind]
     tilts = 0
     for part in PARTS:
         query = Query(part, toolkit, **RANKINGS[ranking])
@@ -120,6 +113,6 @@ def test_where_tilt_has_no_say_there_is_no_bound() -> None:
 
 def test_a_bound_never_counts_as_worse_than_itself() -> None:
     """What ranks exactly as the bound is looked at."""
-    query = Query(PARTS[Random(1).randrange(len(PARTS))], TOOLKITS["vise"])
+    query = Query(PARTS[Random(1).randrange(len(PARTS))], TOOLKITS[0])
     bound = tilted_keys(query, Problem.of(query))
     assert bound is not None and not is_worse(bound[None], bound)[0]

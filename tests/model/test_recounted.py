@@ -68,6 +68,7 @@ def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Reco
         assert not plate.is_blocked(pad.column, pad.row)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", list(CASES))
 def test_everything_has_a_hole_and_keeps_its_place(name: str) -> None:
     """Over the supports of the best fixtures of every kind of toolkit, also where jaws have to stand elsewhere."""

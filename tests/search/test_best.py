@@ -30,6 +30,7 @@ CASES = [
 MARGIN = ["closure-margin"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("name", "vise", "most"), CASES)
 @pytest.mark.parametrize(
     ("threads", "rank_by"),

@@ -143,6 +143,7 @@ def assert_kept(vertices: Loop, kit: str, restriction: tuple[dict[str, Any], Kee
     return result, sum(chosen) - sum(keeps(fixture, full, -WITHIN) for fixture in full)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "kit", "restriction", "at_edge"),
     [

@@ -61,6 +61,7 @@ def body_is_clear(fixture: Fixture, loop: list[list[float]]) -> bool:
     return True
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("loop", [TRIANGLE, TOOTH])
 @pytest.mark.parametrize(
     ("flat", "thin"),
@@ -121,6 +122,7 @@ TOOLKITS = [
 ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("toolkit", TOOLKITS, ids=lambda one: f"{one.kind}-{getattr(one, 'clamps', 0)}")
 def test_everything_listed_is_proven_and_written(toolkit: Toolkit, tmp_path: Path) -> None:
     """In files of both forms; the angles in the file are those at which the flats lie on their faces."""

@@ -77,6 +77,7 @@ def held(name: str) -> Result:
     return design(stepped(own), toolkit)
 
 
+@pytest.mark.sampled(2)
 @HELD
 def test_every_fixture_is_proven_against_the_outline_of_each_carrier(name: str, tmp_path: Path) -> None:
     """In the file and read back, too; and there are some."""

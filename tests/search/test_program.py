@@ -110,6 +110,7 @@ def test_of_fifteen_random_pairs_as_well(kind: str) -> None:
     assert sum(0 < some < full for _, some, full in cases) >= 5
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_more_clearance_adds_no_fixture(kind: str) -> None:
     part, toolkit, program = random_case(5, kind)
@@ -118,6 +119,7 @@ def test_more_clearance_adds_no_fixture(kind: str) -> None:
     assert len(lists[-1]) < len(lists[0]) or kind == "opening"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_program_high_above_all_pegs_changes_nothing(kind: str) -> None:
     part, toolkit, _ = random_case(2, kind)
@@ -163,6 +165,7 @@ def test_a_program_shifted_with_its_zero_is_the_same(tmp_path: Path) -> None:
     np.testing.assert_allclose(one.table.quality, other.table.quality, atol=1e-9)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_rapid_move_in_a_box_counts_as_all_that_is_in_it(kind: str) -> None:
     part, toolkit, _ = random_case(5, kind)

@@ -54,11 +54,8 @@ def searches_of_any_size_begin_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(best_first, "SQUARE_FIRST", 0.0)
 
 
-# Two here, by one of which the bound ends the search and by the other not; all by ``make prove``.
-MANY = [pytest.param(name, marks=pytest.mark.prove) for name in ("square", "precise")]
-
-
-@pytest.mark.parametrize("ranking", ["usual", "penalty", *MANY])
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("ranking", RANKINGS)
 def test_the_best_are_the_first_of_all(ranking: str) -> None:
     """Whether the bound ends the search or not, which the account says; and both happen."""
     ended = []

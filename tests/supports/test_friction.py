@@ -95,6 +95,7 @@ def wrenches(load: SpatialLoad) -> list[Array]:
     return out
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", range(5))
 def test_the_clamp_force_with_friction_is_that_of_another_formulation(seed: int) -> None:
     """In a vise, for loads in one direction; with little friction and with much."""

@@ -53,6 +53,7 @@ def edited(result: Result, tmp_path: Path) -> Callable[[Edit], Verification]:
     return lambda edit: verify_edited(data, edit, tmp_path)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "fields", "asked"),
     [

@@ -72,6 +72,7 @@ def edited(data: Data, tmp_path: Path) -> Callable[[Edit], Verification]:
     return lambda edit: verify_edited(data, edit, tmp_path)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "fields", "asked"),
     [

@@ -40,6 +40,7 @@ def program_of_result(result: Result) -> Program:
     return result.query.program
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_fixture_of_a_list_is_proven_in_either_form(kind: str, tmp_path: Path) -> None:
     result = result_of(kind, best=6, ranking=["program-clearance", "closure-margin"])

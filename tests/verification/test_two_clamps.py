@@ -49,6 +49,7 @@ def plate(**fields: Any) -> Plate:
     return Plate(**given)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "toolkit", "asked"),
     [

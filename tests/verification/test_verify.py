@@ -39,6 +39,7 @@ NOTCHED = [
 WEDGE = [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("part", "vise"),
     [
