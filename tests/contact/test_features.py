@@ -191,6 +191,13 @@ def test_a_shallow_arc_stays_where_it_is_drawn_however_far_its_centre_is(
             assert abs(contact_value(row.tolist(), (arb(place[0]), arb(place[1])))) < size
 
 
+def test_the_axis_of_a_line_counts_with_its_length() -> None:
+    """Rounding makes it other than 1, and the distance from the line is none the less in mm."""
+    row = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0, 1.0, 0.0, 0.0]
+    assert contact_value(row, (arb(1.0 + 4.0), arb(2.0 - 3.0))).contains(5)
+    assert contact_value(row, (arb(1.0 - 8.0), arb(2.0 + 6.0))).contains(-10)
+
+
 @pytest.mark.parametrize(("margin", "beyond"), [(0.0, 0.0), (20.0, 20.0), (50.0, 43.0)])
 def test_a_zone_may_be_touched_and_the_margin_counts_from_the_ends_of_the_uncut_feature(
     margin: float, beyond: float
