@@ -30,7 +30,7 @@ from workhold.kernels.base.feature import (
 from workhold.kernels.base.given import Limits
 from workhold.proof.narrowing import CandidateBox, axis_length, contact_value, from_origin, value_of_ray
 
-__all__ = ["BoxContacts", "end_slacks", "is_empty", "places", "slacks", "values", "wrench_minors"]
+__all__ = ["BoxContacts", "contact_values", "end_slacks", "is_empty", "places", "slacks", "wrench_minors"]
 
 
 @frozen(eq=False)
@@ -64,7 +64,7 @@ def turned_pegs(box: CandidateBox, unknowns: Sequence[arb]) -> Iterator[tuple[ar
             yield cosine * across - sine * dy, sine * across + cosine * dy
 
 
-def values(box: CandidateBox, unknowns: Sequence[arb]) -> list[arb]:
+def contact_values(box: CandidateBox, unknowns: Sequence[arb]) -> list[arb]:
     """The four contact equations on a box of unknowns, without all else that ``places`` finds."""
     _, x, y, _ = unknowns
     _, *arms = turned_pegs(box, unknowns)

@@ -18,7 +18,7 @@ from flint import arb, arb_mat
 from numpy.typing import NDArray
 
 from workhold.kernels.base.given import Limits
-from workhold.proof.ball_contacts import BoxContacts, places, values
+from workhold.proof.ball_contacts import BoxContacts, contact_values, places
 from workhold.proof.narrowing import CandidateBox
 
 __all__ = ["SingularFrame", "is_smaller", "thirds"]
@@ -79,7 +79,9 @@ class SingularFrame:
 
     def values(self, place: Sequence[arb]) -> list[arb]:
         """The combined contact equations at a place in the frame."""
-        return list((self.combining * arb_mat(4, 1, values(self.box, self.unknowns(place)))).entries())
+        return list(
+            (self.combining * arb_mat(4, 1, contact_values(self.box, self.unknowns(place)))).entries()
+        )
 
     def slopes(self, here: BoxContacts) -> list[list[arb]]:
         """The Jacobian of the combined contact equations by the frame's coordinates."""
