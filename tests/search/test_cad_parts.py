@@ -82,6 +82,7 @@ LONG = (
 )
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("seed", "pitch", "columns", "fields"), [(6, 30.0, 2, ONE), (6, 30.0, 2, TWO), *LONG]
 )

@@ -76,6 +76,7 @@ def test_complete_set_is_reproduced(path: Path, tmp_path: Path) -> None:
     assert "0 missing, 0 extra" in checked(result, tmp_path / "result.json", path)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("loop", "fence"),
     [

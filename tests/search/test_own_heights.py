@@ -138,6 +138,7 @@ def test_a_prism_gives_the_same_list_whatever_the_heights(name: str) -> None:
         assert len(found) == len(usual) + more
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("name", "rows"),
     [

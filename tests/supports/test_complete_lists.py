@@ -85,6 +85,7 @@ def refusal(path: Path) -> str:
     return (*outcome.faults, *(one.reason for one in outcome.unproven))[0]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("place", [0, 40, -1])
 def test_a_removed_triple_is_missed(written: Path, place: int) -> None:
     """Also where the count was made smaller with it."""

@@ -63,6 +63,7 @@ def test_the_best_few_are_the_first_of_all(name, is_fixed, is_loaded):
         assert not best.complete
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_file_is_read_back_and_both_judges_find_nothing(name, tmp_path):
     one = case(name)

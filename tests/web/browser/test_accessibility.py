@@ -32,6 +32,7 @@ CHECK = """async () => {
 }"""
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("look", ["desk", "phone"])
 def test_nothing_serious_is_found(browser: Any, server: RunningServer, look: str) -> None:
     """Empty, with a file that leaves something open, with the part, and with fixtures compared and pushed at; on a desk

@@ -209,6 +209,7 @@ def test_the_drawing_is_first_on_a_phone(browser: Any, server: RunningServer, tm
     assert walk.troubles == []
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("size", "preset"), [(PHONE, "clamp-plate-20mm"), (DESK, "plate-20mm")], ids=["phone", "desk"]
 )

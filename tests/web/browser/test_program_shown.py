@@ -156,6 +156,7 @@ def test_a_program_may_be_dropped_and_stays_over_a_reload(walk: Walk) -> None:
     walk.seen("#passing:has-text('comes nearest')")
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_the_panel_can_be_read_by_all(walk: Walk, scheme: str) -> None:
     """Neither contrast nor names fail."""
