@@ -10,7 +10,17 @@ import pytest
 
 from chord_examples import arc_row, line_row, off_carrier, overshoot
 from workhold.kernels.base.feature import point_at
-from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
+from workhold.kernels.chord.columns import COLUMN_STEP, HEAD, ROW_STEP, TAIL, SlidingPairs
+from workhold.kernels.contact.record import (
+    PEG_COLUMN,
+    PEG_FEATURE,
+    PEG_LENGTH,
+    PEG_RADIUS,
+    PEG_ROW,
+    PEG_X,
+    PEG_Y,
+)
+from workhold.kernels.curves.sliding_pairs import place_sliding_pair, placed_pair, sliding_pairs_between
 
 
 def random_sliding_pair(random: Random) -> tuple[np.ndarray, np.ndarray, float]:
@@ -53,6 +63,30 @@ def test_sliding_along_an_sliding_pair_keeps_both_contacts():
             for s in np.linspace(low, high, 7):
                 assert touches(a, b, d, s, alpha, 1e-9)
     assert found > 300
+
+
+def test_the_head_of_a_pair_in_place_is_as_far_off_as_it_may_be_turned():
+    """Its disc holds the head of a tail at the rim of its own, at each orientation within reach of the pair's."""
+    random, pegs = Random(22), np.zeros((2, PEG_LENGTH))
+    for _ in range(200):
+        a, b, d = random_sliding_pair(random)
+        psi, shift, radius = random.uniform(-pi, pi), random.uniform(-pi, pi), 10 ** random.uniform(-9, -3)
+        tables = SlidingPairs(np.zeros((1, 7), np.int64), np.array([[-1.0, 1.0, psi + shift, d, psi]]))
+        tables.integers[0, [TAIL, HEAD, COLUMN_STEP, ROW_STEP]] = 0, 1, 2, 3
+        pair = placed_pair(0, tables, np.stack([a, b]))
+        assert pair.angle == (psi, cos(psi), sin(psi)) and pair.reach > 0.0
+        wide = pair._replace(reach=1e-3, swing=1e-3 * pair.swing / pair.reach)
+        place_sliding_pair(pegs, 1.0, 2.0, 4.0, radius, tables.integers[0], wide)
+        assert pegs[:, [PEG_FEATURE, PEG_COLUMN, PEG_ROW]].tolist() == [[0.0, 0.0, 4.0], [1.0, 2.0, 7.0]]
+        (x, y, off), (head_x, head_y, head_off) = pegs[:, [PEG_X, PEG_Y, PEG_RADIUS]]
+        assert (x, y, off) == (1.0, 2.0, radius)
+        for turn in (-1e-3, 0.0, 1e-3):
+            way = random.uniform(-pi, pi)
+            exact = (
+                x + radius * cos(way) + d * cos(psi + shift + turn),
+                y + radius * sin(way) + d * sin(psi + shift + turn),
+            )
+            assert hypot(exact[0] - head_x, exact[1] - head_y) <= head_off + 1e-12
 
 
 def test_sliding_pairs_are_complete():
