@@ -1,4 +1,4 @@
-"""A test draws the same examples alone and after any other."""
+"""A test draws the same examples alone and after any other, and of many like cases some are left to ``make prove``."""
 
 from __future__ import annotations
 
@@ -24,3 +24,12 @@ def test_examples_do_not_depend_on_what_is_imported(tmp_path: Path, monkeypatch:
     import_module("full_of_numbers")
     draw()
     assert len(drawn) % 2 == 0 and drawn[: len(drawn) // 2] == drawn[len(drawn) // 2 :]
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("number", range(7))
+def test_one_case_in_so_many_is_tried_here(number: int, request: pytest.FixtureRequest) -> None:
+    """The first, and each third one after it; asked for alone, any case is."""
+    left = request.node.get_closest_marker("prove") is not None
+    alone = sum(item.originalname == request.node.originalname for item in request.session.items) == 1
+    assert alone or left == (number % 3 != 0)
