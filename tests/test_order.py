@@ -31,5 +31,5 @@ def test_examples_do_not_depend_on_what_is_imported(tmp_path: Path, monkeypatch:
 def test_one_case_in_so_many_is_tried_here(number: int, request: pytest.FixtureRequest) -> None:
     """The first, and each third one after it; asked for alone, any case is."""
     left = request.node.get_closest_marker("prove") is not None
-    alone = sum(item.originalname == request.node.originalname for item in request.session.items) == 1
+    alone = "[" in "".join(request.config.args)
     assert alone or left == (number % 3 != 0)
