@@ -119,11 +119,8 @@ def place_tail(
 @inner
 def place_head(pegs: Array, place: int, curve: int, angle: Angle, reach: float, curves: Curves) -> None:
     """Writes the head of a curve's chord to a place, from the tail in the first; see ``place_tail``."""
-    step, d, alpha = (
-        curves.integers[curve],
-        curves.reals[curve, LENGTH],
-        angle[0] + curves.reals[curve, SHIFT],
-    )
+    step, reals = curves.integers[curve], curves.reals[curve]
+    d, alpha = reals[LENGTH], angle[0] + reals[SHIFT]
     x, y, radius = (
         pegs[0, PEG_X] + d * cos(alpha),
         pegs[0, PEG_Y] + d * sin(alpha),

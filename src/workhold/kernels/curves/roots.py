@@ -82,11 +82,8 @@ def value_turned(
     psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float, float, float]:
     """What ``value_at`` returns at an orientation of known cosine and sine, which two curves share."""
-    a, b, row = (
-        features[curves.integers[curve, TAIL]],
-        features[curves.integers[curve, HEAD]],
-        curves.reals[curve],
-    )
+    a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
+    row = curves.reals[curve]
     state = chord_state(a, b, row, psi, cosine, sine)
     value, slope, error, spread = valued(a, b, state, cosine, sine, mode)
     if not isfinite(error):
