@@ -63,8 +63,8 @@ paper: $(INSTALLED)
 	-$(INSTALL) distributed fsspec pyarrow
 	$(BIN)/python benchmarks/make_paper.py $(PAPER)
 
-# Fifteen hundred planted fixtures and more, ten thousand random SVG drawings against resvg, signals at every stage, the paper's Table 2, then
-# both engines on the complete sets, the paper's parts and random parts.
+# Fifteen hundred planted fixtures and more, ten thousand random SVG drawings against resvg, signals at every stage, the paper's
+# Table 2, then both engines on the complete sets, the paper's parts and random parts.
 prove: $(INSTALLED_DEV)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m prove
 	$(BIN)/python benchmarks/prove.py

@@ -9,7 +9,6 @@ import os
 import shutil
 import subprocess
 import sys
-from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -73,14 +72,24 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Leave all but one case in so many to ``make prove``, of laws that are tried on many like cases."""
-    seen = Counter[str]()
+    """Leave all but one case in so many to ``make prove``, of laws that are tried on many like cases.
+
+    Those whose places in their lists add up to a multiple of the number stay: of each list every value does.
+    """
     for item in items:
-        if mark := item.get_closest_marker("sampled"):
-            law = item.nodeid.partition("[")[0]
-            if seen[law] % mark.args[0]:
-                item.add_marker(pytest.mark.prove)
-            seen[law] += 1
+        if (mark := item.get_closest_marker("sampled")) and places_of(item) % mark.args[0]:
+            item.add_marker(pytest.mark.prove)
+
+
+def places_of(item: Any) -> int:
+    """The sum of the places of a case in the lists that its test is tried on, of which the last changes fastest."""
+    first, *others = item.iter_markers("parametrize")
+    names = first.args[0].split(",") if isinstance(first.args[0], str) else first.args[0]
+    total, number = 0, item.callspec.indices[names[0]]
+    for mark in reversed(others):
+        number, place = divmod(number, len(mark.args[1]))
+        total += place
+    return total + int(number)
 
 
 def pytest_collection_finish() -> None:

@@ -29,7 +29,15 @@ def test_examples_do_not_depend_on_what_is_imported(tmp_path: Path, monkeypatch:
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("number", range(7))
 def test_one_case_in_so_many_is_tried_here(number: int, request: pytest.FixtureRequest) -> None:
-    """The first, and each third one after it; asked for alone, any case is."""
-    left = request.node.get_closest_marker("prove") is not None
-    alone = "[" in "".join(request.config.args)
-    assert alone or left == (number % 3 != 0)
+    """The first, and each third one after it."""
+    assert (request.node.get_closest_marker("prove") is not None) == (number % 3 != 0)
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("one", range(4))
+@pytest.mark.parametrize(("two", "three"), [(0, 0), (1, 1)])
+def test_of_two_lists_every_value_is_tried(
+    one: int, two: int, three: int, request: pytest.FixtureRequest
+) -> None:
+    """Each of the first with one of the second, whose two names count once."""
+    assert (request.node.get_closest_marker("prove") is not None) == ((one + two) % 2 != 0) and two == three

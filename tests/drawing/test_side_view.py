@@ -114,7 +114,7 @@ def test_pegs_stand_from_the_plate_to_their_height(name: str) -> None:
         assert (low, high) == pytest.approx((-lifted - 15.0, -lifted), abs=2e-3)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("paper", "unit"), [("a4", MILLIMETRE), ("letter", INCH)], ids=["a4", "letter"])
 @pytest.mark.parametrize("name", NAMES)
 def test_nothing_is_covered_or_cut_off(name: str, paper: str, unit: Unit) -> None:

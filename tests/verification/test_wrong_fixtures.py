@@ -108,9 +108,8 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.prove if name == "ring" else ()) for name in CASES]
-)
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("name", CASES)
 def test_neighbours_of_fixtures(name: str) -> None:
     result: Result = CASES[name]()
     workpiece, vise = result.workpiece, result.toolkit

@@ -91,7 +91,7 @@ def test_pages_join_to_the_whole_list(server: RunningServer, job: str) -> None:
 
 
 # Those of loads and of two clamps are of other searches.
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "key", [one.key for one in FIGURES if one.unit != "N" and one.key != "clamp_freedom"]
 )
