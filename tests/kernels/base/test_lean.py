@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from math import hypot, sqrt
+from pathlib import Path
 from typing import Any
 
 import numba
@@ -22,6 +27,7 @@ from workhold.kernels.base.compiling import (
 )
 from workhold.kernels.base.lean import InnerCode, InnerCompiler, OuterCode, OuterCompiler
 
+BENCHMARKS = Path(__file__).resolve().parents[3] / "benchmarks"
 Compiler = Callable[[Callable[..., Any]], Any]
 OUTER: dict[str, Any] = {**WITHOUT_COUNTS, **NO_CALLBACK, "pipeline_class": OuterCompiler}
 INNER: dict[str, Any] = {**WITHOUT_COUNTS, **ONLY_INNER, "pipeline_class": InnerCompiler}
@@ -130,3 +136,11 @@ def test_another_numba_and_a_wheel_s_compile_in_numba_s_own_way(monkeypatch):
     monkeypatch.undo()
     monkeypatch.setattr(numba, "__version__", "0.70.0")
     assert lean_compiler("InnerCompiler") == {}
+
+
+def test_the_loop_that_a_search_is_measured_by_calls_a_kernel_so_compiled():
+    """Code that numba compiles in its own way cannot call one: the benchmark of the floor ended by a signal."""
+    command = [sys.executable, BENCHMARKS / "report.py", "floor.floor_seconds", '["small4Handle", 3.0, 10000]']
+    environment = {**os.environ, "WORKHOLD_KERNELS": "numba"}
+    done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
+    assert 0.05 < json.loads(done.stdout)["closing"] < 0.3, "about every eighth of random contacts closes"
