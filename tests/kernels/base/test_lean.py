@@ -140,7 +140,12 @@ def test_another_numba_and_a_wheel_s_compile_in_numba_s_own_way(monkeypatch):
 
 def test_the_loop_that_a_search_is_measured_by_calls_a_kernel_so_compiled():
     """Code that numba compiles in its own way cannot call one: the benchmark of the floor ended by a signal."""
-    command = [sys.executable, BENCHMARKS / "report.py", "floor.floor_seconds", '["small4Handle", 3.0, 10000]']
+    command = [
+        sys.executable,
+        BENCHMARKS / "report.py",
+        "floor.floor_seconds",
+        '["small4Handle", 3.0, 10000]',
+    ]
     environment = {**os.environ, "WORKHOLD_KERNELS": "numba"}
     done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
     assert 0.05 < json.loads(done.stdout)["closing"] < 0.3, "about every eighth of random contacts closes"
