@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from time import process_time
 from typing import Any
 
-from report import Column, Section, measured
+from report import Column, Section, measured, run_alone
 
 MOST_SECONDS = 0.5
 
@@ -32,7 +32,7 @@ COLUMNS = (
 def run(quick: bool) -> Section:
     """Measure the outline at some heights, and the reading of the file."""
     section = Section("solids", "Solids at the height of the pegs", COLUMNS).begin()
-    outcome = measured("solids.seconds", quick)
+    outcome = dict(measured("solids.seconds", quick))
     if not outcome:
         return section
     for name, one in outcome.items():
@@ -47,16 +47,17 @@ def run(quick: bool) -> Section:
     return section
 
 
-def seconds(quick: bool) -> dict[str, Any]:
+def seconds(quick: bool) -> list[tuple[str, dict[str, Any]]]:
     """Task: of each part seconds of outlines at some heights, with their segments, of the whole, and how many faces."""
     try:
         import OCP  # noqa: F401
     except ImportError:
-        return {}
+        return []
     sys.path[:0] = [str(Path(__file__).resolve().parents[1] / "tests" / "files")]
-    return {
-        name: seconds_of(make(), heights[:1] if quick else heights) for name, (make, heights) in PARTS.items()
-    }
+    return [
+        (name, seconds_of(make(), heights[:1] if quick else heights))
+        for name, (make, heights) in PARTS.items()
+    ]
 
 
 def seconds_of(part: Any, heights: Sequence[float]) -> dict[str, Any]:
@@ -125,3 +126,7 @@ PARTS: dict[str, tuple[Callable[[], Any], tuple[float, ...]]] = {
     "toothed wheel": (toothed_wheel, (2.0, 10.0, 18.0, 20.0)),
     "rounded block": (rounded_block, (18.0, 20.0)),
 }
+
+
+if __name__ == "__main__":
+    run_alone(__doc__, run)

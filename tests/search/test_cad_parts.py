@@ -5,6 +5,7 @@ Their coincidences (concentric arcs, equal radii, a pitch that equals a dimensio
 
 from __future__ import annotations
 
+from math import atan2, pi, sqrt, tan
 from random import Random
 from typing import Any
 
@@ -111,3 +112,37 @@ def test_pegs_in_two_bores_nearly_as_far_apart_as_the_holes_are_decided() -> Non
     vise = Vise((12.7, 12.7), 4, 3.175, min_gap=12.7, body_radius=3.175)
     result = design(link, vise, best=1)
     assert result.proof is not None and result.proof.undecided == ()
+
+
+def rod(digits: int) -> Workpiece:
+    """A rod of 140 mm with equal round ends about bores, its coordinates and bulges written to so many digits."""
+    radius, half, bore, length = 25.0, 10.5, 12.5, 140.0
+    joint = sqrt(radius**2 - half**2)
+    bulge = round(tan((pi - atan2(half, joint)) / 2), digits)
+    joint = round(joint, digits)
+    outside = [
+        (joint, -half, 0),
+        (length - joint, -half, bulge),
+        (length - joint, half, 0),
+        (joint, half, bulge),
+    ]
+    bores = [[(x + bore, 0, -1), (x - bore, 0, -1)] for x in (0.0, length)]
+    return Workpiece.from_loops("rod", [outside, *bores])
+
+
+# The ends are then 7e-11 to 1e-9 mm from as far apart as seven holes of 20 mm.
+@pytest.mark.parametrize("digits", [9, 10, 11])
+def test_three_locators_on_ends_nearly_as_far_apart_as_holes_have_sharp_places(digits: int) -> None:
+    """The third locator says where the part lies, which the two on both ends hardly do: there were 10,000 boxes of
+    some mm, on which the proof spent minutes."""
+    result = design(rod(digits), Plate.preset("clamp-plate-20mm"))
+    assert result.proof is not None and result.proof.undecided == ()
+    assert result.proof.escalated < 100
+    assert result.counts == {"clamp": 38600}
+
+
+def test_flat_boxes_of_turn_and_place_are_contracted_as_they_are() -> None:
+    """The orientation is known to 1e-11, the place to some mm: a frame that mixes both never gets small."""
+    result = design(rod(11), Vise(pitch=20, columns=2, peg_radius=3))
+    assert result.proof is not None and result.proof.undecided == ()
+    assert sum(result.counts.values()) == 7144

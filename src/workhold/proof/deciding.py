@@ -242,7 +242,8 @@ def interval_newton_in_doubles(records: Array, problem: Problem, setting: Settin
     slopes = jacobians(records, problem.rows, setting)
     bounded = np.isfinite(records).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
     known = records[bounded]
-    left, _, right = np.linalg.svd(slopes[bounded])
+    # By how far each unknown goes in the box: the orientation may be known far better than the place.
+    left, _, right = np.linalg.svd(slopes[bounded] * box_reach(known, problem.wrench_length)[:, None, :])
     frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
     verdicts, roots = interval_newton(known, problem.rows, setting, frames)
     proven, still_open = sifted(roots, problem, setting)

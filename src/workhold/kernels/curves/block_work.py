@@ -17,6 +17,7 @@ from workhold.kernels.base.compiling import inner, inner_making_arrays
 from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.chord.columns import COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, Curves
 from workhold.kernels.contact.record import (
+    PEG_FEATURE,
     PEG_LENGTH,
     PEG_RADIUS,
     PEG_ROW,
@@ -43,6 +44,8 @@ STOPPED = 4
 STATISTICS = 5
 # Rows of what moving pegs need of three standing ones.
 TRIPLE_ROWS = 8
+# mm. A tail known no better than this is looked for on its other curve, too.
+BADLY = 1e-3
 
 
 class BlockWork(NamedTuple):
@@ -143,8 +146,18 @@ def place_chord(
 def place_triple(
     pegs: Array, one: int, two: int, angle: Angle, reach: float, features: Array, curves: Curves
 ) -> None:
-    """Writes the three standing pegs of two curves with a common tail; see ``place_tail``."""
-    place_chord(pegs, one, angle, reach, 0.0, features, curves)
+    """Writes the three standing pegs of two curves with a common tail; see ``place_tail``.
+
+    Where one curve says badly where the tail is, as beside two arcs that are nearly one chord apart, the
+    other one may say it well.
+    """
+    place_tail(pegs, one, angle, reach, 0.0, features, curves)
+    if pegs[0, PEG_RADIUS] > BADLY:
+        x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]
+        place_tail(pegs, two, angle, reach, 0.0, features, curves)
+        if pegs[0, PEG_RADIUS] >= radius:
+            place_peg(pegs[0], x, y, pegs[0, PEG_FEATURE], 0.0, 0.0, radius)
+    place_head(pegs, 1, one, angle, reach, curves)
     place_head(pegs, 2, two, angle, reach, curves)
 
 
