@@ -94,7 +94,7 @@ def lowered(shape: Any) -> Any:
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
     from OCP.gp import gp_Trsf, gp_Vec
 
-    from workhold.files.step.solids import bounding_box
+    from workhold.files.step.library import bounding_box
 
     move = gp_Trsf()
     move.SetTranslation(gp_Vec(0, 0, -bounding_box(shape)[0][2]))

@@ -33,7 +33,7 @@ from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 from workhold.files.step.heights import standing
 from workhold.files.step.level_faces import bottom_loops, top_loops
-from workhold.files.step.solids import sub_shapes
+from workhold.files.step.library import sub_shapes
 from workhold.files.step.which_height import measures
 from workhold.geometry.loop import loop_segments, signed_area
 

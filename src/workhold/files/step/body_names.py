@@ -16,8 +16,9 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import plain, shortened
+from workhold.files.step.library import occ, sub_shapes
 
-__all__ = ["bounding_box", "named_shapes", "sub_shapes"]
+__all__ = ["named_shapes"]
 
 LONGEST_NAME = 80
 # What programs write where nobody has given a name.
@@ -25,8 +26,6 @@ NO_NAME = re.compile(
     r"(?:none|unnamed|no_?name|solid|compound|shell|shape|body|\d+|nauo\d*|=>\[[\d:]*\]|open cascade .*)?",
     re.IGNORECASE,
 )
-# Its x, y and z in mm.
-Corner = tuple[float, float, float]
 
 
 @frozen
@@ -44,22 +43,17 @@ def named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
     -------
     None where the library does not know: the solids are those of the reader then, without names.
     """
-    from OCP.STEPCAFControl import STEPCAFControl_Reader
-    from OCP.TCollection import TCollection_ExtendedString
-    from OCP.TDocStd import TDocStd_Document
-    from OCP.XCAFDoc import XCAFDoc_DocumentTool
-
     # Whatever fails over names, the solids are there without them.
     with suppress(Exception):
-        naming = STEPCAFControl_Reader(reader.WS(), False)
+        naming = occ.STEPCAFControl_Reader(reader.WS(), False)
         for other in (naming.SetColorMode, naming.SetLayerMode, naming.SetPropsMode, naming.SetGDTMode):
             other(False)
-        document = TDocStd_Document(TCollection_ExtendedString("names"))
+        document = occ.TDocStd_Document(occ.TCollection_ExtendedString("names"))
         if not naming.Transfer(document):
             return None
         process = naming.ChangeReader().WS().TransferReader()
         found = []
-        for label in children(XCAFDoc_DocumentTool.ShapesLabel_s(document.Main())):
+        for label in children(occ.XCAFDoc_DocumentTool.ShapesLabel_s(document.Main())):
             for place in places(label):
                 solids = sub_shapes(place.shape, "SOLID")
                 found += [(solid, name_of(solid, place, len(solids), process)) for solid in solids]
@@ -76,9 +70,7 @@ def position(shape: Any) -> tuple[float, ...]:
 
 def children(label: Any) -> Iterator[Any]:
     """The labels directly under a label."""
-    from OCP.TDF import TDF_ChildIterator
-
-    at = TDF_ChildIterator(label, False)
+    at = occ.TDF_ChildIterator(label, False)
     while at.More():
         yield at.Value()
         at.Next()
@@ -86,11 +78,8 @@ def children(label: Any) -> Iterator[Any]:
 
 def places(label: Any) -> Iterator[ProductPlace]:
     """Every place in which a product without others in it is used, of a label that nothing else uses."""
-    from OCP.TopLoc import TopLoc_Location
-    from OCP.XCAFDoc import XCAFDoc_ShapeTool
-
-    if XCAFDoc_ShapeTool.IsFree_s(label):
-        yield from places_under(label, TopLoc_Location(), ())
+    if occ.XCAFDoc_ShapeTool.IsFree_s(label):
+        yield from places_under(label, occ.TopLoc_Location(), ())
 
 
 def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[ProductPlace]:
@@ -101,29 +90,26 @@ def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[Pro
     moved : where the assemblies around it place it.
     names : of these assemblies.
     """
-    from OCP.TDF import TDF_Label
-    from OCP.XCAFDoc import XCAFDoc_ShapeTool
-
     product = label
-    if XCAFDoc_ShapeTool.IsReference_s(label):
-        product = TDF_Label()
-        XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
-        moved = moved.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label))
+    if occ.XCAFDoc_ShapeTool.IsReference_s(label):
+        product = occ.TDF_Label()
+        occ.XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
+        moved = moved.Multiplied(occ.XCAFDoc_ShapeTool.GetLocation_s(label))
     names = (*names, called(label), called(product))
-    if not XCAFDoc_ShapeTool.IsAssembly_s(product):
-        yield ProductPlace(XCAFDoc_ShapeTool.GetShape_s(product).Moved(moved), names)
+    if not occ.XCAFDoc_ShapeTool.IsAssembly_s(product):
+        yield ProductPlace(occ.XCAFDoc_ShapeTool.GetShape_s(product).Moved(moved), names)
         return
     for below in children(product):
-        if XCAFDoc_ShapeTool.IsComponent_s(below):
+        if occ.XCAFDoc_ShapeTool.IsComponent_s(below):
             yield from places_under(below, moved, names)
 
 
 def called(label: Any) -> str:
     """The name at a label; empty where it says nothing."""
-    from OCP.TDataStd import TDataStd_Name
-
-    name = TDataStd_Name()
-    return shown_name(name.Get().ToExtString()) if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
+    name = occ.TDataStd_Name()
+    return (
+        shown_name(name.Get().ToExtString()) if label.FindAttribute(occ.TDataStd_Name.GetID_s(), name) else ""
+    )
 
 
 def shown_name(name: str) -> str:
@@ -138,46 +124,13 @@ def shown_name(name: str) -> str:
 
 def name_of(solid: Any, place: ProductPlace, count: int, process: Any) -> str:
     """The name of a solid of a product that has so many solids."""
-    from OCP.TopLoc import TopLoc_Location
-
     own = ""
     with suppress(Exception):
         # Solids are known to the reader without the place that assemblies give them.
         own = shown_name(
-            process.EntityFromShapeResult(solid.Located(TopLoc_Location()), 1).Name().ToCString()
+            process.EntityFromShapeResult(solid.Located(occ.TopLoc_Location()), 1).Name().ToCString()
         )
     # The assembly of all says nothing about one of its solids.
     nearest = place.names[2:] or place.names
     of_product = next((name for name in reversed(nearest) if name), "")
     return of_product if count == 1 and of_product else own or of_product
-
-
-def sub_shapes(shape: Any, kind: str) -> list[Any]:
-    """The parts of one kind of a shape, each as often as it is used.
-
-    Parameters
-    ----------
-    kind : "SOLID", "FACE", "WIRE", "EDGE" or "VERTEX".
-    """
-    from OCP import TopAbs
-    from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
-
-    cast = getattr(TopoDS, kind.capitalize())
-    explorer = TopExp_Explorer(shape, getattr(TopAbs.TopAbs_ShapeEnum, f"TopAbs_{kind}"))
-    found = []
-    while explorer.More():
-        found.append(cast(explorer.Current()))
-        explorer.Next()
-    return found
-
-
-def bounding_box(shape: Any) -> tuple[Corner, Corner]:
-    """Both corners of a shape's bounding box in mm, to rounding."""
-    from OCP.Bnd import Bnd_Box
-    from OCP.BRepBndLib import BRepBndLib
-
-    box = Bnd_Box()
-    BRepBndLib.AddOptimal_s(shape, box, False, False)
-    low, high = box.CornerMin(), box.CornerMax()
-    return (low.X(), low.Y(), low.Z()), (high.X(), high.Y(), high.Z())

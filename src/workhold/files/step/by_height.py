@@ -19,9 +19,9 @@ from workhold.files.step.heights import HEAD_ROOM as USUAL_ROOM
 from workhold.files.step.heights import LEAST_BAND as USUAL_BAND
 from workhold.files.step.heights import StandingSolid, standing
 from workhold.files.step.level_faces import known_levels
-from workhold.files.step.library import load_step_library
+from workhold.files.step.library import guarded, load_step_library, sub_shapes
 from workhold.files.step.projected import OtherCurveError
-from workhold.files.step.reader import drawing_of, guarded, plain_drawing, prepare, read_solid
+from workhold.files.step.reader import drawing_of, plain_drawing, prepare, read_solid
 from workhold.files.step.solids import (
     Solid,
     along,
@@ -31,7 +31,6 @@ from workhold.files.step.solids import (
     numbered,
     read_solids,
     solid_remarks,
-    sub_shapes,
 )
 from workhold.files.step.which_height import (
     OwnDrawing,

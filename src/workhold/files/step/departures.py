@@ -23,8 +23,9 @@ from workhold.files.outline.joining import closed_loop
 from workhold.files.outline.nesting import DrawnPart, nest
 from workhold.files.questions import AXIS, SECTION
 from workhold.files.step.faces import Layer, SolidFace, lie_of, surface_points
+from workhold.files.step.library import occ, sub_shapes
 from workhold.files.step.regions import Borders, area_of, section
-from workhold.files.step.solids import AXES, sub_shapes
+from workhold.files.step.solids import AXES
 from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
@@ -218,9 +219,7 @@ def probed(layer: Layer) -> list[float]:
 
 def other_axis(solid: Any, axis: str, before: str) -> str:
     """Another axis along which no face of a solid leans, after some words; nothing when there is none."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-
-    surfaces = [BRepAdaptor_Surface(face) for face in sub_shapes(solid, "FACE")]
+    surfaces = [occ.BRepAdaptor_Surface(face) for face in sub_shapes(solid, "FACE")]
     for name, (_, _, up) in AXES.items():
         if name != axis.lstrip("-") and all(lie_of(surface, up) != "leaning" for surface in surfaces):
             return before + name

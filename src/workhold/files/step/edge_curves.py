@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, DISGUISE, SHORTEST
 from workhold.files.step.faces import SolidFace, surface_of
-from workhold.files.step.solids import sub_shapes
+from workhold.files.step.library import occ, sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = [
@@ -125,9 +125,6 @@ class EdgeCurve:
 
 def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     """The edges of all faces, each as often as a face has it."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-
     # Edges that are the same whichever way a face runs them, by hash: the library's own map of shapes has
     # another name in every version.
     known: dict[int, list[tuple[Any, int]]] = {}
@@ -145,7 +142,7 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
         (index, edge, number_of(edge))
         for index, face in enumerate(faces)
         for edge in sub_shapes(face.shape, "EDGE")
-        if not BRep_Tool.Degenerated_s(edge)
+        if not occ.BRep_Tool.Degenerated_s(edge)
     ]
     carriers = {index: wall_carrier(face) for index, face in enumerate(faces) if face.lie == "upright"}
     walls = {number: carriers[index] for index, _, number in edges if carriers.get(index) is not None}
@@ -153,19 +150,17 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     curves: dict[int, EdgeCurve] = {}
     for index, edge, number in edges:
         if number not in curves:
-            curves[number] = on_wall(curve_of(index, BRepAdaptor_Curve(edge)), walls.get(number))
+            curves[number] = on_wall(curve_of(index, occ.BRepAdaptor_Curve(edge)), walls.get(number))
     return [evolve(curves[number], face=index) for index, _, number in edges]
 
 
 def wall_carrier(face: SolidFace) -> Segment | None:
     """A piece of the line or the circle over which an upright face stands; None for a free-form one."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     surface = surface_of(face.shape)
-    if surface.GetType() == Type.GeomAbs_Plane:
+    if surface.GetType() == occ.GeomAbs_Plane:
         place, normal = surface.Plane().Location(), surface.Plane().Axis().Direction()
         return Line((place.X(), place.Y()), (place.X() - normal.Y(), place.Y() + normal.X()))
-    if surface.GetType() == Type.GeomAbs_Cylinder:
+    if surface.GetType() == occ.GeomAbs_Cylinder:
         place = surface.Cylinder().Location()
         return Arc((place.X(), place.Y()), surface.Cylinder().Radius(), 0.0, pi, 1.0)
     return None
@@ -209,11 +204,9 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
 
 def curve_of(face: int, curve: Any) -> EdgeCurve:
     """One edge seen from above."""
-    from OCP.GeomAbs import GeomAbs_CurveType
-
     first, last = curve.FirstParameter(), curve.LastParameter()
     kind = curve.GetType()
-    if kind == GeomAbs_CurveType.GeomAbs_Line:
+    if kind == occ.GeomAbs_Line:
         parameters = np.array([first, last])
         points = points_along(curve, parameters)
         (x0, y0, _), (x1, y1, _) = points.tolist()
@@ -221,7 +214,7 @@ def curve_of(face: int, curve: Any) -> EdgeCurve:
         return EdgeCurve(face, line, parameters, points, False, curve)
     parameters = np.linspace(first, last, SAMPLES)
     points = points_along(curve, parameters)
-    if kind == GeomAbs_CurveType.GeomAbs_Circle:
+    if kind == occ.GeomAbs_Circle:
         circle = curve.Circle()
         normal = circle.Axis().Direction()
         if hypot(normal.X(), normal.Y()) <= ALIGNED:

@@ -23,7 +23,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT
-from workhold.files.step.solids import bounding_box, sub_shapes
+from workhold.files.step.library import bounding_box, occ, sub_shapes
 
 __all__ = [
     "SLOPING",
@@ -95,12 +95,8 @@ def solid_faces(shape: Any) -> list[SolidFace]:
 
 def solid_face(face: Any) -> SolidFace:
     """Look at one face."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-    from OCP.TopAbs import TopAbs_Orientation
-
     low, high = bounding_box(face)
-    written, surface = BRepAdaptor_Surface(face), surface_of(face)
+    written, surface = occ.BRepAdaptor_Surface(face), surface_of(face)
     lie = lie_of(surface, 2)
     bottom, top = low[2], high[2]
     if (z := plane_height(surface)) is not None:
@@ -108,7 +104,7 @@ def solid_face(face: Any) -> SolidFace:
     fold = fold_of(surface) if lie == "leaning" else None
     upward = False
     if lie == "level":
-        turned = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+        turned = face.Orientation() == occ.TopAbs_REVERSED
         upward = (sampled_normals(written)[0].Z() > 0) != turned
     return SolidFace(
         face,
@@ -119,7 +115,7 @@ def solid_face(face: Any) -> SolidFace:
         fold,
         upward,
         (low[0], low[1], high[0], high[1]),
-        written.GetType() in (Type.GeomAbs_BSplineSurface, Type.GeomAbs_BezierSurface),
+        written.GetType() in (occ.GeomAbs_BSplineSurface, occ.GeomAbs_BezierSurface),
     )
 
 
@@ -129,26 +125,20 @@ def surface_of(face: Any) -> Any:
     Some programs write every surface as a spline. Of what is found the bounds are those of the face's box, at
     least: more of it does no harm where folds and cuts are looked for.
     """
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-    from OCP.GeomAdaptor import GeomAdaptor_Surface
-    from OCP.GeomConvert import GeomConvert_SurfToAnaSurf
-
-    surface = BRepAdaptor_Surface(face)
-    if surface.GetType() not in (Type.GeomAbs_BSplineSurface, Type.GeomAbs_BezierSurface):
+    surface = occ.BRepAdaptor_Surface(face)
+    if surface.GetType() not in (occ.GeomAbs_BSplineSurface, occ.GeomAbs_BezierSurface):
         return surface
-    converter = GeomConvert_SurfToAnaSurf(BRep_Tool.Surface_s(face))
+    converter = occ.GeomConvert_SurfToAnaSurf(occ.BRep_Tool.Surface_s(face))
     found = converter.ConvertToAnalytical(AS_QUADRIC)
     if found is None or converter.Gap() > AS_QUADRIC:
         return surface
-    quadric = GeomAdaptor_Surface(found)
-    if quadric.GetType() == Type.GeomAbs_Plane:
-        return GeomAdaptor_Surface(found, *plane_bounds(quadric.Plane().Position(), face))
-    if quadric.GetType() not in (Type.GeomAbs_Cylinder, Type.GeomAbs_Cone):
+    quadric = occ.GeomAdaptor_Surface(found)
+    if quadric.GetType() == occ.GeomAbs_Plane:
+        return occ.GeomAdaptor_Surface(found, *plane_bounds(quadric.Plane().Position(), face))
+    if quadric.GetType() not in (occ.GeomAbs_Cylinder, occ.GeomAbs_Cone):
         return quadric
-    place = (quadric.Cylinder() if quadric.GetType() == Type.GeomAbs_Cylinder else quadric.Cone()).Position()
-    return GeomAdaptor_Surface(found, 0.0, tau, *span_along(place, place.Direction(), face))
+    place = (quadric.Cylinder() if quadric.GetType() == occ.GeomAbs_Cylinder else quadric.Cone()).Position()
+    return occ.GeomAdaptor_Surface(found, 0.0, tau, *span_along(place, place.Direction(), face))
 
 
 def plane_bounds(place: Any, face: Any) -> tuple[float, float, float, float]:
@@ -168,9 +158,7 @@ def span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
 
 def plane_height(surface: Any) -> float | None:
     """The z in mm of a level plane, without what the library adds to a box; None for any other surface."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
-    if surface.GetType() != Type.GeomAbs_Plane or lie_of(surface, 2) != "level":
+    if surface.GetType() != occ.GeomAbs_Plane or lie_of(surface, 2) != "level":
         return None
     # The middle of the face, because a plane that is level but for rounding is higher far from it.
     u, v = (surface.FirstUParameter() + surface.LastUParameter()) / 2, surface.FirstVParameter()
@@ -179,16 +167,14 @@ def plane_height(surface: Any) -> float | None:
 
 def lie_of(surface: Any, axis: int) -> Lie:
     """How a surface lies to the axis of number 0 (x), 1 (y) or 2 (z)."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Plane:
+    if kind == occ.GeomAbs_Plane:
         inward, across = components(surface.Plane().Axis().Direction(), axis)
         return "level" if across <= ALIGNED else "upright" if inward <= ALIGNED else "leaning"
-    if kind == Type.GeomAbs_Cylinder:
+    if kind == occ.GeomAbs_Cylinder:
         _, across = components(surface.Cylinder().Axis().Direction(), axis)
         return "upright" if across <= ALIGNED else "leaning"
-    if kind in (Type.GeomAbs_Cone, Type.GeomAbs_Sphere, Type.GeomAbs_Torus):
+    if kind in (occ.GeomAbs_Cone, occ.GeomAbs_Sphere, occ.GeomAbs_Torus):
         return "leaning"
     slopes = [components(normal, axis) for normal in sampled_normals(surface)]
     if not slopes:
@@ -206,36 +192,32 @@ def components(direction: Any, axis: int) -> tuple[float, float]:
 
 def sampled_normals(surface: Any) -> list[Any]:
     """Unit normals of a surface at a grid of points, without those where it has none."""
-    from OCP.gp import gp_Dir, gp_Pnt, gp_Vec
-
     normals = []
     for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS):
         for v in np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS):
-            point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
+            point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
             surface.D1(float(u), float(v), point, along_u, along_v)
             normal = along_u.Crossed(along_v)
             if normal.Magnitude() > 1e-12:
-                normals.append(gp_Dir(normal))
+                normals.append(occ.gp_Dir(normal))
     return normals
 
 
 def kind_of(surface: Any, lie: Lie) -> str:
     """A face in words, in the singular."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Plane:
+    if kind == occ.GeomAbs_Plane:
         return {"level": "level plane", "upright": "wall", "leaning": SLOPING}[lie]
     if lie == "upright":
-        round_wall = kind == Type.GeomAbs_Cylinder
+        round_wall = kind == occ.GeomAbs_Cylinder
         return (
             f"round wall of radius {surface.Cylinder().Radius():.6g} mm" if round_wall else "free-form wall"
         )
-    if kind == Type.GeomAbs_Cylinder:
+    if kind == occ.GeomAbs_Cylinder:
         along_axis, _ = components(surface.Cylinder().Axis().Direction(), 2)
         lies = "across" if along_axis < 1e-6 else "aslant"
         return f"cylinder of radius {surface.Cylinder().Radius():.6g} mm {lies}"
-    names = {Type.GeomAbs_Cone: "cone", Type.GeomAbs_Sphere: "sphere", Type.GeomAbs_Torus: "rounded rim"}
+    names = {occ.GeomAbs_Cone: "cone", occ.GeomAbs_Sphere: "sphere", occ.GeomAbs_Torus: "rounded rim"}
     return names.get(kind, "free-form surface")
 
 
@@ -244,15 +226,13 @@ def fold_of(surface: Any) -> float | None:
 
     It is the equator of a sphere, an upright torus or a lying cylinder.
     """
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Sphere:
+    if kind == occ.GeomAbs_Sphere:
         return float(surface.Sphere().Location().Z())
-    if kind == Type.GeomAbs_Torus:
+    if kind == occ.GeomAbs_Torus:
         torus = surface.Torus()
         return float(torus.Location().Z()) if components(torus.Axis().Direction(), 2)[1] <= ALIGNED else None
-    if kind == Type.GeomAbs_Cylinder:
+    if kind == occ.GeomAbs_Cylinder:
         cylinder = surface.Cylinder()
         return (
             float(cylinder.Location().Z())
@@ -279,32 +259,25 @@ def layers_of(faces: Sequence[SolidFace]) -> list[Layer]:
 
 def surface_points(face: SolidFace) -> NDArray[np.float64]:
     """(N, 2) points (x, y) of a face: along its edges, and all over it when it is curved and leans."""
-    from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType
-
     points = []
     for edge in sub_shapes(face.shape, "EDGE"):
-        curve = BRepAdaptor_Curve(edge)
+        curve = occ.BRepAdaptor_Curve(edge)
         points += [
             curve.Value(float(t))
             for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), EDGE_POINTS)
         ]
-    surface = BRepAdaptor_Surface(face.shape)
-    if face.lie == "leaning" and surface.GetType() != GeomAbs_SurfaceType.GeomAbs_Plane:
+    surface = occ.BRepAdaptor_Surface(face.shape)
+    if face.lie == "leaning" and surface.GetType() != occ.GeomAbs_Plane:
         points += inner_points(face.shape, surface)
     return np.array([(point.X(), point.Y()) for point in points]).reshape(-1, 2)
 
 
 def inner_points(face: Any, surface: Any) -> list[Any]:
     """Points of a grid over a surface that lie on the face."""
-    from OCP.BRepClass import BRepClass_FaceClassifier
-    from OCP.gp import gp_Pnt2d
-    from OCP.TopAbs import TopAbs_State
-
     points = []
     for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS):
         for v in np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS):
-            state = BRepClass_FaceClassifier(face, gp_Pnt2d(float(u), float(v)), 1e-7).State()
-            if state == TopAbs_State.TopAbs_IN:
+            state = occ.BRepClass_FaceClassifier(face, occ.gp_Pnt2d(float(u), float(v)), 1e-7).State()
+            if state == occ.TopAbs_IN:
                 points.append(surface.Value(float(u), float(v)))
     return points

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from workhold.conventions import ALIGNED, SHORTEST
 from workhold.files.step.edge_curves import Found, Point3, crossing, curve_point, extremes, height
 from workhold.files.step.faces import SolidFace, surface_of
+from workhold.files.step.library import occ
 from workhold.geometry.segment import Arc, Line
 
 __all__ = ["folds", "is_upright", "turned_cuts", "turned_folds", "whole_circle"]
@@ -33,18 +34,16 @@ Array = NDArray[np.float64]
 
 def folds(face: SolidFace) -> list[Found]:
     """Where a leaning face stands upright, seen from above; more of it than the face has does no harm."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     surface = surface_of(face.shape)
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Plane:
+    if kind == occ.GeomAbs_Plane:
         return []
-    if kind == Type.GeomAbs_Sphere:
+    if kind == occ.GeomAbs_Sphere:
         ball = surface.Sphere()
         return [whole_circle(ball.Location(), ball.Radius())]
-    if kind in (Type.GeomAbs_Cylinder, Type.GeomAbs_Cone):
-        return list(ruled_folds(surface, kind == Type.GeomAbs_Cylinder))
-    if kind == Type.GeomAbs_Torus:
+    if kind in (occ.GeomAbs_Cylinder, occ.GeomAbs_Cone):
+        return list(ruled_folds(surface, kind == occ.GeomAbs_Cylinder))
+    if kind == occ.GeomAbs_Torus:
         ring = surface.Torus()
         axis = ring.Axis().Direction()
         if hypot(axis.X(), axis.Y()) <= ALIGNED:
@@ -52,7 +51,7 @@ def folds(face: SolidFace) -> list[Found]:
             return [whole_circle(ring.Location(), radius) for radius in radii if radius > SHORTEST]
         if abs(axis.Z()) <= ALIGNED:
             return lying_ring_folds(ring)
-    if kind == Type.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
+    if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
         return turned_folds(surface)
     return free_folds(surface)
 
@@ -117,9 +116,7 @@ def free_folds(surface: Any, steps: int = 25) -> list[Found]:
 
 def normal_height(surface: Any, u: float, v: float) -> float:
     """The z of a surface's normal, of any length."""
-    from OCP.gp import gp_Pnt, gp_Vec
-
-    point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
+    point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
     surface.D1(float(u), float(v), point, along_u, along_v)
     return float(along_u.X() * along_v.Y() - along_u.Y() * along_v.X())
 

@@ -28,9 +28,9 @@ from workhold.files.step.bands import Walls
 from workhold.files.step.edge_curves import EdgeCurve, Found, edge_curves
 from workhold.files.step.faces import SolidFace, plane_height, solid_faces
 from workhold.files.step.folds import folds
+from workhold.files.step.library import bounding_box, occ, sub_shapes
 from workhold.files.step.plane_faces import PlaneFaces
 from workhold.files.step.projected import FLAT, ProjectedCurves, other_curve, projected_curves, refuse_others
-from workhold.files.step.solids import bounding_box, sub_shapes
 from workhold.files.step.strips import Strip, strips_of_loop
 from workhold.geometry.segment import Point
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
@@ -166,23 +166,17 @@ class StandingSolid:
 
 def standing(shape: Any) -> StandingSolid:
     """A solid moved so that its lowest point is at height 0, and turned right side out."""
-    from OCP.BRepLib import BRepLib
-    from OCP.gp import gp_Trsf, gp_Vec
-    from OCP.TopLoc import TopLoc_Location
-
     shape = sub_shapes(shape, "SOLID")[0]
-    BRepLib.OrientClosedSolid_s(shape)
-    move = gp_Trsf()
-    move.SetTranslation(gp_Vec(0.0, 0.0, -foot_height(shape)))
-    return StandingSolid(shape.Moved(TopLoc_Location(move)))
+    occ.BRepLib.OrientClosedSolid_s(shape)
+    move = occ.gp_Trsf()
+    move.SetTranslation(occ.gp_Vec(0.0, 0.0, -foot_height(shape)))
+    return StandingSolid(shape.Moved(occ.TopLoc_Location(move)))
 
 
 def foot_height(shape: Any) -> float:
     """The height of a shape's lowest point in mm, with the very number of a level face that lies there."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-
     low = bounding_box(shape)[0][2]
-    level = [plane_height(BRepAdaptor_Surface(face)) for face in sub_shapes(shape, "FACE")]
+    level = [plane_height(occ.BRepAdaptor_Surface(face)) for face in sub_shapes(shape, "FACE")]
     return min((z for z in level if z is not None and z - low <= SAME_HEIGHT), default=low)
 
 
@@ -210,11 +204,9 @@ class Material:
     classifier: Any = field(init=False, default=None)
 
     def __attrs_post_init__(self) -> None:
-        from OCP.IntCurvesFace import IntCurvesFace_Intersector
-
         self.flat, others = PlaneFaces.of(self.faces, self.edges)
         met = [self.faces[k] for k in others]
-        self.meeting = [IntCurvesFace_Intersector(face.shape, ON_FACE) for face in met]
+        self.meeting = [occ.IntCurvesFace_Intersector(face.shape, ON_FACE) for face in met]
         self.boxes = np.array([(*face.box, face.low, face.high) for face in met]).reshape(-1, 6)
         self.below = min(face.low for face in self.faces) - 1.0
 
@@ -237,15 +229,11 @@ class Material:
 
     def is_inside(self, point: Point, z: float) -> bool:
         """Whether the solid has material at a point of the plane and a height."""
-        from OCP.BRepClass3d import BRepClass3d_SolidClassifier
-        from OCP.gp import gp_Pnt
-        from OCP.TopAbs import TopAbs_State
-
         if self.classifier is None:
             # It looks at the whole solid first, which takes much longer than each of its answers.
-            self.classifier = BRepClass3d_SolidClassifier(self.shape)
-        self.classifier.Perform(gp_Pnt(*point, z), 1e-7)
-        return bool(self.classifier.State() == TopAbs_State.TopAbs_IN)
+            self.classifier = occ.BRepClass3d_SolidClassifier(self.shape)
+        self.classifier.Perform(occ.gp_Pnt(*point, z), 1e-7)
+        return bool(self.classifier.State() == occ.TopAbs_IN)
 
     def heights(self, point: Point) -> list[float]:
         """Sorted z in mm at which the upright line through a point passes a face."""
@@ -262,12 +250,10 @@ class Material:
 
     def hits_of(self, point: Point, index: int) -> list[float]:
         """The z in mm at which the upright line through a point passes a face that is not flat."""
-        from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
-
         key = point, index
         if key not in self.hits:
             face = self.meeting[index]
-            face.Perform(gp_Lin(gp_Pnt(*point, self.below), gp_Dir(0.0, 0.0, 1.0)), -1.0, 1e7)
+            face.Perform(occ.gp_Lin(occ.gp_Pnt(*point, self.below), occ.gp_Dir(0.0, 0.0, 1.0)), -1.0, 1e7)
             met = range(1, face.NbPnt() + 1) if face.IsDone() else ()
             self.hits[key] = [self.below + face.WParameter(k) for k in met]
         return self.hits[key]

@@ -7,16 +7,36 @@ libGL and libX11.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from workhold.errors import InputError
 
-__all__ = ["REQUIREMENT", "load_step_library"]
+__all__ = ["REQUIREMENT", "bounding_box", "guarded", "load_step_library", "occ", "sub_shapes"]
+
+T = TypeVar("T")
+# Its x, y and z in mm.
+Corner = tuple[float, float, float]
 
 # What the extra asks for; nobody else's distribution can be had by its name.
 REQUIREMENT = "cadquery-ocp-novtk>=8"
 
 # Debian's packages of the shared libraries that the wheel expects from the system.
 SYSTEM_PACKAGES = {"libGL.so.1": "libgl1", "libX11.so.6": "libx11-6"}
+
+
+class OpenCascade:
+    """All classes, functions and constants of the library by their names, of which the first word is a package."""
+
+    def __getattr__(self, name: str) -> Any:
+        import OCP
+
+        found = getattr(getattr(OCP, name.partition("_")[0]), name)
+        setattr(self, name, found)
+        return found
+
+
+occ = OpenCascade()
 
 
 def load_step_library() -> None:
@@ -47,3 +67,46 @@ def remedy(error: ImportError) -> str:
     return (
         f"the library for STEP files cannot be loaded ({why}): pip install --force-reinstall '{REQUIREMENT}'."
     )
+
+
+def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
+    """What some reading returns; ``further`` are errors that come of a damaged file as well.
+
+    Raises
+    ------
+    InputError
+        Its own, and one where the library or the arithmetic after it fails over what it was given.
+    """
+    try:
+        return read()
+    except InputError:
+        raise
+    except Exception as error:
+        damaged = isinstance(error, ArithmeticError | LookupError | RuntimeError | TypeError)
+        if not (damaged or isinstance(error, further)) and not type(error).__module__.startswith("OCP"):
+            raise
+        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
+
+
+def sub_shapes(shape: Any, kind: str) -> list[Any]:
+    """The parts of one kind of a shape, each as often as it is used.
+
+    Parameters
+    ----------
+    kind : "SOLID", "FACE", "WIRE", "EDGE" or "VERTEX".
+    """
+    cast = getattr(occ.TopoDS, kind.capitalize())
+    explorer = occ.TopExp_Explorer(shape, getattr(occ, f"TopAbs_{kind}"))
+    found = []
+    while explorer.More():
+        found.append(cast(explorer.Current()))
+        explorer.Next()
+    return found
+
+
+def bounding_box(shape: Any) -> tuple[Corner, Corner]:
+    """Both corners of a shape's bounding box in mm, to rounding."""
+    box = occ.Bnd_Box()
+    occ.BRepBndLib.AddOptimal_s(shape, box, False, False)
+    low, high = box.CornerMin(), box.CornerMax()
+    return (low.X(), low.Y(), low.Z()), (high.X(), high.Y(), high.Z())

@@ -21,6 +21,7 @@ from workhold.conventions import SHORTEST
 from workhold.files.step.edge_curves import EdgeCurve
 from workhold.files.step.faces import SolidFace, surface_of
 from workhold.files.step.folds import is_upright
+from workhold.files.step.library import occ
 from workhold.geometry.segment import Arc, Line, Point
 
 __all__ = ["PlaneFaces"]
@@ -155,10 +156,8 @@ class PlaneFaces:
 
 def plane_of(face: SolidFace) -> Sheet | None:
     """A face's plane, see :class:`PlaneFaces`; None for an upright face and for one that is not flat."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     surface: Any = surface_of(face.shape)
-    if face.lie == "upright" or surface.GetType() != Type.GeomAbs_Plane:
+    if face.lie == "upright" or surface.GetType() != occ.GeomAbs_Plane:
         return None
     if face.lie == "level":
         return face.low, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -169,11 +168,8 @@ def plane_of(face: SolidFace) -> Sheet | None:
 
 def cone_of(face: SolidFace) -> Sheet | None:
     """A face's cone, see :class:`PlaneFaces`; None for others and for both sides of a tip."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
-    surface = BRepAdaptor_Surface(face.shape)
-    if surface.GetType() != Type.GeomAbs_Cone or not is_upright(surface.Cone().Axis()):
+    surface = occ.BRepAdaptor_Surface(face.shape)
+    if surface.GetType() != occ.GeomAbs_Cone or not is_upright(surface.Cone().Axis()):
         return None
     cone = surface.Cone()
     ends = surface.FirstVParameter(), surface.LastVParameter()

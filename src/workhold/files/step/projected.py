@@ -20,7 +20,7 @@ from workhold.errors import InputError
 from workhold.files.step.edge_curves import EdgeCurve, Found, curve_of
 from workhold.files.step.faces import SLOPING, SolidFace, surface_of
 from workhold.files.step.folds import is_upright, turned_cuts, whole_circle
-from workhold.files.step.solids import sub_shapes
+from workhold.files.step.library import occ, sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = [
@@ -101,29 +101,27 @@ def projected_curves(
 
 def level_cuts(face: SolidFace, z: float) -> list[Found]:
     """The curves in which a level plane meets a leaning face's surface, seen from above."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     surface = surface_of(face.shape)
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Plane:
+    if kind == occ.GeomAbs_Plane:
         return plane_cut(surface.Plane(), face, z)
-    if kind == Type.GeomAbs_Sphere:
+    if kind == occ.GeomAbs_Sphere:
         ball = surface.Sphere()
         square = ball.Radius() ** 2 - (z - ball.Location().Z()) ** 2
         return [whole_circle(ball.Location(), sqrt(square))] if square > SHORTEST**2 else []
-    if kind == Type.GeomAbs_Cylinder:
+    if kind == occ.GeomAbs_Cylinder:
         cylinder = surface.Cylinder()
         axis = cylinder.Axis().Direction()
         if abs(axis.Z()) <= ALIGNED:
             return lying_cut(surface, cylinder, z)
-    if kind == Type.GeomAbs_Cone:
+    if kind == occ.GeomAbs_Cone:
         cone = surface.Cone()
         axis = cone.Axis().Direction()
         if hypot(axis.X(), axis.Y()) <= ALIGNED:
             apex = cone.Apex()
             radius = abs((z - apex.Z()) * sin(cone.SemiAngle()) / cos(cone.SemiAngle()))
             return [whole_circle(apex, radius)] if radius > SHORTEST else []
-    if kind == Type.GeomAbs_Torus:
+    if kind == occ.GeomAbs_Torus:
         ring = surface.Torus()
         axis = ring.Axis().Direction()
         if hypot(axis.X(), axis.Y()) <= ALIGNED:
@@ -131,7 +129,7 @@ def level_cuts(face: SolidFace, z: float) -> list[Found]:
             reach = sqrt(max(square, 0.0))
             radii = {ring.MajorRadius() + reach, ring.MajorRadius() - reach} if square >= 0 else set()
             return [whole_circle(ring.Location(), radius) for radius in radii if radius > SHORTEST]
-    if kind == Type.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
+    if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
         return turned_cuts(surface, z)
     return cut_edges(face.shape, z)
 
@@ -171,14 +169,10 @@ def lying_cut(surface: Any, cylinder: Any, z: float) -> list[Found]:
 
 def cut_edges(shape: Any, z: float) -> list[Found]:
     """The curves in which a level plane cuts a face of any surface, by Open CASCADE."""
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Section
-    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
-
-    cut = BRepAlgoAPI_Section(shape, gp_Pln(gp_Pnt(0.0, 0.0, z), gp_Dir(0.0, 0.0, 1.0)))
+    cut = occ.BRepAlgoAPI_Section(shape, occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0)))
     found: list[Found] = []
     for edge in sub_shapes(cut.Shape(), "EDGE"):
-        curve = curve_of(0, BRepAdaptor_Curve(edge))
+        curve = curve_of(0, occ.BRepAdaptor_Curve(edge))
         if curve.segment is not None:
             found.append(curve.segment)
         elif curve.is_other:

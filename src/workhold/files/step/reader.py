@@ -10,9 +10,9 @@ they are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import inf
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from attrs import astuple, evolve
@@ -24,20 +24,18 @@ from workhold.files.outline.chain import Chain, CurveReading, Drawing
 from workhold.files.questions import AXIS
 from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
 from workhold.files.step.faces import Layer, SolidFace, layers_of, solid_faces
-from workhold.files.step.library import load_step_library
+from workhold.files.step.library import bounding_box, guarded, load_step_library, occ, sub_shapes
 from workhold.files.step.regions import Borders, area_of, borders, level_region, section, union
 from workhold.files.step.solids import (
     AXES,
     Solid,
     along,
     axis_named,
-    bounding_box,
     chosen_solid,
     lost_remarks,
     numbered,
     read_solids,
     solid_remarks,
-    sub_shapes,
 )
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
@@ -53,9 +51,6 @@ __all__ = [
     "read_step",
     "read_step_apart",
 ]
-
-
-T = TypeVar("T")
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
@@ -102,25 +97,6 @@ def plain(content: bytes, **options: Any) -> Any:
         As :func:`read_step`, and where the library or the arithmetic after it fails over what it was given.
     """
     return guarded(lambda: plain_drawing(read_step(content, **options)))
-
-
-def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
-    """What some reading returns; ``further`` are errors that come of a damaged file as well.
-
-    Raises
-    ------
-    InputError
-        Its own, and one where the library or the arithmetic after it fails over what it was given.
-    """
-    try:
-        return read()
-    except InputError:
-        raise
-    except Exception as error:
-        damaged = isinstance(error, ArithmeticError | LookupError | RuntimeError | TypeError)
-        if not (damaged or isinstance(error, further)) and not type(error).__module__.startswith("OCP"):
-            raise
-        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
 
 
 def plain_drawing(drawing: Drawing) -> Any:
@@ -348,13 +324,10 @@ def read_shapes(
 
 def lie_level(faces: Sequence[Any]) -> bool:
     """Whether faces are flat and level, all at one height."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType
-
     heights = []
     for face in faces:
-        surface = BRepAdaptor_Surface(face)
-        if surface.GetType() != GeomAbs_SurfaceType.GeomAbs_Plane:
+        surface = occ.BRepAdaptor_Surface(face)
+        if surface.GetType() != occ.GeomAbs_Plane:
             return False
         normal = surface.Plane().Axis().Direction()
         if max(abs(normal.X()), abs(normal.Y())) > ALIGNED:

@@ -18,7 +18,7 @@ from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, CurveReading, arc_bulges, rebulged
 from workhold.files.outline.curves import CurveReader
 from workhold.files.questions import SECTION
-from workhold.files.step.solids import bounding_box, sub_shapes
+from workhold.files.step.library import bounding_box, occ, sub_shapes
 from workhold.geometry.rational import Pieces, spline_pieces
 from workhold.geometry.segment import Point
 
@@ -33,17 +33,12 @@ def edge_curve(edge: Any) -> Pieces:
     InputError
         Where the library knows no curve of the edge, or the curve is no spline that can be used.
     """
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-    from OCP.Geom import Geom_TrimmedCurve
-    from OCP.GeomConvert import GeomConvert
-
-    adaptor = BRepAdaptor_Curve(edge)
+    adaptor = occ.BRepAdaptor_Curve(edge)
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
-    curve = BRep_Tool.Curve_s(edge, first, last)
+    curve = occ.BRep_Tool.Curve_s(edge, first, last)
     if curve is None:
         raise InputError("the outline has an edge without a curve: repair the solid in the CAD program.")
-    spline = GeomConvert.CurveToBSplineCurve_s(Geom_TrimmedCurve(curve, first, last))
+    spline = occ.GeomConvert.CurveToBSplineCurve_s(occ.Geom_TrimmedCurve(curve, first, last))
     if spline.IsPeriodic():
         spline.SetNotPeriodic()
     numbers = range(1, spline.NbPoles() + 1)
@@ -89,23 +84,18 @@ def section(solid: Any, z: float) -> Any:
     InputError
         When the library finds none, though the solid reaches from below z to above.
     """
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
-    from OCP.TopLoc import TopLoc_Location
-
     (x0, y0, _), (x1, y1, _) = bounding_box(solid)
     more = max(x1 - x0, y1 - y0)
-    plane = gp_Pln(gp_Pnt(0.0, 0.0, z), gp_Dir(0.0, 0.0, 1.0))
-    sheet = BRepBuilderAPI_MakeFace(plane, x0 - more, x1 + more, y0 - more, y1 + more).Face()
-    cut = BRepAlgoAPI_Common(sheet, solid).Shape()
+    plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
+    sheet = occ.BRepBuilderAPI_MakeFace(plane, x0 - more, x1 + more, y0 - more, y1 + more).Face()
+    cut = occ.BRepAlgoAPI_Common(sheet, solid).Shape()
     if not sub_shapes(cut, "FACE"):
         raise InputError(
             "the solid cannot be cut by a plane: repair it in the CAD program and export it again."
         )
-    move = gp_Trsf()
-    move.SetTranslation(gp_Vec(0.0, 0.0, -z))
-    return cut.Moved(TopLoc_Location(move))
+    move = occ.gp_Trsf()
+    move.SetTranslation(occ.gp_Vec(0.0, 0.0, -z))
+    return cut.Moved(occ.TopLoc_Location(move))
 
 
 def level_region(face: Any, z: float, upward: bool) -> Any:
@@ -118,20 +108,14 @@ def level_region(face: Any, z: float, upward: bool) -> Any:
     InputError
         As :func:`section`.
     """
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
-    from OCP.gp import gp_Vec
-
     height = 1.0 if upward else -1.0
-    return section(BRepPrimAPI_MakePrism(face, gp_Vec(0.0, 0.0, height)).Shape(), z + height / 2)
+    return section(occ.BRepPrimAPI_MakePrism(face, occ.gp_Vec(0.0, 0.0, height)).Shape(), z + height / 2)
 
 
 def area_of(region: Any) -> float:
     """Area in mm²."""
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(region, properties)
+    properties = occ.GProp_GProps()
+    occ.BRepGProp.SurfaceProperties_s(region, properties)
     return abs(float(properties.Mass()))
 
 
@@ -145,16 +129,14 @@ def union(regions: Sequence[Any]) -> Any:
     InputError
         When the areas do not add up, so that the library's union cannot be right.
     """
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
-
     ordered = sorted(regions, key=area_of, reverse=True)
     whole = ordered[0]
     for region in ordered[1:]:
-        more = area_of(BRepAlgoAPI_Cut(region, whole).Shape())
+        more = area_of(occ.BRepAlgoAPI_Cut(region, whole).Shape())
         size = area_of(whole)
         if more <= 1e-9 * size:
             continue
-        fuse = BRepAlgoAPI_Fuse(whole, region)
+        fuse = occ.BRepAlgoAPI_Fuse(whole, region)
         fuse.SimplifyResult()
         whole = fuse.Shape()
         if abs(area_of(whole) - size - more) > 1e-6 * size:
@@ -194,9 +176,7 @@ def borders(region: Any, fit: float | None = None) -> Borders:
 
 def wire_edges(wire: Any) -> list[Any]:
     """The edges of a wire in running order."""
-    from OCP.BRepTools import BRepTools_WireExplorer
-
-    explorer = BRepTools_WireExplorer(wire)
+    explorer = occ.BRepTools_WireExplorer(wire)
     edges = []
     while explorer.More():
         edges.append(explorer.Current())
@@ -216,19 +196,15 @@ def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
     InputError
         For an edge that cannot be read.
     """
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-    from OCP.GeomAbs import GeomAbs_CurveType
-    from OCP.TopAbs import TopAbs_Orientation
-
-    curve = BRepAdaptor_Curve(edge)
+    curve = occ.BRepAdaptor_Curve(edge)
     first, last = curve.FirstParameter(), curve.LastParameter()
     kind = curve.GetType()
     name = None
-    if kind == GeomAbs_CurveType.GeomAbs_Line:
+    if kind == occ.GeomAbs_Line:
         points, bulges = points_of(curve, [first, last]), [0.0]
         if dist(points[0], points[-1]) < SHORTEST:
             return None
-    elif kind == GeomAbs_CurveType.GeomAbs_Circle:
+    elif kind == occ.GeomAbs_Circle:
         up = curve.Circle().Axis().Direction().Z()
         bulges = arc_bulges((last - first) * (1.0 if up > 0 else -1.0))
         points = points_of(curve, list(np.linspace(first, last, len(bulges) + 1)))
@@ -237,7 +213,7 @@ def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
         if read is None:
             return None
         name, points, bulges = label, list(read[0]), list(read[1])
-    if edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
+    if edge.Orientation() == occ.TopAbs_REVERSED:
         points, bulges = points[::-1], [-bulge if bulge else 0.0 for bulge in reversed(bulges)]
     return points, bulges, name
 

@@ -5,14 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from difflib import get_close_matches
+from io import BytesIO
 from math import isfinite
 from typing import Any
 
-from attrs import evolve, frozen
+from attrs import astuple, evolve, frozen
 
-from workhold.errors import InputError, plain, shortened
+from workhold.errors import InputError, shortened
+from workhold.errors import plain as plain_text
+from workhold.files.apart import run_apart
 from workhold.files.questions import PART_NUMBER
-from workhold.files.step.body_names import bounding_box, named_shapes, sub_shapes
+from workhold.files.step.body_names import named_shapes
+from workhold.files.step.library import bounding_box, guarded, load_step_library, occ, sub_shapes
 from workhold.limits import MOST_LENGTH
 from workhold.model.solid import FileSolid
 
@@ -21,13 +25,14 @@ __all__ = [
     "Solid",
     "along",
     "axis_named",
-    "bounding_box",
     "chosen_solid",
+    "listed_solids",
     "lost_remarks",
     "numbered",
+    "plain",
+    "prepare",
     "read_solids",
     "solid_remarks",
-    "sub_shapes",
 ]
 
 # What becomes x, y and up for each axis: the part is seen from the axis's far end, right-handed.
@@ -85,6 +90,33 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
         held = f"surfaces ({sheets}) but no solid" if sheets else "no solid"
         raise InputError(f"the STEP file holds {held}: export the part as a closed solid.")
     return solids
+
+
+def listed_solids(content: bytes) -> tuple[FileSolid, ...]:
+    """The solids of the bytes of a STEP file, read in a process of its own.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_solids`, and for a file that the process does not survive.
+    """
+    return tuple(FileSolid(*one) for one in run_apart(__name__, content, {}, "the STEP file"))
+
+
+def prepare() -> None:
+    """Loads the library, see :func:`workhold.files.apart.run_apart`."""
+    load_step_library()
+
+
+def plain(content: bytes) -> Any:
+    """The solids as plain data.
+
+    Raises
+    ------
+    InputError
+        As :func:`listed_solids`.
+    """
+    return guarded(lambda: [astuple(solid.listed) for solid in read_solids(content)], ValueError)
 
 
 def numbered(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, ...]:
@@ -146,20 +178,15 @@ def read_through(content: bytes) -> Any:
     InputError
         When the library cannot read it.
     """
-    from io import BytesIO
-
-    from OCP.IFSelect import IFSelect_ReturnStatus
-    from OCP.STEPControl import STEPControl_Reader
-
-    reader = STEPControl_Reader()
+    reader = occ.STEPControl_Reader()
     try:
         status = reader.ReadStream("part", BytesIO(content))
-        is_read = status == IFSelect_ReturnStatus.IFSelect_RetDone and reader.TransferRoots()
+        is_read = status == occ.IFSelect_RetDone and reader.TransferRoots()
         if is_read and not reader.OneShape().IsNull():
             return reader
     except Exception as error:  # a damaged file may fail anywhere inside the library
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
-    if status != IFSelect_ReturnStatus.IFSelect_RetDone:
+    if status != occ.IFSelect_RetDone:
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.")
     raise InputError("the STEP file holds no solid: export the part as a closed solid.")
 
@@ -172,11 +199,8 @@ def measured(shape: Any) -> Solid:
     InputError
         When it has no volume, or coordinates that leave no digits.
     """
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties)
+    properties = occ.GProp_GProps()
+    occ.BRepGProp.VolumeProperties_s(shape, properties)
     volume = abs(properties.Mass())
     low, high = bounding_box(shape)
     if not all(isfinite(value) and abs(value) <= MOST_LENGTH for value in (*low, *high)):
@@ -215,6 +239,7 @@ def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
     if len(solids) == 1:
         raise InputError(f"the STEP file holds only one solid: leave {PART_NUMBER} out.")
     asked = " ".join(name.split())
+    shown = shortened(plain_text(asked))
     found = [solid for solid in solids if solid.name == asked]
     found = found or [solid for solid in solids if solid.name.casefold() == asked.casefold()]
     if len(found) == 1:
@@ -230,11 +255,11 @@ def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
     if not names:
         raise InputError(
             f"The solids of the file have no names: give a number from 1 to {len(solids)} instead of "
-            f"{shortened(plain(asked))!r}."
+            f"{shown!r}."
         )
     close = get_close_matches(asked.casefold(), list(names), SOLID_LIST, 0.5) or list(names)[:SOLID_LIST]
     raise InputError(
-        f"No solid of the file is called {shortened(plain(asked))!r}: give a number, or a name such as "
+        f"No solid of the file is called {shown!r}: give a number, or a name such as "
         f"{', '.join(names[one] for one in close)}."
     )
 
@@ -265,9 +290,7 @@ def axis_named(axis: str | None) -> str:
 
 def along(shape: Any, axis: str) -> Any:
     """A shape turned so that an axis of the file points up; see :func:`turn_along`."""
-    from OCP.TopLoc import TopLoc_Location
-
-    return shape.Moved(TopLoc_Location(turn_along(axis)))
+    return shape.Moved(occ.TopLoc_Location(turn_along(axis)))
 
 
 def turn_along(axis: str) -> Any:
@@ -275,11 +298,9 @@ def turn_along(axis: str) -> Any:
 
     With a minus the part lies on its other side, turned over like a page: what pointed to x points to -x.
     """
-    from OCP.gp import gp_Trsf
-
     signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
     sources = zip(signs, AXES[axis.lstrip("-")], strict=True)
     rows = [[sign if column == source else 0.0 for column in range(3)] + [0.0] for sign, source in sources]
-    turn = gp_Trsf()
+    turn = occ.gp_Trsf()
     turn.SetValues(*rows[0], *rows[1], *rows[2])
     return turn
