@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.errors import InputError
-from workhold.geometry.segment import Arc, Point, Segment
+from workhold.geometry.segment import Arc, Point, Segment, segment_from_bulge
 
 __all__ = [
     "Pieces",
@@ -138,10 +138,6 @@ def ellipse_pieces(center: Point, major: Point, minor: Point, start: float, swee
 
 def arc_pieces(start: Point, end: Point, bulge: float) -> Pieces:
     """The pieces of the arc of a bulge from one point to another, or of a line for a bulge of 0."""
-    if bulge == 0.0:
-        return polynomial_pieces([start, end])
-    from workhold.geometry.segment import Arc, segment_from_bulge
-
     segment = segment_from_bulge(start, end, bulge)
     if not isinstance(segment, Arc):
         return polynomial_pieces([start, end])
@@ -304,7 +300,7 @@ ROUNDING = 1e-11
 
 
 @lru_cache(maxsize=64)
-def product_table(n: int, m: int) -> tuple[Array, ...]:
+def product_table(n: int, m: int) -> Array:
     """Weights (n + 1, m + 1) of the products of Bernstein coefficients of degrees n and m."""
     i, j = np.arange(n + 1)[:, None], np.arange(m + 1)[None, :]
     weights = np.array(
@@ -312,14 +308,13 @@ def product_table(n: int, m: int) -> tuple[Array, ...]:
     )
     place = np.zeros((n + m + 1, n + 1, m + 1))
     place[i + j, i, j] = weights
-    return (place.reshape(n + m + 1, -1),)
+    return place.reshape(n + m + 1, -1)
 
 
 def product(a: Array, b: Array) -> Array:
     """(P, n + m + 1) Bernstein coefficients of the products of (P, n + 1) and (P, m + 1) ones."""
-    (table,) = product_table(a.shape[1] - 1, b.shape[1] - 1)
     outer: Array = (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
-    return outer @ table.T
+    return outer @ product_table(a.shape[1] - 1, b.shape[1] - 1).T
 
 
 def turning(u: Array, v: Array) -> Array:

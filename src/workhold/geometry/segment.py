@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import atan, atan2, cos, hypot, pi, sin, sqrt
+from math import atan, atan2, cos, dist, hypot, pi, sin, sqrt
 
 import numpy as np
 from attrs import evolve, frozen
@@ -35,12 +35,13 @@ __all__ = [
     "circle_circle",
     "common_points",
     "contains_parameter",
-    "line_circle",
     "segment_from_bulge",
     "segment_rows",
 ]
 
 Point = tuple[float, float]
+# mm. A line and a circle, or two circles, that miss each other by no more have one point in common.
+TOUCH = 1e-9
 
 
 @frozen
@@ -58,7 +59,7 @@ class Line:
     @property
     def length(self) -> float:
         """Length in mm."""
-        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+        return dist(self.start, self.end)
 
     @property
     def half_extent(self) -> float:
@@ -253,33 +254,31 @@ def line_line(a: Line, b: Line) -> list[Point]:
     return [(ax + s * atx, ay + s * aty)]
 
 
-def line_circle(line: Line, center: Point, radius: float, tolerance: float = 1e-9) -> list[Point]:
-    """Common points of a line and a circle; a touch within the tolerance in mm gives one point."""
+def line_circle(line: Line, center: Point, radius: float) -> list[Point]:
+    """Common points of a line and a circle; a touch within ``TOUCH`` gives one point."""
     (px, py), (tx, ty) = line.middle, line.tangent
     dx, dy = center[0] - px, center[1] - py
     along = dx * tx + dy * ty
     across = abs(dx * ty - dy * tx)
     foot = (px + along * tx, py + along * ty)
     if across >= radius:
-        return [foot] if across - radius <= tolerance else []
+        return [foot] if across - radius <= TOUCH else []
     half = sqrt((radius - across) * (radius + across))
     return [(foot[0] - half * tx, foot[1] - half * ty), (foot[0] + half * tx, foot[1] + half * ty)]
 
 
-def circle_circle(
-    center_a: Point, radius_a: float, center_b: Point, radius_b: float, tolerance: float = 1e-9
-) -> list[Point]:
-    """Common points of two circles; a touch within the tolerance in mm gives one, equal circles none."""
+def circle_circle(center_a: Point, radius_a: float, center_b: Point, radius_b: float) -> list[Point]:
+    """Common points of two circles; a touch within ``TOUCH`` gives one, equal circles none."""
     dx, dy = center_b[0] - center_a[0], center_b[1] - center_a[1]
     distance = hypot(dx, dy)
-    if distance <= tolerance:
+    if distance <= TOUCH:
         return []
     ux, uy = dx / distance, dy / distance
     along = (distance + (radius_a - radius_b) * (radius_a + radius_b) / distance) / 2
     square = (radius_a - along) * (radius_a + along)
     if square <= 0:
         gap = max(distance - radius_a - radius_b, abs(radius_a - radius_b) - distance)
-        if gap > tolerance:
+        if gap > TOUCH:
             return []
         along = radius_a if along > 0 else -radius_a
         return [(center_a[0] + along * ux, center_a[1] + along * uy)]
@@ -305,14 +304,10 @@ def contains_parameter(segment: Segment, parameter: float, tolerance: float) -> 
 
 def distance_to_segment(point: Point, segment: Segment) -> float:
     """Distance in mm from a point to a segment."""
-    parameter = segment.parameter(point)
-    parameter = min(max(parameter, -segment.half_extent), segment.half_extent)
-    x, y = segment.at(parameter)
-    nearest = hypot(point[0] - x, point[1] - y)
-    if isinstance(segment, Arc) and abs(segment.parameter(point)) > segment.half_extent:
-        x, y = segment.at(-parameter)
-        nearest = min(nearest, hypot(point[0] - x, point[1] - y))
-    return nearest
+    parameter, half = segment.parameter(point), segment.half_extent
+    if abs(parameter) <= half:
+        return dist(point, segment.at(parameter))
+    return min(dist(point, segment.at(end)) for end in (-half, half))
 
 
 def common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
@@ -328,10 +323,9 @@ def common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
     ]
     points += [p for p in (a.start, a.end) if distance_to_segment(p, b) <= tolerance]
     points += [p for p in (b.start, b.end) if distance_to_segment(p, a) <= tolerance]
-    if isinstance(a, Arc) and isinstance(b, Arc) and a.is_full and b.is_full:
-        apart = hypot(a.center[0] - b.center[0], a.center[1] - b.center[1])
-        if apart <= tolerance and abs(a.radius - b.radius) <= tolerance:
-            points.append(a.start)
+    whole = isinstance(a, Arc) and isinstance(b, Arc) and a.is_full and b.is_full
+    if whole and dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance:
+        points.append(a.start)
     return points
 
 
@@ -375,6 +369,11 @@ class Box:
     def center(self) -> Point:
         """The middle."""
         return (self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2
+
+    @property
+    def corners(self) -> list[Point]:
+        """The corners, counter-clockwise from the lower left."""
+        return [(self.x0, self.y0), (self.x1, self.y0), (self.x1, self.y1), (self.x0, self.y1)]
 
     def grown(self, margin: float) -> Box:
         """The box with every side moved out."""

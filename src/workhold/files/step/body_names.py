@@ -13,8 +13,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-from attrs import frozen
-
 from workhold.errors import plain, shortened
 from workhold.files.step.library import occ, sub_shapes
 
@@ -26,14 +24,6 @@ NO_NAME = re.compile(
     r"(?:none|unnamed|no_?name|solid|compound|shell|shape|body|\d+|nauo\d*|=>\[[\d:]*\]|open cascade .*)?",
     re.IGNORECASE,
 )
-
-
-@frozen
-class ProductPlace:
-    """A product where it is used: its shape there, and names from the outermost assembly inward."""
-
-    shape: Any
-    names: tuple[str, ...]
 
 
 def named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
@@ -54,9 +44,10 @@ def named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
         process = naming.ChangeReader().WS().TransferReader()
         found = []
         for label in children(occ.XCAFDoc_DocumentTool.ShapesLabel_s(document.Main())):
-            for place in places(label):
-                solids = sub_shapes(place.shape, "SOLID")
-                found += [(solid, name_of(solid, place, len(solids), process)) for solid in solids]
+            if occ.XCAFDoc_ShapeTool.IsFree_s(label):
+                for product, names in places_under(label, occ.TopLoc_Location(), ()):
+                    solids = sub_shapes(product, "SOLID")
+                    found += [(solid, name_of(solid, names, len(solids), process)) for solid in solids]
         wanted = Counter(map(position, sub_shapes(reader.OneShape(), "SOLID")))
         return found if Counter(position(solid) for solid, _ in found) == wanted else None
     return None
@@ -76,19 +67,17 @@ def children(label: Any) -> Iterator[Any]:
         at.Next()
 
 
-def places(label: Any) -> Iterator[ProductPlace]:
-    """Every place in which a product without others in it is used, of a label that nothing else uses."""
-    if occ.XCAFDoc_ShapeTool.IsFree_s(label):
-        yield from places_under(label, occ.TopLoc_Location(), ())
-
-
-def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[ProductPlace]:
-    """The places of a label and all below it.
+def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[tuple[Any, tuple[str, ...]]]:
+    """Every place in which a product without others in it is used, at a label or below.
 
     Parameters
     ----------
     moved : where the assemblies around it place it.
     names : of these assemblies.
+
+    Returns
+    -------
+    The product's shape there, and names from the outermost assembly inward.
     """
     product = label
     if occ.XCAFDoc_ShapeTool.IsReference_s(label):
@@ -97,7 +86,7 @@ def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[Pro
         moved = moved.Multiplied(occ.XCAFDoc_ShapeTool.GetLocation_s(label))
     names = (*names, called(label), called(product))
     if not occ.XCAFDoc_ShapeTool.IsAssembly_s(product):
-        yield ProductPlace(occ.XCAFDoc_ShapeTool.GetShape_s(product).Moved(moved), names)
+        yield occ.XCAFDoc_ShapeTool.GetShape_s(product).Moved(moved), names
         return
     for below in children(product):
         if occ.XCAFDoc_ShapeTool.IsComponent_s(below):
@@ -107,9 +96,8 @@ def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[Pro
 def called(label: Any) -> str:
     """The name at a label; empty where it says nothing."""
     name = occ.TDataStd_Name()
-    return (
-        shown_name(name.Get().ToExtString()) if label.FindAttribute(occ.TDataStd_Name.GetID_s(), name) else ""
-    )
+    has_name = label.FindAttribute(occ.TDataStd_Name.GetID_s(), name)
+    return shown_name(name.Get().ToExtString()) if has_name else ""
 
 
 def shown_name(name: str) -> str:
@@ -122,7 +110,7 @@ def shown_name(name: str) -> str:
     return "" if NO_NAME.fullmatch(words) else words
 
 
-def name_of(solid: Any, place: ProductPlace, count: int, process: Any) -> str:
+def name_of(solid: Any, names: tuple[str, ...], count: int, process: Any) -> str:
     """The name of a solid of a product that has so many solids."""
     own = ""
     with suppress(Exception):
@@ -131,6 +119,5 @@ def name_of(solid: Any, place: ProductPlace, count: int, process: Any) -> str:
             process.EntityFromShapeResult(solid.Located(occ.TopLoc_Location()), 1).Name().ToCString()
         )
     # The assembly of all says nothing about one of its solids.
-    nearest = place.names[2:] or place.names
-    of_product = next((name for name in reversed(nearest) if name), "")
+    of_product = next((name for name in reversed(names[2:] or names) if name), "")
     return of_product if count == 1 and of_product else own or of_product

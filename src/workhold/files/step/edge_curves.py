@@ -53,6 +53,8 @@ Known = tuple[float, float]
 # Steps of false position, at most, and of those that move the same end before the bracket is halved; half the
 # width of the last bracket, as a share of the first.
 STEPS, MOST_RUN, NARROW = 16, 3, 1e-12
+# Steps of the bisection after it.
+BISECTIONS = 60
 
 
 @frozen
@@ -190,9 +192,7 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
     if isinstance(carrier, Line):
         segment: Segment = Line((px + low * tx, py + low * ty), (px + high * tx, py + high * ty))
     else:
-        half = (high - low) / 2
-        half = pi if half > pi - WHOLE_TURN else half
-        segment = Arc(carrier.center, carrier.radius, (low + high) / 2, half, 1.0)
+        segment = arc_over(carrier.center, carrier.radius, low, high)
     if segment.length < SHORTEST:
         return evolve(edge, segment=None, is_other=False)
     values = [(position_along(segment), along.tolist()), (height, edge.points[:, 2].tolist())]
@@ -222,7 +222,9 @@ def curve_of(face: int, curve: Any) -> EdgeCurve:
             return EdgeCurve(face, arc, parameters, points, False, curve)
     segment = flattened(points[:, :2])
     if segment is None:
-        return EdgeCurve(face, None, parameters, points, is_wide(points[:, :2]), curve)
+        # An upright edge is a single point.
+        is_wide = bool(np.ptp(points[:, :2], axis=0).max() > SHORTEST)
+        return EdgeCurve(face, None, parameters, points, is_wide, curve)
     more = [
         one
         for value in (position_along(segment), height)
@@ -233,11 +235,6 @@ def curve_of(face: int, curve: Any) -> EdgeCurve:
         points = points_along(curve, parameters)
         segment = flattened(points[:, :2]) or segment
     return EdgeCurve(face, segment, parameters, points, False, curve)
-
-
-def is_wide(points: NDArray[np.float64]) -> bool:
-    """Whether points (N, 2) are no single point; an upright edge is one."""
-    return bool(np.ptp(points, axis=0).max() > SHORTEST)
 
 
 def height(point: Point3) -> float:
@@ -288,15 +285,19 @@ def points_along(curve: Any, parameters: NDArray[np.float64]) -> NDArray[np.floa
     return np.array([curve_point(curve, float(t)) for t in parameters])
 
 
+def arc_over(center: Point, radius: float, low: float, high: float) -> Arc:
+    """The arc between two angles in radians; a whole circle where it lacks no more than rounding."""
+    half = (high - low) / 2
+    return Arc(center, radius, (low + high) / 2, pi if half > pi - WHOLE_TURN else half, 1.0)
+
+
 def level_arc(circle: Any, first: float, last: float, points: NDArray[np.float64]) -> Arc:
     """A level circle's arc between two parameters, seen from above."""
     center = circle.Location()
-    middle = points[len(points) // 2]
-    angle = atan2(middle[1] - center.Y(), middle[0] - center.X())
-    half = min((last - first) / 2, pi)
-    if half > pi - 1e-9:
-        half = pi
-    return Arc((center.X(), center.Y()), circle.Radius(), angle, half, 1.0)
+    x, y, _ = points[len(points) // 2]
+    middle, half = atan2(y - center.Y(), x - center.X()), (last - first) / 2
+    arc = arc_over((center.X(), center.Y()), circle.Radius(), -half, half)
+    return evolve(arc, mid_angle=middle)
 
 
 def flattened(points: NDArray[np.float64]) -> Segment | None:
@@ -320,23 +321,19 @@ def flattened(points: NDArray[np.float64]) -> Segment | None:
     if np.abs(radii - radius).max() > 1e-7 or radius > 1e5:
         return None
     angles = np.unwrap(np.arctan2(points[:, 1] - center[1], points[:, 0] - center[0]))
-    low, high = float(angles.min()), float(angles.max())
-    half = (high - low) / 2
-    half = pi if half > pi - 1e-9 else half
-    return Arc((float(center[0]), float(center[1])), radius, (low + high) / 2, half, 1.0)
+    return arc_over((float(center[0]), float(center[1])), radius, float(angles.min()), float(angles.max()))
 
 
-def crossing(value: Function, low: Known, high: Known, steps: int = 60) -> float:
+def crossing(value: Function, low: Known, high: Known) -> float:
     """The place at which a value that is below 0 at one end and not at the other passes 0.
 
     Parameters
     ----------
     low, high : both ends, the one with the value below 0 first; it may be the greater one.
-    steps : of bisection.
     """
     a, b = low[0], high[0]
     first, last = narrowed(value, low, high)
-    return sum(bisected(a, b, lambda t: value(t) >= 0.0, (first, last), steps)) / 2
+    return sum(bisected(a, b, lambda t: value(t) >= 0.0, (first, last), BISECTIONS)) / 2
 
 
 def bisected(

@@ -13,7 +13,7 @@ layer : a range of heights without a level face and without a leaning one inside
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise, product
 from math import hypot, tau
 from typing import Any, Literal
@@ -29,6 +29,8 @@ __all__ = [
     "SLOPING",
     "Layer",
     "SolidFace",
+    "is_level",
+    "is_upright",
     "layers_of",
     "lie_of",
     "plane_height",
@@ -133,24 +135,22 @@ def surface_of(face: Any) -> Any:
     if found is None or converter.Gap() > AS_QUADRIC:
         return surface
     quadric = occ.GeomAdaptor_Surface(found)
-    if quadric.GetType() == occ.GeomAbs_Plane:
-        return occ.GeomAdaptor_Surface(found, *plane_bounds(quadric.Plane().Position(), face))
-    if quadric.GetType() not in (occ.GeomAbs_Cylinder, occ.GeomAbs_Cone):
-        return quadric
-    place = (quadric.Cylinder() if quadric.GetType() == occ.GeomAbs_Cylinder else quadric.Cone()).Position()
-    return occ.GeomAdaptor_Surface(found, 0.0, tau, *span_along(place, place.Direction(), face))
-
-
-def plane_bounds(place: Any, face: Any) -> tuple[float, float, float, float]:
-    """The parameters over which a plane holds a face's box."""
-    return *span_along(place, place.XDirection(), face), *span_along(place, place.YDirection(), face)
+    kind = quadric.GetType()
+    if kind == occ.GeomAbs_Plane:
+        place = quadric.Plane().Position()
+        across = span_along(place, place.XDirection(), face)
+        return occ.GeomAdaptor_Surface(found, *across, *span_along(place, place.YDirection(), face))
+    if kind in (occ.GeomAbs_Cylinder, occ.GeomAbs_Cone):
+        place = (quadric.Cylinder() if kind == occ.GeomAbs_Cylinder else quadric.Cone()).Position()
+        return occ.GeomAdaptor_Surface(found, 0.0, tau, *span_along(place, place.Direction(), face))
+    return quadric
 
 
 def span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
     """How far a face's box reaches along a direction from a place, at least and at most."""
-    start, step = place.Location(), direction
+    start = place.Location()
     along = [
-        (x - start.X()) * step.X() + (y - start.Y()) * step.Y() + (z - start.Z()) * step.Z()
+        (x - start.X()) * direction.X() + (y - start.Y()) * direction.Y() + (z - start.Z()) * direction.Z()
         for x, y, z in product(*zip(*bounding_box(face), strict=True))
     ]
     return min(along), max(along)
@@ -190,16 +190,22 @@ def components(direction: Any, axis: int) -> tuple[float, float]:
     return abs(inward), hypot(*values)
 
 
+def grid(surface: Any) -> Iterator[tuple[float, float]]:
+    """Pairs of parameters all over a surface."""
+    us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS)
+    vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS)
+    return product(us.tolist(), vs.tolist())
+
+
 def sampled_normals(surface: Any) -> list[Any]:
     """Unit normals of a surface at a grid of points, without those where it has none."""
     normals = []
-    for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS):
-        for v in np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS):
-            point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
-            surface.D1(float(u), float(v), point, along_u, along_v)
-            normal = along_u.Crossed(along_v)
-            if normal.Magnitude() > 1e-12:
-                normals.append(occ.gp_Dir(normal))
+    for u, v in grid(surface):
+        point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
+        surface.D1(u, v, point, along_u, along_v)
+        normal = along_u.Crossed(along_v)
+        if normal.Magnitude() > 1e-12:
+            normals.append(occ.gp_Dir(normal))
     return normals
 
 
@@ -221,6 +227,16 @@ def kind_of(surface: Any, lie: Lie) -> str:
     return names.get(kind, "free-form surface")
 
 
+def is_upright(axis: Any) -> bool:
+    """Whether an axis of the library is parallel to z."""
+    return components(axis.Direction(), 2)[1] <= ALIGNED
+
+
+def is_level(axis: Any) -> bool:
+    """Whether an axis of the library is square to z."""
+    return components(axis.Direction(), 2)[0] <= ALIGNED
+
+
 def fold_of(surface: Any) -> float | None:
     """The height at which a leaning surface stands upright all along a horizontal line.
 
@@ -229,16 +245,10 @@ def fold_of(surface: Any) -> float | None:
     kind = surface.GetType()
     if kind == occ.GeomAbs_Sphere:
         return float(surface.Sphere().Location().Z())
-    if kind == occ.GeomAbs_Torus:
-        torus = surface.Torus()
-        return float(torus.Location().Z()) if components(torus.Axis().Direction(), 2)[1] <= ALIGNED else None
-    if kind == occ.GeomAbs_Cylinder:
-        cylinder = surface.Cylinder()
-        return (
-            float(cylinder.Location().Z())
-            if components(cylinder.Axis().Direction(), 2)[0] <= ALIGNED
-            else None
-        )
+    if kind == occ.GeomAbs_Torus and is_upright(surface.Torus().Axis()):
+        return float(surface.Torus().Location().Z())
+    if kind == occ.GeomAbs_Cylinder and is_level(surface.Cylinder().Axis()):
+        return float(surface.Cylinder().Location().Z())
     return None
 
 
@@ -268,16 +278,9 @@ def surface_points(face: SolidFace) -> NDArray[np.float64]:
         ]
     surface = occ.BRepAdaptor_Surface(face.shape)
     if face.lie == "leaning" and surface.GetType() != occ.GeomAbs_Plane:
-        points += inner_points(face.shape, surface)
+        points += [
+            surface.Value(u, v)
+            for u, v in grid(surface)
+            if occ.BRepClass_FaceClassifier(face.shape, occ.gp_Pnt2d(u, v), 1e-7).State() == occ.TopAbs_IN
+        ]
     return np.array([(point.X(), point.Y()) for point in points]).reshape(-1, 2)
-
-
-def inner_points(face: Any, surface: Any) -> list[Any]:
-    """Points of a grid over a surface that lie on the face."""
-    points = []
-    for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS):
-        for v in np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS):
-            state = occ.BRepClass_FaceClassifier(face, occ.gp_Pnt2d(float(u), float(v)), 1e-7).State()
-            if state == occ.TopAbs_IN:
-                points.append(surface.Value(float(u), float(v)))
-    return points

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from workhold.errors import InputError
 
-__all__ = ["REQUIREMENT", "bounding_box", "guarded", "load_step_library", "occ", "sub_shapes"]
+__all__ = ["REQUIREMENT", "bounding_box", "guarded", "load_step_library", "occ", "raised", "sub_shapes"]
 
 T = TypeVar("T")
 # Its x, y and z in mm.
@@ -26,7 +26,10 @@ SYSTEM_PACKAGES = {"libGL.so.1": "libgl1", "libX11.so.6": "libx11-6"}
 
 
 class OpenCascade:
-    """All classes, functions and constants of the library by their names, of which the first word is a package."""
+    """Whatever the library has, by its name alone: what stands before the first underscore names its package.
+
+    It is looked for when it is asked for the first time, as ``occ.gp_Pnt``, and kept then.
+    """
 
     def __getattr__(self, name: str) -> Any:
         import OCP
@@ -40,7 +43,7 @@ occ = OpenCascade()
 
 
 def load_step_library() -> None:
-    """Load Open CASCADE and keep it from writing its progress to the terminal, where a result file may go.
+    """Loads Open CASCADE and keeps it from writing its progress to the terminal, where a result file may go.
 
     Raises
     ------
@@ -110,3 +113,10 @@ def bounding_box(shape: Any) -> tuple[Corner, Corner]:
     occ.BRepBndLib.AddOptimal_s(shape, box, False, False)
     low, high = box.CornerMin(), box.CornerMax()
     return (low.X(), low.Y(), low.Z()), (high.X(), high.Y(), high.Z())
+
+
+def raised(shape: Any, height: float) -> Any:
+    """A shape moved up by a height in mm."""
+    move = occ.gp_Trsf()
+    move.SetTranslation(occ.gp_Vec(0.0, 0.0, height))
+    return shape.Moved(occ.TopLoc_Location(move))

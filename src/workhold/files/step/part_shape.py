@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
-from workhold.files.step.by_height import HeightView, drawn
-from workhold.files.step.heights import standing
+from workhold.files.step.by_height import HeightView, drawn, turned_up
 from workhold.files.step.library import guarded, load_step_library, occ, sub_shapes
 from workhold.files.step.reader import prepare
-from workhold.files.step.solids import along, read_solids
+from workhold.files.step.solids import read_solids
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Point
 from workhold.model.pose import Pose
@@ -104,12 +103,7 @@ def part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
             "the part of this result was not read from a solid at the height of the pegs: design it again "
             "from its STEP file to show its shape."
         )
-    view = {
-        "axis": solid.axis,
-        "peg_height": solid.peg_height,
-        "head_room": solid.head_room,
-        "least_band": solid.least_band,
-    }
+    view = {name: getattr(solid, name) for name in ("axis", "peg_height", "head_room", "least_band")}
     loops = [loop.tolist() for loop in workpiece.loops]
     options = {"view": view, "loops": loops, "height": solid.height, "levels": levels_of(solid)}
     positions, normals, triangles, kept = run_apart(__name__, content, options, "the STEP file")
@@ -136,11 +130,11 @@ def plain(content: bytes, view: dict[str, Any], loops: list[Any], height: float,
         As :func:`part_shape`.
     """
     wanted = [np.array(loop) for loop in loops]
-    return guarded(lambda: shape_of_outline(content, view, wanted, height, levels), ValueError)
+    return guarded(lambda: shape_of_outline(content, HeightView(**view), wanted, height, levels), ValueError)
 
 
 def shape_of_outline(
-    content: bytes, view: dict[str, Any], loops: list[Array], height: float, levels: Levels
+    content: bytes, view: HeightView, loops: list[Array], height: float, levels: Levels
 ) -> Any:
     """Meshes and keeps the solid of a file that gives some loops and levels, see :func:`plain`.
 
@@ -149,13 +143,12 @@ def shape_of_outline(
     InputError
         Where no solid of the file gives these loops.
     """
-    load_step_library()
     for solid in read_solids(content):
-        found = standing(along(solid.shape, view["axis"]))
+        found = turned_up(solid, view)
         if abs(found.height - height) > SAME_HEIGHT:
             continue
         with suppress(InputError):
-            own = drawn(solid.shape, found, HeightView(**view), is_advised=False, has_table=False)
+            own = drawn(solid.shape, found, view, is_advised=False, has_table=False)
             if is_same(loops, own.loops) and has_levels(levels, levels_of(own.solid)):
                 return *meshed(found.shape), kept(found.shape)
     raise InputError(

@@ -7,18 +7,18 @@ pieces, exactly: Open CASCADE's own poles, weights and knots.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import dist, hypot
+from math import dist
 from typing import Any
 
 import numpy as np
 from attrs import frozen
 
-from workhold.conventions import SHORTEST
+from workhold.conventions import EDGE_GAP, SHORTEST
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, CurveReading, arc_bulges, rebulged
 from workhold.files.outline.curves import CurveReader
 from workhold.files.questions import SECTION
-from workhold.files.step.library import bounding_box, occ, sub_shapes
+from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
 from workhold.geometry.rational import Pieces, spline_pieces
 from workhold.geometry.segment import Point
 
@@ -75,6 +75,12 @@ class Borders:
         """How far the chains may be from the region's border, in mm."""
         return max((one.departure for one in self.curves.values()), default=0.0)
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was done to them."""
+        closed = f"Closed gaps of up to {self.gap:.2g} mm between edges of the outline."
+        return (closed,) if self.gap > EDGE_GAP else ()
+
 
 def section(solid: Any, z: float) -> Any:
     """The region in which the plane at height z cuts a solid.
@@ -93,9 +99,7 @@ def section(solid: Any, z: float) -> Any:
         raise InputError(
             "the solid cannot be cut by a plane: repair it in the CAD program and export it again."
         )
-    move = occ.gp_Trsf()
-    move.SetTranslation(occ.gp_Vec(0.0, 0.0, -z))
-    return cut.Moved(occ.TopLoc_Location(move))
+    return raised(cut, -z)
 
 
 def level_region(face: Any, z: float, upward: bool) -> Any:
@@ -164,24 +168,17 @@ def borders(region: Any, fit: float | None = None) -> Borders:
     gap = 0.0
     for wire in sub_shapes(region, "WIRE"):
         pieces: list[Piece] = []
-        for edge in wire_edges(wire):
-            piece = edge_piece(edge, curves, f"curved edge {len(pieces)} of border {len(chains)}")
+        edges = occ.BRepTools_WireExplorer(wire)
+        while edges.More():
+            label = f"curved edge {len(pieces)} of border {len(chains)}"
+            piece = edge_piece(edges.Current(), curves, label)
             if piece is not None:
                 pieces.append(piece)
+            edges.Next()
         chain, chain_gap = closed(pieces, len(chains))
         chains.append(chain)
         gap = max(gap, chain_gap)
     return Borders(tuple(chains), curves.found, gap)
-
-
-def wire_edges(wire: Any) -> list[Any]:
-    """The edges of a wire in running order."""
-    explorer = occ.BRepTools_WireExplorer(wire)
-    edges = []
-    while explorer.More():
-        edges.append(explorer.Current())
-        explorer.Next()
-    return edges
 
 
 # Points, bulges and what messages call the curve that they stand for; None for a line and an arc.
@@ -228,15 +225,14 @@ def closed(pieces: Sequence[Piece], number: int) -> tuple[Chain, float]:
     """One closed chain of pieces in running order, and the largest gap closed; arcs keep their centres."""
     points: list[Point] = []
     bulges: list[float] = []
-    gap = 0.0
     labels: list[str] = []
+    gap = 0.0
     for k, (own, own_bulges, name) in enumerate(pieces):
-        following = pieces[(k + 1) % len(pieces)][0][0]
-        end = own[-1]
-        step = hypot(following[0] - end[0], following[1] - end[1])
+        following, end = pieces[(k + 1) % len(pieces)][0][0], own[-1]
+        step = dist(following, end)
         gap = max(gap, step)
-        points += own[:-1]
         last = own_bulges[-1] if step == 0 else rebulged(own[-2], end, own_bulges[-1], own[-2], following)
         labels += [name or f"edge {len(bulges)} of border {number}"] * len(own_bulges)
+        points += own[:-1]
         bulges += [*own_bulges[:-1], last]
     return Chain((*points, points[0]), tuple(bulges), tuple(labels)), gap

@@ -33,6 +33,7 @@ __all__ = [
     "prepare",
     "read_solids",
     "solid_remarks",
+    "solids_of_shapes",
 ]
 
 # What becomes x, y and up for each axis: the part is seen from the axis's far end, right-handed.
@@ -75,6 +76,7 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
     InputError
         For files that are no STEP, damaged, without a unit of length, or without a solid.
     """
+    load_step_library()
     refuse_other_formats(content)
     reader = read_through(content)
     shape = reader.OneShape()
@@ -131,6 +133,12 @@ def numbered(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, .
     found = [evolve(measured(shape), name=name) for shape, name in zip(shapes, called, strict=True)]
     solids = sorted(found, key=lambda solid: (-solid.volume, solid.low, solid.high))
     return tuple(evolve(solid, number=number) for number, solid in enumerate(solids, start=1))
+
+
+def solids_of_shapes(shapes: Sequence[Any]) -> tuple[Solid, ...]:
+    """Every solid of some shapes of Open CASCADE, by decreasing volume; none of shapes without one."""
+    load_step_library()
+    return numbered([solid for shape in shapes for solid in sub_shapes(shape, "SOLID")])
 
 
 def counted_in_text(content: bytes) -> int:

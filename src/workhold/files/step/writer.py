@@ -24,7 +24,7 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.files.step.library import load_step_library, occ, sub_shapes
+from workhold.files.step.library import load_step_library, occ, raised, sub_shapes
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, fixture_bodies
@@ -104,21 +104,17 @@ def setup_step(
     workpiece: Workpiece,
     toolkit: Toolkit,
     *,
-    thickness: float | None = None,
-    plate_thickness: float | None = None,
-    peg_length: float | None = None,
-    peg_height: float | None = None,
     zero: PartZero | None = None,
+    **sizes: float | None,
 ) -> bytes:
-    """The bytes of a set-up's STEP assembly; see :func:`write_setup_step`.
+    """The bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`.
 
     Raises
     ------
     InputError
         As :func:`write_setup_step`.
     """
-    sizes = BodySizes.of(workpiece, thickness, plate_thickness, peg_length, peg_height)
-    bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
+    bodies = fixture_bodies(fixture, workpiece, toolkit, BodySizes.of(workpiece, **sizes))
     return bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
 
 
@@ -167,10 +163,7 @@ def axes_at(point: Point, pose: Pose, length: float) -> Any:
     axes, builder = occ.TopoDS_Compound(), occ.BRep_Builder()
     builder.MakeCompound(axes)
     x, y = point
-    start, *ends = (
-        (float(u), float(v))
-        for u, v in (pose.apply(*p) for p in ((x, y), (x + length, y), (x, y + length / 2)))
-    )
+    start, *ends = (pose.apply(*p) for p in ((x, y), (x + length, y), (x, y + length / 2)))
     for end in ends:
         builder.Add(axes, edge(Line(start, end)))
     return axes
@@ -217,9 +210,7 @@ def extruded(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
     )
     for hole in holes:
         maker.Add(hole)
-    move = occ.gp_Trsf()
-    move.SetTranslation(occ.gp_Vec(0.0, 0.0, low))
-    face = maker.Face().Moved(occ.TopLoc_Location(move))
+    face = raised(maker.Face(), low)
     return occ.BRepPrimAPI_MakePrism(face, occ.gp_Vec(0.0, 0.0, high - low), True).Shape()
 
 
@@ -282,13 +273,7 @@ def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> b
 
 def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
     """A plate as a solid, moved to the right."""
-    box = plate.outline
-    corners = [
-        (box.x0 + right, box.y0),
-        (box.x1 + right, box.y0),
-        (box.x1 + right, box.y1),
-        (box.x0 + right, box.y1),
-    ]
+    corners = [(x + right, y) for x, y in plate.outline.corners]
     border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
     holes: list[tuple[Point, float]] = [(center, plate.hole_diameter) for _, center in plate.holes]
     if plate.bolts is not None:

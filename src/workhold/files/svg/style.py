@@ -18,6 +18,7 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, cleaned
 from workhold.files.svg.document import Declared, Styles, href, local_name, short
+from workhold.files.svg.viewport import LENGTH
 from workhold.geometry.loop import LoopShape, encloses, loop_segments, refuse_meeting_loops, signed_area
 
 __all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effects"]
@@ -25,7 +26,6 @@ __all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effe
 Value = TypeVar("Value")
 Declarations = dict[str, list[Declared]]
 
-NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(%|[a-z]*)$")
 HEX = re.compile(r"#(?:[0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})$")
 URL = re.compile(r"""url\(\s*(?:"([^"]*)"|'([^']*)'|([^"')\s]*))\s*\)\s*(.*)$""", re.DOTALL | re.IGNORECASE)
 DISPLAYS = re.compile(
@@ -166,13 +166,13 @@ def refuse_effects(declarations: Declarations, label: str) -> None:
 
 def positive(text: str) -> bool | None:
     """Whether an opacity is above 0; None when it is none."""
-    match = NUMBER.match(text)
+    match = LENGTH.match(text)
     return None if match is None or match.group(2) not in ("", "%") else float(match.group(1)) > 0
 
 
 def width(text: str) -> bool | None:
     """Whether a stroke's width is above 0; None when it is none."""
-    match = NUMBER.match(text)
+    match = LENGTH.match(text)
     return None if match is None or float(match.group(1)) < 0 else float(match.group(1)) > 0
 
 

@@ -8,13 +8,12 @@ from math import cos, degrees, isfinite, radians, sin, tan
 from workhold.errors import InputError
 from workhold.files.outline.chain import Placement
 from workhold.files.svg.document import Declared, short
-from workhold.files.svg.viewport import ANGLES, NUMBER, absolute, numbers
+from workhold.files.svg.viewport import ANGLES, LENGTH, absolute, numbers
 
 __all__ = ["transform_of"]
 
 FUNCTION = re.compile(r"\s*,?\s*(\w+)\s*\(([^()]*)\)")
 CSS_FUNCTION = re.compile(r"\s*(\w+)\(([^()]*)\)")
-QUANTITY = re.compile(rf"({NUMBER})([a-z%]*)$", re.IGNORECASE)
 PROPERTIES = ("transform", "translate", "rotate", "scale")
 SIDES = {"left": (0, 0.0), "right": (0, 1.0), "top": (1, 0.0), "bottom": (1, 1.0)}
 # Functions of the attribute, and how many arguments they have.
@@ -98,7 +97,7 @@ def origin(
         if SIDES.get(word, (axis, 0))[0] != axis:
             raise error
         share = SIDES[word][1] if word in SIDES else 0.5 if word == "center" else None
-        if share is None and word.endswith("%") and QUANTITY.match(word):
+        if share is None and word.endswith("%") and LENGTH.match(word):
             share = float(word[:-1]) / 100
         side = viewport[axis]
         plain = absolute(word, unitless=not given.css)
@@ -141,14 +140,14 @@ def css_values(name: str, text: str) -> list[float] | None:
     """The arguments of a CSS transform function in user units and degrees; None when one is not valid."""
     values: list[float] = []
     for word in text.split(","):
-        match = QUANTITY.match(word.strip())
+        match = LENGTH.match(word)
         if match is None or not isfinite(float(match.group(1))):
             return None
         number, unit = float(match.group(1)), match.group(2).lower()
         if number == 0 and not unit:
             value: float | None = 0.0
         elif name.startswith("translate"):
-            value = absolute(word.strip(), unitless=False)
+            value = absolute(word, unitless=False)
         elif name.startswith(("rotate", "skew")):
             value = number * degrees(ANGLES[unit]) if unit in ANGLES else None
         elif name.startswith("scale") and unit == "%":

@@ -27,6 +27,7 @@ from workhold.geometry.segment import Point
 
 __all__ = [
     "ANGLES",
+    "LENGTH",
     "NUMBER",
     "ShapeElement",
     "ViewBox",

@@ -13,7 +13,7 @@ from workhold.files.outline.chain import Chain, Placement, counted
 from workhold.files.outline.curves import CurveReader
 from workhold.files.svg.document import DEEPEST, Declared, Document, Styles, href, local_name, short
 from workhold.files.svg.shapes import SHAPES
-from workhold.files.svg.style import INITIAL, Style, computed, link_of, refuse_effects
+from workhold.files.svg.style import INITIAL, Style, boundaries, computed, link_of, refuse_effects
 from workhold.files.svg.transforms import transform_of
 from workhold.files.svg.viewport import ShapeElement, Viewport, Window, convex, fitted, viewbox_of
 
@@ -157,8 +157,6 @@ class SvgWalk:
             raise InputError(f"{label} has a transform that crushes it to a line: correct it.")
         found = list(self.placed(figure, nest.placement))
         if figure.closed and not style.even_odd and len(found) > 1:
-            from workhold.files.svg.style import boundaries
-
             bounding = boundaries(found)
             self.painted_over += len(found) - len(bounding)
             found = bounding
