@@ -14,7 +14,7 @@ box : a rectangle with sides along the axes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from math import atan, atan2, cos, dist, hypot, pi, sin, sqrt
 
@@ -323,9 +323,9 @@ def common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
     ]
     points += [p for p in (a.start, a.end) if distance_to_segment(p, b) <= tolerance]
     points += [p for p in (b.start, b.end) if distance_to_segment(p, a) <= tolerance]
-    whole = isinstance(a, Arc) and isinstance(b, Arc) and a.is_full and b.is_full
-    if whole and dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance:
-        points.append(a.start)
+    if isinstance(a, Arc) and isinstance(b, Arc) and a.is_full and b.is_full:
+        same = dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance
+        points += [a.start] if same else []
     return points
 
 
@@ -338,6 +338,12 @@ def bounding_box(segment: Segment) -> tuple[float, float, float, float]:
                 xs.append(segment.center[0] + segment.radius * dx)
                 ys.append(segment.center[1] + segment.radius * dy)
     return min(xs), min(ys), max(xs), max(ys)
+
+
+def box_around(segments: Iterable[Segment]) -> tuple[float, float, float, float]:
+    """(smallest x, smallest y, largest x, largest y) in mm of some segments, one at least."""
+    x0, y0, x1, y1 = zip(*map(bounding_box, segments), strict=True)
+    return min(x0), min(y0), max(x1), max(y1)
 
 
 @frozen

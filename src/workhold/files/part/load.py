@@ -283,7 +283,7 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
         from workhold.files.step.by_height import HeightView, read_by_height_apart
 
         keys = ("axis", "peg_height", "head_room", "least_band", "part_number", "heights")
-        view = HeightView(**{key: options[key] for key in keys})
+        view = HeightView(**{key: options[key] for key in keys if options[key] is not None})
         read = read_by_height_apart(content, view, or_silhouette=not asked)
         if isinstance(read, Drawing):
             loaded = from_drawing(path, read, None, 0.0, None)

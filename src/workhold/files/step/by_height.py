@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from attrs import asdict, astuple, evolve, field, frozen
+from attrs import asdict, astuple, evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import SAME_HEIGHT
@@ -66,15 +66,15 @@ class HeightView:
     axis : direction of the file that points up; z when None.
     peg_height : up to which pegs reach above the plane on which the part lies, in mm; the part's height when
         None.
-    head_room, least_band : in mm; the usual ones when None.
+    head_room, least_band : in mm.
     heights : from which to which carriers with heights of their own reach, in mm, by their role.
     part_number : number or name of the solid to take of several; the largest when None.
     """
 
     axis: str | None = None
     peg_height: float | None = None
-    head_room: float = field(default=None, converter=lambda room: HEAD_ROOM if room is None else room)
-    least_band: float = field(default=None, converter=lambda band: LEAST_BAND if band is None else band)
+    head_room: float = HEAD_ROOM
+    least_band: float = LEAST_BAND
     part_number: int | str | None = None
     heights: Mapping[str, Sequence[float]] = {}
 

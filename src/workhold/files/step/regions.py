@@ -209,7 +209,7 @@ def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
         read = curves.read(edge_curve(edge), label)
         if read is None:
             return None
-        name, points, bulges = label, list(read[0]), list(read[1])
+        name, points, bulges = label, list(read.points), list(read.bulges)
     if edge.Orientation() == occ.TopAbs_REVERSED:
         points, bulges = points[::-1], [-bulge if bulge else 0.0 for bulge in reversed(bulges)]
     return points, bulges, name

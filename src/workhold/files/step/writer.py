@@ -105,7 +105,7 @@ def setup_step(
     toolkit: Toolkit,
     *,
     zero: PartZero | None = None,
-    **sizes: float | None,
+    **sizes: Any,
 ) -> bytes:
     """The bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`.
 
