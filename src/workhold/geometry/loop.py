@@ -159,10 +159,7 @@ def is_curved(bulge: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray
 def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
     """Refuses arcs of (N, 3) vertices, with chords (N,), that reach too far or have too large a radius.
 
-    Raises
-    ------
-    InputError
-        Naming the place of the first.
+    Raises InputError, naming the place of the first.
     """
     bulge = np.minimum(np.abs(array[:, 2]), 1e30)
     curved = is_curved(bulge, steps)

@@ -292,6 +292,8 @@ Array = NDArray[np.float64]
 
 # Halvings, after which a bound is within some thousandth of the curve's own size of what it bounds, squared.
 MOST_HALVINGS = 7
+# So many pieces are halved no more where they are near enough without.
+MOST_HALVED = 4096
 # A bound this near to a distance that is reached is good enough.
 NEAR_ENOUGH = 1.03
 # A share of the coefficients: a derivative that is nowhere below minus this vanishes or rises, but for
@@ -341,9 +343,8 @@ def departure(pieces: Pieces, segment: Segment, limit: float) -> float:
         reached, bound, forward = measured(pieces, segment)
         if reached > limit:
             return inf
-        if bound <= limit and forward and (bound <= NEAR_ENOUGH * reached + 1e-9 or halving == MOST_HALVINGS):
-            return bound
-        if len(pieces) > 4096 and bound <= limit and forward:
+        is_last = halving == MOST_HALVINGS or len(pieces) > MOST_HALVED
+        if bound <= limit and forward and (is_last or bound <= NEAR_ENOUGH * reached + 1e-9):
             return bound
         if halving < MOST_HALVINGS:
             pieces = halved(pieces)

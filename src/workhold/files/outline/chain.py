@@ -251,10 +251,7 @@ def cleaned(chains: Iterable[Chain]) -> Drawing:
 def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.0) -> None:
     """Refuses a place in mm or a bulge of a labelled segment that is not finite or absurdly large.
 
-    Raises
-    ------
-    InputError
-        Naming the segment.
+    Raises InputError, naming the segment.
     """
     if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
         raise InputError(

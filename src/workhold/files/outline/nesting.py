@@ -150,10 +150,7 @@ def overlap(a: Sequence[float], b: Sequence[float]) -> bool:
 def chosen_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
     """The part of a number, or the largest.
 
-    Raises
-    ------
-    InputError
-        When there is no part of that number, and for a name.
+    Raises InputError when there is no part of that number, and for a name.
     """
     if number is None:
         return parts[0]

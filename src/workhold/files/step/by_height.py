@@ -143,10 +143,7 @@ def height_drawing_of(answered: Any) -> HeightDrawing:
 def plain(content: bytes, view: dict[str, Any], or_silhouette: bool) -> Any:
     """What :func:`read_by_height` reads as plain data, and before it whether that is an outline by height.
 
-    Raises
-    ------
-    InputError
-        As it does, and where the library or the arithmetic after it fails over the file.
+    Raises InputError as it does, and where the library or the arithmetic after it fails over the file.
     """
     found = guarded(lambda: read_by_height(content, HeightView(**view), or_silhouette), ValueError)
     return (False, plain_drawing(found)) if isinstance(found, Drawing) else (True, plain_heights(found))
@@ -158,10 +155,7 @@ def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing 
     The silhouette offers lines and arcs in the place of other curves. It has no heights, and faces that lean
     may be touched.
 
-    Raises
-    ------
-    InputError
-        As :func:`workhold.files.step.reader.read_step`.
+    Raises InputError as :func:`workhold.files.step.reader.read_step`.
     """
     chosen = chosen_solid(solids, view.part_number)
     solid = guarded(lambda: turned_up(chosen, view))
@@ -249,10 +243,7 @@ def shapes_usual(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Dra
 def height_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing:
     """The outline of one of some solids at the height of the pegs, with remarks on the others.
 
-    Raises
-    ------
-    InputError
-        As :func:`read_by_height`.
+    Raises InputError as :func:`read_by_height`.
     """
     chosen = chosen_solid(solids, view.part_number)
     drawing = drawn(chosen.shape, turned_up(chosen, view), view)
@@ -260,13 +251,7 @@ def height_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing
 
 
 def turned_up(chosen: Solid, view: HeightView) -> StandingSolid:
-    """A solid as it is looked at.
-
-    Raises
-    ------
-    InputError
-        For an axis that there is not.
-    """
+    """A solid as it is looked at; raises InputError for an axis that there is not."""
     return standing(along(chosen.shape, axis_named(view.axis)))
 
 

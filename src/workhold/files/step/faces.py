@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT
 from workhold.files.step.library import bounding_box, occ, sub_shapes
+from workhold.geometry.subdivision import distinct_sorted
 
 __all__ = [
     "SLOPING",
@@ -255,11 +256,8 @@ def fold_of(surface: Any) -> float | None:
 def layers_of(faces: Sequence[SolidFace]) -> list[Layer]:
     """The layers between the heights where level and leaning faces begin or end, from the lowest up."""
     leaning = np.array([(face.low, face.high) for face in faces if face.lie == "leaning"]).reshape(-1, 2)
-    heights = sorted({z for face in faces if face.lie != "upright" for z in (face.low, face.high)})
-    levels: list[float] = []
-    for z in heights:
-        if not levels or z - levels[-1] > SAME_HEIGHT:
-            levels.append(z)
+    ends = [z for face in faces if face.lie != "upright" for z in (face.low, face.high)]
+    levels = distinct_sorted(np.array(ends), SAME_HEIGHT)
     layers = []
     for low, high in pairwise(levels):
         inside = (leaning[:, 0] < high - SAME_HEIGHT) & (leaning[:, 1] > low + SAME_HEIGHT)

@@ -180,10 +180,7 @@ def read_solid(
 def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[Layer]) -> Any:
     """The union of everything flat that the silhouette must hold.
 
-    Raises
-    ------
-    InputError
-        When the library cannot cut the solid or unite its sections.
+    Raises InputError when the library cannot cut the solid or unite its sections.
     """
     prismatic = [layer for layer in layers if layer.prismatic]
     regions = [section(shape, layer.middle) for layer in prismatic]
@@ -218,10 +215,7 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
 def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None:
     """Refuses a solid whose sections do not fill it: it is open, or runs through itself.
 
-    Raises
-    ------
-    InputError
-        Giving both volumes, in mm³.
+    Raises InputError, giving both volumes, in mm³.
     """
     if abs(swept - volume) > tolerance * volume:
         raise InputError(
@@ -242,10 +236,8 @@ def has_layer(layers: Sequence[Layer], z: float, *, below: bool) -> bool:
 def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any:
     """The section at a height above the lowest point.
 
-    Raises
-    ------
-    InputError
-        For a height outside the part or at a level face, and where the section falls into pieces.
+    Raises InputError for a height outside the part or at a level face, and where the section falls into
+    pieces.
     """
     low, high = min(face.low for face in faces), max(face.high for face in faces)
     if not 0 < height < high - low:

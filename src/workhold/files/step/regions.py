@@ -188,10 +188,7 @@ Piece = tuple[list[Point], list[float], str | None]
 def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
     """An edge in the direction its wire runs; None for an edge of zero length.
 
-    Raises
-    ------
-    InputError
-        For an edge that cannot be read.
+    Raises InputError for an edge that cannot be read.
     """
     curve = occ.BRepAdaptor_Curve(edge)
     first, last = curve.FirstParameter(), curve.LastParameter()

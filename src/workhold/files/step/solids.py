@@ -160,10 +160,7 @@ def lost_remarks(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
 def refuse_other_formats(content: bytes) -> None:
     """Refuses what is plainly no STEP file, is cut short, or has no unit (the library would take mm).
 
-    Raises
-    ------
-    InputError
-        Saying what it is.
+    Raises InputError, saying what it is.
     """
     if content.startswith(b"PK"):
         raise InputError("this is a compressed file, not a STEP file: unpack it first.")
@@ -181,10 +178,7 @@ def refuse_other_formats(content: bytes) -> None:
 def read_through(content: bytes) -> Any:
     """A reader of the library that has read the file, and has one shape of everything in it.
 
-    Raises
-    ------
-    InputError
-        When the library cannot read it.
+    Raises InputError when the library cannot read it.
     """
     reader = occ.STEPControl_Reader()
     try:
@@ -202,10 +196,7 @@ def read_through(content: bytes) -> Any:
 def measured(shape: Any) -> Solid:
     """A solid with its volume and bounding box; its number comes later.
 
-    Raises
-    ------
-    InputError
-        When it has no volume, or coordinates that leave no digits.
+    Raises InputError when it has no volume, or coordinates that leave no digits.
     """
     properties = occ.GProp_GProps()
     occ.BRepGProp.VolumeProperties_s(shape, properties)
@@ -239,10 +230,8 @@ def chosen_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
 def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
     """The only solid of a name, as it is written, or else in any mixture of capitals.
 
-    Raises
-    ------
-    InputError
-        When there is none, naming those that are close, and when there are several, with their numbers.
+    Raises InputError when there is none, naming those that are close, and when there are several, with their
+    numbers.
     """
     if len(solids) == 1:
         raise InputError(f"the STEP file holds only one solid: leave {PART_NUMBER} out.")

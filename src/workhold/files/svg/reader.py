@@ -72,10 +72,7 @@ def page(
 
     None when the size of a user unit is not known.
 
-    Raises
-    ------
-    InputError
-        When the size of a user unit differs between x and y.
+    Raises InputError when the size of a user unit differs between x and y.
     """
     given = [root.given(name) for name in ("width", "height")]
     sized = any(side is not None and physical(side.text) for side in given)
@@ -112,10 +109,7 @@ def file_scale(
 ) -> float | None:
     """Millimetres per user unit by the file's own physical size in mm; None when it has none.
 
-    Raises
-    ------
-    InputError
-        When x and y would be scaled unequally.
+    Raises InputError when x and y would be scaled unequally.
     """
     if width is None and height is None:
         return None

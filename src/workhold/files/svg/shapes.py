@@ -62,10 +62,7 @@ def near(p: Point, q: Point) -> bool:
 def path(figure: ShapeElement) -> Iterator[Shape]:
     """A <path>; each subpath is a chain.
 
-    Raises
-    ------
-    InputError
-        For path data that cannot be read.
+    Raises InputError for path data that cannot be read.
     """
     from svgelements import Path
 
@@ -114,10 +111,7 @@ def subpath(start: Point, steps: Sequence[Step]) -> Shape:
 def path_data(figure: ShapeElement) -> str:
     """The path data, as attribute or as CSS property; empty when there is none.
 
-    Raises
-    ------
-    InputError
-        For a property that is not ``path("...")``.
+    Raises InputError for a property that is not ``path("...")``.
     """
     given = figure.given("d")
     if given is None or given.text in ("", "none"):
@@ -134,10 +128,7 @@ def path_data(figure: ShapeElement) -> str:
 def plain_commands(data: str) -> Iterator[str]:
     """Commands of path data, with letter and arguments (SVG 2, 9.3.9); arcs without radius are lines (9.5.1).
 
-    Raises
-    ------
-    ValueError
-        For path data that is not of SVG's grammar.
+    Raises ValueError for path data that is not of SVG's grammar.
     """
     position, first = 0, True
     while position < len(data.rstrip()):
@@ -165,10 +156,7 @@ def plain_commands(data: str) -> Iterator[str]:
 def steps_of(segment: Any, kind: str, label: str) -> list[Step]:
     """What one path command draws: the arc of a circle as one or two arcs, and anything else as one segment.
 
-    Raises
-    ------
-    InputError
-        For numbers that are missing or not finite.
+    Raises InputError for numbers that are missing or not finite.
     """
     end = xy(segment.end, label)
     if kind in ("Line", "Close"):
@@ -211,13 +199,7 @@ def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
 
 
 def xy(point: Any, label: str) -> Point:
-    """A point of svgelements.
-
-    Raises
-    ------
-    InputError
-        When it is missing or not finite.
-    """
+    """A point of svgelements; raises InputError when it is missing or not finite."""
     if point is None or not (isfinite(point.x) and isfinite(point.y)):
         raise InputError(f"{label} has path data with a number missing or not finite: correct it.")
     return float(point.x), float(point.y)
@@ -301,13 +283,7 @@ def rect(figure: ShapeElement) -> Iterator[Shape]:
 
 
 def polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
-    """A <polyline> or <polygon>.
-
-    Raises
-    ------
-    InputError
-        For an odd number of coordinates.
-    """
+    """A <polyline> or <polygon>; raises InputError for an odd number of coordinates."""
     values = numbers(figure.element.get("points", ""), f"{figure.label}: points")
     if len(values) % 2:
         raise InputError(f"{figure.label} has an odd number of coordinates: correct its points.")

@@ -69,13 +69,7 @@ def transform_of(
 def origin(
     declarations: dict[str, list[Declared]], viewport: tuple[float | None, float | None], label: str
 ) -> tuple[float, float]:
-    """The point that stays in place, in user units.
-
-    Raises
-    ------
-    InputError
-        For places that are not read.
-    """
+    """The point that stays in place, in user units; raises InputError for places that are not read."""
     if "transform-origin" not in declarations:
         return 0.0, 0.0
     given = declarations["transform-origin"][0]
@@ -109,13 +103,7 @@ def origin(
 
 
 def functions(text: str, css: bool, label: str) -> Placement:
-    """The map of a list of transform functions.
-
-    Raises
-    ------
-    InputError
-        For functions that are not read.
-    """
+    """The map of a list of transform functions; raises InputError for functions that are not read."""
     text = text.strip()
     placement = Placement()
     position = 0

@@ -21,20 +21,8 @@ __all__ = ["ElementNesting", "SvgWalk"]
 
 MOST_ELEMENTS = 1_000_000
 CONTAINERS = {"g", "a", "switch"}
-SILENT = {
-    "defs",
-    "symbol",
-    "style",
-    "title",
-    "desc",
-    "metadata",
-    "clipPath",
-    "mask",
-    "marker",
-    "pattern",
-    "filter",
-}
-SILENT |= {"linearGradient", "radialGradient", "view", "namedview"}
+SILENT = {"defs", "symbol", "style", "title", "desc", "metadata", "clipPath", "mask", "marker", "pattern"}
+SILENT |= {"filter", "linearGradient", "radialGradient", "view", "namedview"}
 FEATURES = "http://www.w3.org/TR/SVG11/feature#"
 MARKED = ("path", "line", "polyline", "polygon")
 
@@ -352,10 +340,7 @@ class SvgWalk:
 def suits(element: Element, label: str) -> bool:
     """Whether an element's conditions hold (SVG 2, 5.9).
 
-    Raises
-    ------
-    InputError
-        For conditions that programs judge differently.
+    Raises InputError for conditions that programs judge differently.
     """
     if element.get("requiredExtensions") is not None:
         return False
