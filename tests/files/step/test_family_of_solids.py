@@ -18,7 +18,7 @@ from solid_truth import fixture_faults
 from workhold import Fence, FlatJaw, Plate, Query, Vise, answer, load
 from workhold.cli.main import app
 from workhold.family.members import RANKINGS
-from workhold.files.step.solids import along
+from workhold.files.step.library import along
 from workhold.fixels.toolkit import Toolkit
 
 

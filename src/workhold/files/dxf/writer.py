@@ -14,14 +14,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import StringIO
 from math import tan
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ezdxf import options, units  # type: ignore[attr-defined]
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 
-from workhold.files.atomic import write_bytes
 from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
@@ -44,7 +42,6 @@ __all__ = [
     "layers_of",
     "plates_dxf",
     "setup_dxf",
-    "write_plates_dxf",
 ]
 
 # Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT, PLATE or
@@ -281,7 +278,7 @@ NAME_HEIGHT, TITLE_HEIGHT = 0.3, 5.0
 
 
 def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
-    """The bytes of the drawing; the same plates give the same bytes."""
+    """The bytes of a DXF drawing of jaw plates; the same plates give the same bytes."""
     with drawn(PLATE_LAYERS) as document:
         space = document.modelspace()
 
@@ -303,14 +300,3 @@ def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
             at = (plate.outline.x0 + right, plate.outline.y1 + TITLE_HEIGHT)
             write(words, TITLE_HEIGHT / 2, at, TextEntityAlignment.BOTTOM_LEFT)
         return content_of(document)
-
-
-def write_plates_dxf(plates: Sequence[JawPlate], path: str | Path) -> None:
-    """Writes jaw plates as a DXF drawing.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
-    write_bytes(path, plates_dxf(plates))

@@ -28,13 +28,11 @@ from workhold.files.step.heights import (
     standing,
 )
 from workhold.files.step.level_faces import known_levels
-from workhold.files.step.library import guarded
+from workhold.files.step.library import along, axis_named, guarded
 from workhold.files.step.projected import OtherCurveError
 from workhold.files.step.reader import drawing_of, plain_drawing, prepare, read_solid
 from workhold.files.step.solids import (
     Solid,
-    along,
-    axis_named,
     chosen_solid,
     lost_remarks,
     read_solids,

@@ -23,9 +23,8 @@ from workhold.files.outline.joining import closed_loop
 from workhold.files.outline.nesting import DrawnPart, nest
 from workhold.files.questions import AXIS, SECTION
 from workhold.files.step.faces import Layer, SolidFace, lie_of, surface_points
-from workhold.files.step.library import occ, sub_shapes
+from workhold.files.step.library import AXES, occ, sub_shapes
 from workhold.files.step.regions import Borders, area_of, section
-from workhold.files.step.solids import AXES
 from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances

@@ -12,10 +12,24 @@ from typing import Any, TypeVar
 
 from workhold.errors import InputError
 
-__all__ = ["REQUIREMENT", "bounding_box", "guarded", "load_step_library", "occ", "raised", "sub_shapes"]
+__all__ = [
+    "AXES",
+    "REQUIREMENT",
+    "along",
+    "axis_named",
+    "bounding_box",
+    "guarded",
+    "load_step_library",
+    "occ",
+    "raised",
+    "sub_shapes",
+    "turn_along",
+]
 
 T = TypeVar("T")
-# Its x, y and z in mm.
+# What becomes x, y and up for each axis: the part is seen from the axis's far end, right-handed.
+AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
+# A point: x, y and z in mm.
 Corner = tuple[float, float, float]
 
 # What the extra asks for; nobody else's distribution can be had by its name.
@@ -120,3 +134,35 @@ def raised(shape: Any, height: float) -> Any:
     move = occ.gp_Trsf()
     move.SetTranslation(occ.gp_Vec(0.0, 0.0, height))
     return shape.Moved(occ.TopLoc_Location(move))
+
+
+def axis_named(axis: str | None) -> str:
+    """The name of an axis, z for None.
+
+    Raises
+    ------
+    InputError
+        When there is none of that name.
+    """
+    name = "z" if axis is None else axis.strip().lower().removeprefix("+")
+    if name.removeprefix("-") not in AXES:
+        raise InputError(f"the axis '{name[:40]}' is not known: give x, y or z, or -x, -y or -z.")
+    return name
+
+
+def along(shape: Any, axis: str) -> Any:
+    """A shape turned so that an axis of the file points up; see :func:`turn_along`."""
+    return shape.Moved(occ.TopLoc_Location(turn_along(axis)))
+
+
+def turn_along(axis: str) -> Any:
+    """The turn that makes an axis of the file point up; coordinates only change places and signs.
+
+    With a minus the part lies on its other side, turned over like a page: what pointed to x points to -x.
+    """
+    signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
+    sources = zip(signs, AXES[axis.lstrip("-")], strict=True)
+    rows = [[sign if column == source else 0.0 for column in range(3)] + [0.0] for sign, source in sources]
+    turn = occ.gp_Trsf()
+    turn.SetValues(*rows[0], *rows[1], *rows[2])
+    return turn

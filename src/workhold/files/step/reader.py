@@ -24,13 +24,19 @@ from workhold.files.outline.chain import Chain, CurveReading, Drawing
 from workhold.files.questions import AXIS
 from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
 from workhold.files.step.faces import Layer, SolidFace, layers_of, solid_faces
-from workhold.files.step.library import bounding_box, guarded, load_step_library, occ, sub_shapes
-from workhold.files.step.regions import area_of, borders, level_region, section, union
-from workhold.files.step.solids import (
+from workhold.files.step.library import (
     AXES,
-    Solid,
     along,
     axis_named,
+    bounding_box,
+    guarded,
+    load_step_library,
+    occ,
+    sub_shapes,
+)
+from workhold.files.step.regions import area_of, borders, level_region, section, union
+from workhold.files.step.solids import (
+    Solid,
     chosen_solid,
     lost_remarks,
     read_solids,

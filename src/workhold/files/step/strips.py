@@ -174,17 +174,12 @@ def overlap(a: Band | None, b: Band) -> Band:
     return b if a is None else (max(a[0], b[0]), min(a[1], b[1]))
 
 
-def around(a: Band, b: Band) -> Band:
-    """The least range that holds both bands; it holds those between them, because both ends are monotone."""
-    return min(a[0], b[0]), max(a[1], b[1])
-
-
 def first_long(one: Ends, walls: Walls, share: float, least: float) -> float:
     """The least share after one from which on a piece's band is at least as long as asked; 1 for none."""
 
     def may_be(a: Band, b: Band) -> bool:
-        # Both ends of the band lie between those at both ends, whatever walls make it.
-        return length(around(a, b)) >= least - SAME_HEIGHT
+        # Both ends of the band are monotone and so lie between those at both ends, whatever walls make it.
+        return max(a[1], b[1]) - min(a[0], b[0]) >= least - SAME_HEIGHT
 
     def spare(band: Band) -> float:
         return length(band) - (least - ONE_HEIGHT)

@@ -41,7 +41,6 @@ __all__ = [
     "named_solids",
     "plates_step",
     "setup_step",
-    "write_plates_step",
     "write_setup_step",
 ]
 
@@ -249,7 +248,7 @@ def assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> byte
 
 
 def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> bytes:
-    """The bytes of the assembly; the same plates give the same bytes.
+    """The bytes of a STEP assembly of jaw plates; the same plates give the same bytes.
 
     Parameters
     ----------
@@ -280,17 +279,6 @@ def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
         holes += [(center, plate.bolts.diameter) for center in plate.bolts.places]
     wires = [wire([Arc((x + right, y), diameter / 2, 0.0, pi, -1.0)]) for (x, y), diameter in holes]
     return extruded(border, wires, -thickness, 0.0)
-
-
-def write_plates_step(plates: Sequence[JawPlate], path: str | Path, thickness: float | None = None) -> None:
-    """Writes jaw plates as a STEP assembly.
-
-    Raises
-    ------
-    InputError
-        As :func:`plates_step`, and when the file cannot be written.
-    """
-    write_bytes(path, plates_step(plates, thickness))
 
 
 def coloured(text: bytes, colours: Sequence[Colour]) -> bytes:

@@ -80,11 +80,8 @@ class Document:
         tag = local_name(element)
         if element.get("id"):
             return f"{tag} '{short(element.get('id', ''))}'"
-        return (
-            "the root <svg>"
-            if element is self.root
-            else f"{tag} number {self.places[element][0]} (without id)"
-        )
+        number, _ = self.places[element]
+        return "the root <svg>" if element is self.root else f"{tag} number {number} (without id)"
 
     def linked(self, link: str) -> Element | None:
         """The element a link such as ``#id`` points to; None when it is not in the file."""

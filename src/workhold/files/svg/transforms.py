@@ -7,8 +7,8 @@ from math import cos, degrees, isfinite, radians, sin, tan
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Placement
-from workhold.files.svg.document import Declared, short
-from workhold.files.svg.viewport import ANGLES, LENGTH, absolute, numbers
+from workhold.files.svg.document import short
+from workhold.files.svg.viewport import ANGLES, LENGTH, ShapeElement, absolute, numbers
 
 __all__ = ["transform_of"]
 
@@ -27,26 +27,17 @@ ATTRIBUTE = {
 }
 
 
-def transform_of(
-    declarations: dict[str, list[Declared]], viewport: tuple[float | None, float | None], label: str
-) -> Placement:
+def transform_of(figure: ShapeElement) -> Placement:
     """The map of an element's transform properties.
-
-    Parameters
-    ----------
-    declarations : the element's declared values.
-    viewport : width and height that percentages of the origin are of, in user units; None where not known.
-    label : what messages call the element.
 
     Raises
     ------
     InputError
         For transforms that are not SVG's, or not in the plane, naming the element.
     """
+    declarations, label = figure.declarations, figure.label
     given = {name: declarations[name][0] for name in PROPERTIES if name in declarations}
-    given = {
-        name: value for name, value in given.items() if value.text not in ("", "none", "initial", "unset")
-    }
+    given = {name: one for name, one in given.items() if one.text not in ("", "none", "initial", "unset")}
     if not given:
         return Placement()
     box = declarations.get("transform-box")
@@ -54,7 +45,7 @@ def transform_of(
         raise InputError(
             f"{label} has the transform-box '{short(box[0].text)}', which is not read: use view-box."
         )
-    x, y = origin(declarations, viewport, label)
+    x, y = origin(figure)
     placement = Placement(e=x, f=y)
     for name in ("translate", "rotate", "scale"):
         if name in given:
@@ -66,16 +57,14 @@ def transform_of(
     return placement.after(Placement(e=-x, f=-y))
 
 
-def origin(
-    declarations: dict[str, list[Declared]], viewport: tuple[float | None, float | None], label: str
-) -> tuple[float, float]:
+def origin(figure: ShapeElement) -> tuple[float, float]:
     """The point that stays in place, in user units; raises InputError for places that are not read."""
-    if "transform-origin" not in declarations:
+    if "transform-origin" not in figure.declarations:
         return 0.0, 0.0
-    given = declarations["transform-origin"][0]
+    given = figure.declarations["transform-origin"][0]
     text = given.text
     error = InputError(
-        f"{label} has the transform-origin '{short(text)}', which is not read: write two lengths."
+        f"{figure.label} has the transform-origin '{short(text)}', which is not read: write two lengths."
     )
     words = text.lower().split()
     if words in (["initial"], ["unset"]):
@@ -93,7 +82,7 @@ def origin(
         share = SIDES[word][1] if word in SIDES else 0.5 if word == "center" else None
         if share is None and word.endswith("%") and LENGTH.match(word):
             share = float(word[:-1]) / 100
-        side = viewport[axis]
+        side = figure.viewport[axis]
         plain = absolute(word, unitless=not given.css)
         value = plain if share is None else None if side is None else share * side
         if value is None:

@@ -23,7 +23,7 @@ from step_shapes import box, write_step
 
 from workhold import InputError, load, solids_in
 from workhold.files.part.survey import survey
-from workhold.files.step.body_names import name_of, shown_name
+from workhold.files.step.solids import name_of, shown_name
 
 BOXES = (box(60, 40, 10), box(20, 20, 5, (0, 0, 20)), box(12, 10, 5, (30, 0, 20)), box(8, 5, 5, (45, 0, 20)))
 
