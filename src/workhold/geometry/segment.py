@@ -34,7 +34,7 @@ __all__ = [
     "carrier_intersections",
     "circle_circle",
     "common_points",
-    "contains_parameter",
+    "holds",
     "segment_from_bulge",
     "segment_rows",
 ]
@@ -296,10 +296,10 @@ def carrier_intersections(a: Segment, b: Segment) -> list[Point]:
     return circle_circle(a.center, a.radius, b.center, b.radius)
 
 
-def contains_parameter(segment: Segment, parameter: float, tolerance: float) -> bool:
-    """Whether a parameter lies on a segment, ends included, to within a tolerance in mm."""
+def holds(segment: Segment, point: Point, tolerance: float) -> bool:
+    """Whether a point of a segment's line or circle lies on it, ends included, to within a tolerance in mm."""
     slack = tolerance if isinstance(segment, Line) else tolerance / segment.radius
-    return abs(parameter) <= segment.half_extent + slack
+    return abs(segment.parameter(point)) <= segment.half_extent + slack
 
 
 def distance_to_segment(point: Point, segment: Segment) -> float:
@@ -315,12 +315,7 @@ def common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
 
     Overlapping segments (same line or circle) give the ends of each that lie on the other.
     """
-    points = [
-        p
-        for p in carrier_intersections(a, b)
-        if contains_parameter(a, a.parameter(p), tolerance)
-        and contains_parameter(b, b.parameter(p), tolerance)
-    ]
+    points = [p for p in carrier_intersections(a, b) if holds(a, p, tolerance) and holds(b, p, tolerance)]
     points += [p for p in (a.start, a.end) if distance_to_segment(p, b) <= tolerance]
     points += [p for p in (b.start, b.end) if distance_to_segment(p, a) <= tolerance]
     if isinstance(a, Arc) and isinstance(b, Arc) and a.is_full and b.is_full:
