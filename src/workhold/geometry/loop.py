@@ -334,7 +334,7 @@ def merged(run: Sequence[Segment]) -> Segment:
 def runs_around(items: Sequence[Item], continues: Callable[[Item, Item], bool]) -> list[list[Item]]:
     """A closed row cut into runs of neighbours of which each continues the one before it.
 
-    The first run begins with the first item that does not continue its neighbour; where all do, with the first.
+    The first run begins with the first item that does not continue its neighbour, or else with the first.
     """
     first = next((k for k in range(len(items)) if not continues(items[k - 1], items[k])), 0)
     runs: list[list[Item]] = []

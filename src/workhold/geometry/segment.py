@@ -297,7 +297,7 @@ def carrier_intersections(a: Segment, b: Segment) -> list[Point]:
 
 
 def holds(segment: Segment, point: Point, tolerance: float) -> bool:
-    """Whether a point of a segment's line or circle lies on it, ends included, to within a tolerance in mm."""
+    """Whether a point of a segment's carrier lies on the segment, ends included, to a tolerance in mm."""
     slack = tolerance if isinstance(segment, Line) else tolerance / segment.radius
     return abs(segment.parameter(point)) <= segment.half_extent + slack
 

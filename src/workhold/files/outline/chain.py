@@ -117,7 +117,7 @@ class Chain:
 
     @property
     def segments(self) -> list[Segment]:
-        """Its lines and arcs, without those from a point to itself."""
+        """The lines and arcs of the chain, without those from a point to itself."""
         steps = zip(pairwise(self.points), self.bulges, strict=True)
         return [segment_from_bulge(start, end, bulge) for (start, end), bulge in steps if start != end]
 

@@ -1,10 +1,10 @@
 """The material of a solid along upright lines: where a line through a point of the plane runs inside it.
 
-Most faces are met once: flat ones, and cones about an upright axis on one side of their tip. A line meets such
-a face where its border, seen from above, goes around the line's point. That is so when a ray from the point
-crosses the border an odd number of times (M. Shimrat, *Algorithm 112: position of point relative to polygon*,
-Communications of the ACM 5 (1962)). All these faces are asked at once, which is much faster than the library
-for faces with many edges.
+Most faces are met once: flat ones, and cones about an upright axis on one side of their tip. A line meets
+such a face where its border, seen from above, goes around the line's point. That is so when a ray from the
+point crosses the border an odd number of times (M. Shimrat, *Algorithm 112: position of point relative to
+polygon*, Communications of the ACM 5 (1962)). All these faces are asked at once, which is much faster than
+the library for faces with many edges.
 
 Glossary
 --------

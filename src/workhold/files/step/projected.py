@@ -8,8 +8,8 @@ Folds and level cuts of a surface turned about an upright axis are circles, what
 
 Glossary
 --------
-fold : the contour generator of computer vision, where a face stands upright and so may bound what is seen of it
-    from above (Cipolla and Giblin, "Visual Motion of Curves and Surfaces", 2000).
+fold : where a leaning face stands upright, and so may bound what is seen of it from above. It is the contour
+    generator of computer vision (Cipolla and Giblin, "Visual Motion of Curves and Surfaces", 2000).
 turned surface : a curve turned about an axis, as of a part from the lathe.
 """
 

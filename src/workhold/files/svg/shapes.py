@@ -74,7 +74,7 @@ def path(figure: ShapeElement) -> Iterator[Shape]:
             f"{label} has path data that cannot be read ('{short(data)}'): correct it."
         ) from error
     start: Point = (0.0, 0.0)
-    steps: list[Step] = []
+    steps: list[PathStep] = []
     for number, segment in enumerate(segments):
         kind = type(segment).__name__
         if kind == "Move":
@@ -93,7 +93,7 @@ def path(figure: ShapeElement) -> Iterator[Shape]:
         yield subpath(start, steps)
 
 
-class Step(NamedTuple):
+class PathStep(NamedTuple):
     """A segment of a path: its last point, bulge and label, and the curve that it is, if it is one."""
 
     end: Point
@@ -102,7 +102,7 @@ class Step(NamedTuple):
     curve: Pieces | None = None
 
 
-def subpath(start: Point, steps: Sequence[Step]) -> Shape:
+def subpath(start: Point, steps: Sequence[PathStep]) -> Shape:
     """The shape of the steps from a point."""
     ends, bulges, labels, curves = zip(*steps, strict=True)
     return Shape((start, *ends), bulges, labels, {k: c for k, c in enumerate(curves) if c is not None})
@@ -153,19 +153,19 @@ def plain_commands(data: str) -> Iterator[str]:
             again = count > 0 and ARGUMENT.match(data, position) is not None
 
 
-def steps_of(segment: Any, kind: str, label: str) -> list[Step]:
+def steps_of(segment: Any, kind: str, label: str) -> list[PathStep]:
     """What one path command draws: the arc of a circle as one or two arcs, and anything else as one segment.
 
     Raises InputError for numbers that are missing or not finite.
     """
     end = xy(segment.end, label)
     if kind in ("Line", "Close"):
-        return [Step(end, 0.0, label)]
+        return [PathStep(end, 0.0, label)]
     start = xy(segment.start, label)
     if kind != "Arc":
         between = [segment.control] if kind == "QuadraticBezier" else [segment.control1, segment.control2]
         curve = polynomial_pieces([start, *(xy(point, label) for point in between), end])
-        return [Step(end, 0.0, label, curve)]
+        return [PathStep(end, 0.0, label, curve)]
     if end == start:
         return []  # SVG 2, 9.5.1
     radius, other = float(segment.rx), float(segment.ry)
@@ -174,16 +174,16 @@ def steps_of(segment: Any, kind: str, label: str) -> list[Step]:
         major, minor = ((x - cx, y - cy) for x, y in (xy(segment.prx, label), xy(segment.pry, label)))
         curve = ellipse_pieces((cx, cy), major, minor, float(segment.get_start_t()), float(segment.sweep))
         curve[0, 0], curve[-1, -1] = (*start, 1.0), (*end, 1.0)
-        return [Step(end, 0.0, label, curve)]
+        return [PathStep(end, 0.0, label, curve)]
     sweep = arc_sweep(start, end, radius, float(segment.sweep))
     bulges = arc_bulges(sweep)
     if len(bulges) == 1:
-        return [Step(end, bulges[0], label)]
+        return [PathStep(end, bulges[0], label)]
     cx, cy = xy(segment.center, label)
     c, s = cos(sweep / 2), sin(sweep / 2)
     dx, dy = start[0] - cx, start[1] - cy
     middle = (cx + c * dx - s * dy, cy + s * dx + c * dy)
-    return [Step(middle, bulges[0], label), Step(end, bulges[1], label)]
+    return [PathStep(middle, bulges[0], label), PathStep(end, bulges[1], label)]
 
 
 def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
