@@ -11,7 +11,7 @@ from typing import Any
 __all__ = ["READERS", "read_here", "run_here", "work_reading_here"]
 
 # What reads by ``files.apart.run_apart``.
-READERS = tuple(f"workhold.files.step.{name}" for name in ("reader", "by_height", "part_shape", "solid_list"))
+READERS = tuple(f"workhold.files.step.{name}" for name in ("reader", "by_height", "part_shape", "solids"))
 
 
 def run_here(module: str, content: bytes, options: Mapping[str, Any], what: str) -> Any:

@@ -26,7 +26,7 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fused, prism, upright
 
-from workhold.files.step.solids import along, bounding_box
+from workhold.files.step.library import along, bounding_box
 
 __all__ = ["EXAMPLES", "SolidExample"]
 

@@ -26,7 +26,7 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt
 from step_shapes import cylinder
 
 from workhold import Fixture, Workpiece
-from workhold.files.step.solids import sub_shapes
+from workhold.files.step.library import sub_shapes
 from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances

@@ -21,7 +21,7 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
 
-from workhold.files.step.solids import bounding_box
+from workhold.files.step.library import bounding_box
 from workhold.model.bodies import COLOURS, BodyKind
 
 

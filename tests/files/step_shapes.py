@@ -17,8 +17,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepP
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 
-from workhold.files.step.library import load_step_library
-from workhold.files.step.solids import bounding_box, sub_shapes
+from workhold.files.step.library import bounding_box, load_step_library, sub_shapes
 
 
 def box(x: float, y: float, z: float, at: Sequence[float] = (0, 0, 0)) -> Any:

@@ -16,7 +16,7 @@ from workhold.geometry.segment import (
     Line,
     carrier_intersections,
     common_points,
-    contains_parameter,
+    holds,
     segment_from_bulge,
 )
 
@@ -118,7 +118,7 @@ def test_arcs_meet_where_a_sampling_says_so():
         points = np.array([a.at(x) for x in t])
         off = np.hypot(*(points - b.center).T) - b.radius
         changes = np.flatnonzero(off[1:] * off[:-1] < 0)
-        inside = [contains_parameter(b, b.parameter(tuple(points[k])), 0.0) for k in changes]
+        inside = [holds(b, tuple(points[k]), 0.0) for k in changes]
         margin = [abs(abs(b.parameter(tuple(points[k]))) - b.half_sweep) for k in changes]
         if min([*margin, 1.0]) < 0.01 or (
             np.abs(off).min() > 0 and np.abs(off).min() < 1e-2 and not len(changes)

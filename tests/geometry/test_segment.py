@@ -18,7 +18,7 @@ from workhold.geometry.segment import (
     bounding_box,
     circle_circle,
     common_points,
-    contains_parameter,
+    holds,
     segment_from_bulge,
     segment_rows,
 )
@@ -278,5 +278,5 @@ def test_circles_that_touch_have_one_common_point_and_one_inside_another_none() 
 def test_a_tolerance_at_the_end_of_an_arc_is_a_length() -> None:
     """So much along the arc, whatever its radius."""
     arc = Arc((0.0, 0.0), 100.0, 0.0, 0.5, 1.0)
-    assert contains_parameter(arc, 0.5 + 0.9e-5, 1e-3)
-    assert not contains_parameter(arc, 0.5 + 1.1e-5, 1e-3)
+    assert holds(arc, arc.at(0.5 + 0.9e-5), 1e-3)
+    assert not holds(arc, arc.at(0.5 + 1.1e-5), 1e-3)

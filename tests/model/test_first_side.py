@@ -35,7 +35,7 @@ def test_standing_is_as_the_reader_has_it(axis: str) -> None:
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
     from OCP.gp import gp_Pnt
 
-    from workhold.files.step.solids import along, bounding_box
+    from workhold.files.step.library import along, bounding_box
 
     box = BRepPrimAPI_MakeBox(gp_Pnt(1, 2, 3), 10.0, 20.0, 40.0).Solid()
     low, high = bounding_box(along(box, axis))

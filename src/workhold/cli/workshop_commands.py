@@ -194,13 +194,16 @@ def drill(
 
     made = jaw_plates(toolkit, hole_diameter=diameter, edge=distance, bolts=bolted, unit=shown)
     if ending == ".dxf":
-        from workhold.files.dxf.writer import write_plates_dxf
+        from workhold.files.dxf.writer import plates_dxf
 
-        write_plates_dxf(made, path)
+        content = plates_dxf(made)
     else:
-        from workhold.files.step.writer import write_plates_step
+        from workhold.files.step.writer import plates_step
 
-        write_plates_step(made, path, thick)
+        content = plates_step(made, thick)
+    from workhold.files.atomic import write_bytes
+
+    write_bytes(path, content)
     print_written(json_, f"Written to {path}.", path)
 
 

@@ -19,7 +19,7 @@ from collections.abc import Iterator
 from math import atan2, cos, dist, inf, isfinite, pi, sin, sqrt, tan
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import AS_ARC, CORNER, CURVATURE_JUMP, DISGUISE, SHORTEST
@@ -37,34 +37,43 @@ from workhold.geometry.rational import (
 from workhold.geometry.segment import Arc, Line, Point, segment_from_bulge
 from workhold.limits import MOST_RADIUS
 
-__all__ = ["FittedCurve", "FittedRun", "biarcs", "circle_of_points", "corners_of", "fitted_curve"]
+__all__ = ["FittedCurve", "biarcs", "circle_of_points", "corners_of", "fitted_curve"]
 
 # A biarc is as long as it can be but for this share, and so many lengths are tried.
 STEP, MOST_STEPS = 0.02, 60
 
 
 @frozen
-class FittedRun:
-    """A line or arc in place of a part of a curve, its ends as points, and a bound of the distance in mm."""
+class FittedCurve:
+    """Lines and arcs in place of a curve or a part of one.
+
+    Parameters
+    ----------
+    points : N + 1 points (x, y) in mm; the last is the first where the curve is closed.
+    bulges : N bulges.
+    departure : bound of the distance between them and the curve, either way, in mm.
+    is_disguise : whether the curve is lines and arcs but for hairs; otherwise biarcs may stand in its place.
+    """
 
     points: tuple[Point, ...]
     bulges: tuple[float, ...]
     departure: float
+    is_disguise: bool = False
 
 
-def biarcs(pieces: Pieces, tolerance: float) -> list[FittedRun]:
+def biarcs(pieces: Pieces, tolerance: float) -> list[FittedCurve]:
     """Biarcs in place of a curve, each as long as the tolerance allows, tangent to the curve where they meet.
 
     Corners of the curve stay corners.
     """
     corners = [0, *corners_of(pieces)]
-    found: list[FittedRun] = []
+    found: list[FittedCurve] = []
     for first, last in zip(corners, [*corners[1:], len(pieces)], strict=True):
         found += smooth_biarcs(pieces[first:last], tolerance)
     return found
 
 
-def smooth_biarcs(pieces: Pieces, tolerance: float) -> Iterator[FittedRun]:
+def smooth_biarcs(pieces: Pieces, tolerance: float) -> Iterator[FittedCurve]:
     """Biarcs in place of a curve without corners."""
     total = float(len(pieces))
     place, step = 0.0, total
@@ -74,7 +83,7 @@ def smooth_biarcs(pieces: Pieces, tolerance: float) -> Iterator[FittedRun]:
         step, place = 1.2 * (reach - place), reach
 
 
-def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -> tuple[FittedRun, float]:
+def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -> tuple[FittedCurve, float]:
     """The biarc that reaches farthest from a place of a curve, to a share of ``STEP``, and its end.
 
     ``step`` is the first length tried. What is smaller than the tolerance may be a line instead.
@@ -98,16 +107,16 @@ def longest_biarc(pieces: Pieces, place: float, step: float, tolerance: float) -
     return line, reach
 
 
-def small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedRun | None:
+def small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
     """The line for a stretch of a curve smaller than the tolerance, such as a cusp; None for others."""
     stretch = cut(pieces, first, last)
     places = (stretch[..., :2] / stretch[..., 2:]).reshape(-1, 2)
     size = float(np.hypot(*np.ptp(places, axis=0)))
     ends = point_at(pieces, first), point_at(pieces, last)
-    return FittedRun(ends, (0.0,), size) if size <= tolerance else None
+    return FittedCurve(ends, (0.0,), size) if size <= tolerance else None
 
 
-def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedRun | None:
+def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
     """The biarc in place of a stretch of a smooth curve; None where it departs by more than the tolerance.
 
     Each arc is compared with the part of the curve between its ends. Both centres lie on the normal at the
@@ -136,7 +145,7 @@ def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> Fitted
         away = max(away, departure(cut(pieces, low, high), segment_from_bulge(p, q, bulge), tolerance))
         if away > tolerance:
             return None
-    return FittedRun((start, joint, end), bulges, away)
+    return FittedCurve((start, joint, end), bulges, away)
 
 
 def less(p: Point, q: Point) -> Point:
@@ -163,11 +172,10 @@ def joint_of(start: Point, end: Point, begins: Point, ends: Point) -> Point | No
     if divisor <= 0.0:
         return None
     d = square / divisor
-    corners = (
-        (start[0] + d * begins[0], start[1] + d * begins[1]),
-        (end[0] - d * ends[0], end[1] - d * ends[1]),
-    )
-    return (corners[0][0] + corners[1][0]) / 2, (corners[0][1] + corners[1][1]) / 2
+    # The middle of both corners.
+    x = (start[0] + d * begins[0]) + (end[0] - d * ends[0])
+    y = (start[1] + d * begins[1]) + (end[1] - d * ends[1])
+    return x / 2, y / 2
 
 
 def crossing(pieces: Pieces, first: float, last: float, joint: Point, across: Point) -> float | None:
@@ -203,24 +211,6 @@ def corners_of(pieces: Pieces) -> list[int]:
     return [int(k) + 1 for k in np.flatnonzero(turned)]
 
 
-@frozen
-class FittedCurve:
-    """Lines and arcs in place of a curve.
-
-    Parameters
-    ----------
-    points : N + 1 points (x, y) in mm; the last is the first where the curve is closed.
-    bulges : N bulges.
-    departure : bound of the distance between them and the curve, either way, in mm.
-    is_disguise : whether the curve is lines and arcs but for hairs; otherwise biarcs stand in its place.
-    """
-
-    points: tuple[Point, ...]
-    bulges: tuple[float, ...]
-    departure: float
-    is_disguise: bool
-
-
 def fitted_curve(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     """Lines and arcs for a curve: its own where it is a disguise, else biarcs within a tolerance in mm.
 
@@ -234,20 +224,20 @@ def fitted_curve(pieces: Pieces, tolerance: float) -> FittedCurve | None:
         return None
     whole = whole_circle(pieces, DISGUISE)
     if whole is not None:
-        return FittedCurve(whole.points, whole.bulges, whole.departure, True)
+        return evolve(whole, is_disguise=True)
     runs = disguised(pieces, [0, *breaks_of(pieces), len(pieces)])
     if all(run is not None for _, _, run in runs):
         return put_together([run for _, _, run in runs if run is not None], True)
     whole = whole_circle(pieces, tolerance)
     if whole is not None:
-        return put_together([whole], False)
-    fitted: list[FittedRun] = []
+        return whole
+    fitted: list[FittedCurve] = []
     for first, last, run in runs:
         fitted += [run] if run is not None else biarcs(pieces[first:last], tolerance)
     return put_together(fitted, False)
 
 
-def put_together(runs: list[FittedRun], is_disguise: bool) -> FittedCurve:
+def put_together(runs: list[FittedCurve], is_disguise: bool) -> FittedCurve:
     """One curve of runs that follow each other."""
     points = [runs[0].points[0]]
     for run in runs:
@@ -265,32 +255,30 @@ def breaks_of(pieces: Pieces) -> list[int]:
     return [k for k in range(1, len(pieces)) if k in corners or not smooth[k - 1]]
 
 
-def disguised(pieces: Pieces, places: list[int]) -> list[tuple[int, int, FittedRun | None]]:
+def disguised(pieces: Pieces, places: list[int]) -> list[tuple[int, int, FittedCurve | None]]:
     """Longest rows of stretches that are one line or arc, as (first piece, last piece + 1, run).
 
     Stretches that are none come alone, with None.
     """
-    found: list[tuple[int, int, FittedRun | None]] = []
+    found: list[tuple[int, int, FittedCurve | None]] = []
     k = 0
     while k < len(places) - 1:
-        run, taken, step = one_segment(pieces[places[k] : places[k + 1]], DISGUISE), k + 1, 1
+        run, taken, step, growing = one_segment(pieces[places[k] : places[k + 1]], DISGUISE), k + 1, 1, True
         # Steps that double and then halve: as many stretches as one line or arc takes in.
-        growing = True
         while run is not None and step >= 1:
             further = min(taken + step, len(places) - 1)
             longer = None if further == taken else one_segment(pieces[places[k] : places[further]], DISGUISE)
-            if longer is not None:
+            if longer is None:
+                growing, step = False, step // 2
+            else:
                 run, taken = longer, further
                 step = 2 * step if growing else step
-            else:
-                growing = False
-                step //= 2
         found.append((places[k], places[taken], run))
         k = taken
     return found
 
 
-def one_segment(pieces: Pieces, tolerance: float) -> FittedRun | None:
+def one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     """The line or arc, through both ends, that a curve is to within a tolerance; None where there is none."""
     start, end = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
     chord = dist(start, end)
@@ -299,7 +287,7 @@ def one_segment(pieces: Pieces, tolerance: float) -> FittedRun | None:
     line = Line(start, end)
     away = departure(pieces, line, tolerance)
     if isfinite(away):
-        return FittedRun((start, end), (0.0,), away)
+        return FittedCurve((start, end), (0.0,), away)
     circle = circle_near(pieces)
     if circle is None:
         return None
@@ -315,7 +303,7 @@ def one_segment(pieces: Pieces, tolerance: float) -> FittedRun | None:
     mid_angle, sign = atan2(start[1] - cy, start[0] - cx) + sweep / 2, 1.0 if sweep > 0 else -1.0
     arc = Arc((cx, cy), radius, mid_angle, abs(sweep) / 2, sign)
     away = departure(pieces, arc, max(tolerance, as_arcs_are_written(pieces, arc)))
-    return FittedRun(*halves((start, end), sweep, (cx, cy)), away) if isfinite(away) else None
+    return FittedCurve(*halves((start, end), sweep, (cx, cy)), away) if isfinite(away) else None
 
 
 def halves(
@@ -330,7 +318,7 @@ def halves(
     return (ends[0], middle, ends[1]), (tan(sweep / 8),) * 2
 
 
-def whole_circle(pieces: Pieces, tolerance: float) -> FittedRun | None:
+def whole_circle(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     """The circle that a closed curve is to within a tolerance; None where it is none."""
     start = point_at(pieces, 0.0)
     if dist(start, point_at(pieces, float(len(pieces)))) > SHORTEST:
@@ -349,7 +337,7 @@ def whole_circle(pieces: Pieces, tolerance: float) -> FittedRun | None:
     if not isfinite(away):
         return None
     first, second = ((cx + radius * cos(t), cy + radius * sin(t)) for t in (angle, angle + pi))
-    return FittedRun((first, second, first), (sign, sign), away)
+    return FittedCurve((first, second, first), (sign, sign), away)
 
 
 def as_arcs_are_written(pieces: Pieces, arc: Arc) -> float:

@@ -15,11 +15,10 @@ end : where a hull edge ends: at a corner, at the end of a face that lies along 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import accumulate
-from math import hypot
+from math import dist
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import LEAST_HULL_EDGE, TOUCHING
@@ -95,8 +94,7 @@ class HullEdge:
     @property
     def length(self) -> float:
         """Length in mm."""
-        (ax, ay), (bx, by) = self.start.point, self.end.point
-        return hypot(bx - ax, by - ay)
+        return dist(self.start.point, self.end.point)
 
     @property
     def tangent(self) -> Point:
@@ -131,20 +129,16 @@ class HullPieces:
     @classmethod
     def of(cls, segments: Sequence[Segment], counts: Sequence[int] | None = None) -> HullPieces:
         """The pieces of closed chains of segments that may lie on their hull, see :func:`hull_edges`."""
-        chains = [len(segments)] if counts is None else counts
-        firsts = [
-            first
-            for first, count in zip(accumulate([0, *chains[:-1]]), chains, strict=True)
-            for _ in range(count)
-        ]
-        sizes = [count for count in chains for _ in range(count)]
+        before: list[int] = []
+        for count in [len(segments)] if counts is None else counts:
+            first = len(before)
+            before += [first + (k - 1) % count for k in range(count)]
         joints: dict[Point, tuple[int, ...]] = {}
         rows: list[tuple[float, ...]] = []
         faces: list[tuple[int, ...]] = []
         for k, segment in enumerate(segments):
             if not (isinstance(segment, Arc) and segment.is_full):
-                first, size = firsts[k], sizes[k]
-                joints[segment.start] = (first + (k - first - 1) % size, k)
+                joints[segment.start] = (before[k], k)
             if isinstance(segment, Arc) and segment.sign > 0:
                 middle = np.cos(segment.mid_angle), np.sin(segment.mid_angle)
                 cosine = -2.0 if segment.is_full else np.cos(segment.half_sweep)
@@ -273,6 +267,6 @@ def with_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
             abs(edge.height(p)) <= 2 * TOUCHING for p in (face.start, face.end)
         )
         if end.radius == 0.0 and lies:
-            end = HullEnd(end.point, (end.faces[index],), end.center, 0.0, along=True)
+            end = evolve(end, faces=(end.faces[index],), along=True)
         ends.append(end)
     return HullEdge(*ends)

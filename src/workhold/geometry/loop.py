@@ -13,7 +13,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
-from math import atan2, hypot, pi, sin
+from math import atan2, dist, pi, sin
+from typing import TypeVar
 
 import numpy as np
 from attrs import define, evolve, frozen
@@ -33,7 +34,6 @@ from workhold.errors import InputError
 from workhold.geometry.segment import (
     Arc,
     Line,
-    Point,
     Segment,
     bounding_box,
     common_points,
@@ -55,10 +55,12 @@ __all__ = [
     "refuse_no_area",
     "refuse_self_crossing",
     "reversed_vertices",
+    "runs_around",
     "signed_area",
 ]
 
 Place = Callable[[int], str]
+Item = TypeVar("Item")
 
 
 @define(frozen=True, slots=False, eq=False)
@@ -110,16 +112,13 @@ def checked_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np
         For a wrong shape, NaN, infinite and far too large numbers, zero-length segments, or too few segments
         to enclose anything.
     """
+    no_list = f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
     try:
         array = np.array(vertices, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(
-            f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
-        ) from error
+        raise InputError(no_list) from error
     if array.ndim != 2 or array.shape[1] != 3:
-        raise InputError(
-            f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
-        )
+        raise InputError(no_list)
     bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
     if bad.size:
         raise InputError(
@@ -160,10 +159,7 @@ def is_curved(bulge: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray
 def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
     """Refuses arcs of (N, 3) vertices, with chords (N,), that reach too far or have too large a radius.
 
-    Raises
-    ------
-    InputError
-        Naming the place of the first.
+    Raises InputError, naming the place of the first.
     """
     bulge = np.minimum(np.abs(array[:, 2]), 1e30)
     curved = is_curved(bulge, steps)
@@ -254,13 +250,9 @@ def refuse_self_crossing(shape: LoopShape, place: Place) -> None:
     for i, j in near_pairs(box, box):
         if j <= i:
             continue
-        joints: list[Point] = []
-        if j == i + 1:
-            joints.append(segments[i].end)
-        if (j + 1) % count == i:
-            joints.append(segments[j].end)
+        joints = [segments[k].end for k, after in ((i, j), (j, i)) if (k + 1) % count == after]
         for x, y in common_points(segments[i], segments[j], TOUCHING):
-            if all(hypot(x - px, y - py) > backward_error for px, py in joints):
+            if all(dist((x, y), joint) > backward_error for joint in joints):
                 raise InputError(
                     f"{place(i)} and {place(j)} cross or touch at ({x:.6g}, {y:.6g}): an outline may meet "
                     "itself only where one segment ends and the next begins."
@@ -296,8 +288,11 @@ def same_carrier(a: Segment, b: Segment) -> bool:
         dx, dy = b.start[0] - a.start[0], b.start[1] - a.start[1]
         return abs(tx - ux) + abs(ty - uy) < SAME_DIRECTION and abs(dx * ty - dy * tx) < SAME_CARRIER
     if isinstance(a, Arc) and isinstance(b, Arc):
-        apart = hypot(a.center[0] - b.center[0], a.center[1] - b.center[1])
-        return apart < SAME_CARRIER and abs(a.radius - b.radius) < SAME_CARRIER and a.sign == b.sign
+        return (
+            dist(a.center, b.center) < SAME_CARRIER
+            and abs(a.radius - b.radius) < SAME_CARRIER
+            and a.sign == b.sign
+        )
     return False
 
 
@@ -336,6 +331,21 @@ def merged(run: Sequence[Segment]) -> Segment:
     return evolve(first, mid_angle=start + first.sign * half_sweep, half_sweep=half_sweep)
 
 
+def runs_around(items: Sequence[Item], continues: Callable[[Item, Item], bool]) -> list[list[Item]]:
+    """A closed row cut into runs of neighbours of which each continues the one before it.
+
+    The first run begins with the first item that does not continue its neighbour, or else with the first.
+    """
+    first = next((k for k in range(len(items)) if not continues(items[k - 1], items[k])), 0)
+    runs: list[list[Item]] = []
+    for item in (*items[first:], *items[:first]):
+        if runs and continues(runs[-1][-1], item):
+            runs[-1].append(item)
+        else:
+            runs.append([item])
+    return runs
+
+
 def faces_of_loop(
     segments: Sequence[Segment], first_number: int, marks: Sequence[object] | None = None
 ) -> list[Face]:
@@ -345,16 +355,12 @@ def faces_of_loop(
     ----------
     marks : of every segment; segments of different marks are never one face. None where all are alike.
     """
-    count = len(segments)
-    starts = [
-        k
-        for k in range(count)
-        if not same_carrier(segments[k - 1], segments[k]) or (marks is not None and marks[k - 1] != marks[k])
-    ] or [0]
+
+    def continues(one: int, other: int) -> bool:
+        return same_carrier(segments[one], segments[other]) and (marks is None or marks[one] == marks[other])
+
     faces = []
-    for position, start in enumerate(starts):
-        stop = starts[position + 1] if position + 1 < len(starts) else starts[0] + count
-        run = [k % count for k in range(start, stop)]
+    for run in runs_around(range(len(segments)), continues):
         numbers = tuple(first_number + k for k in run)
         faces.append(Face(min(numbers), numbers, merged([segments[k] for k in run])))
     return sorted(faces, key=lambda face: face.number)

@@ -14,7 +14,7 @@ run : neighbouring segments of a loop that one line or arc through the ends of t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, cos, dist, hypot, inf, isfinite, pi, sin, tan, tau
+from math import atan2, cos, dist, inf, isfinite, pi, sin, tan, tau
 
 import numpy as np
 from attrs import frozen
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import DISGUISE, DRAWN_ON, READING, SHORTEST
 from workhold.geometry.curve_fit import circle_of_points
+from workhold.geometry.loop import runs_around
 from workhold.geometry.rational import arc_pieces, departure, joined_pieces
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
@@ -46,7 +47,7 @@ def on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, 
     """
     out, changed = np.array(vertices), 0
     for chain in chains(segments):
-        arcs = [segment for k in chain if isinstance(segment := segments[k % len(segments)], Arc)]
+        arcs = [segment for k in chain if isinstance(segment := segments[k], Arc)]
         circle = None if is_one_already(arcs) else circle_of(arcs, len(chain) == len(segments))
         if circle is not None:
             write_chain(out, chain, circle, len(segments))
@@ -58,12 +59,7 @@ def on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, 
 def is_one_already(arcs: Sequence[Arc]) -> bool:
     """Whether arcs differ by no more than the rounding of a drawing."""
     first, hair = arcs[0], READING / 100
-    return all(
-        hypot(arc.center[0] - first.center[0], arc.center[1] - first.center[1])
-        + abs(arc.radius - first.radius)
-        < hair
-        for arc in arcs
-    )
+    return all(dist(arc.center, first.center) + abs(arc.radius - first.radius) < hair for arc in arcs)
 
 
 def follows(one: Segment, other: Segment) -> bool:
@@ -75,20 +71,19 @@ def follows(one: Segment, other: Segment) -> bool:
         return False
     if abs(one.radius - other.radius) > 0.1 * (one.radius + other.radius) or one.is_full or other.is_full:
         return False
-    (ax, ay), (bx, by) = one.normal(one.sign * one.half_sweep), other.normal(-other.sign * other.half_sweep)
+    ends = one.normal(one.sign * one.half_sweep), other.normal(-other.sign * other.half_sweep)
     chord = min(arc.radius * min(sin(min(arc.half_sweep, pi / 2)), 1.0) * 2 for arc in (one, other))
-    return hypot(ax - bx, ay - by) <= 16 * READING / chord + 1e-9
+    return dist(*ends) <= 16 * READING / chord + 1e-9
 
 
 def chains(segments: Sequence[Segment]) -> list[list[int]]:
-    """Segments' numbers of each chain of two or more arcs; past the last vertex they are counted on."""
-    count = len(segments)
-    starts = [k for k in range(count) if not follows(segments[k - 1], segments[k])]
-    ends = [*starts[1:], starts[0] + count] if starts else [count]
-    found = [
-        list(range(first, last)) for first, last in zip(starts or [0], ends, strict=True) if last - first > 1
-    ]
-    return [chain for chain in found if isinstance(segments[chain[0] % count], Arc)]
+    """Segments' numbers of each chain of two or more arcs, in running order."""
+
+    def continues(one: int, other: int) -> bool:
+        return follows(segments[one], segments[other])
+
+    found = runs_around(range(len(segments)), continues)
+    return [chain for chain in found if len(chain) > 1 and isinstance(segments[chain[0]], Arc)]
 
 
 def circle_of(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] | None:
@@ -128,13 +123,13 @@ def is_near(arc: Arc, center: Point, radius: float) -> bool:
         parameter = (angle - arc.mid_angle + pi) % tau - pi
         if abs(parameter) <= arc.half_sweep:
             points.append(arc.at(parameter))
-    return all(abs(hypot(x - center[0], y - center[1]) - radius) <= READING for x, y in points)
+    return all(abs(dist(point, center) - radius) <= READING for point in points)
 
 
 def write_chain(out: Array, chain: Sequence[int], circle: tuple[Point, float], count: int) -> None:
     """Puts the inner vertices of a chain on its circle, and writes the bulges of its arcs."""
     (cx, cy), radius = circle
-    places = [k % count for k in chain] + [(chain[-1] + 1) % count]
+    places = [*chain, (chain[-1] + 1) % count]
     angles = [atan2(out[k, 1] - cy, out[k, 0] - cx) for k in places]
     sign = 1.0 if out[places[0], 2] > 0 else -1.0
     first = 0 if len(chain) == count else 1
@@ -360,7 +355,7 @@ def arc_near(pieces: Sequence[Piece], points: Array, line: Line) -> Arc | None:
     (mx, my), (tx, ty) = line.middle, line.tangent
     along = (cx - mx) * tx + (cy - my) * ty
     cx, cy = cx - along * tx, cy - along * ty
-    radius = hypot(line.start[0] - cx, line.start[1] - cy)
+    radius = dist(line.start, (cx, cy))
     angles = np.arctan2(points[:, 1] - cy, points[:, 0] - cx)
     sweep = float(((np.diff(angles) + pi) % (2 * pi) - pi).sum())
     # One bulge near a whole turn fixes the centre badly.

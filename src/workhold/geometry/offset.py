@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,13 +29,11 @@ from workhold.geometry.segment import (
     Segment,
     bounding_box,
     carrier_intersections,
-    circle_circle,
-    line_circle,
     segment_rows,
 )
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["clear_parts", "raw_offset", "trimmed_offsets"]
+__all__ = ["clear_parts", "joint_circle", "kept_parts", "raw_offset", "trimmed_offsets"]
 
 
 def raw_offset(segment: Segment, radius: float) -> Segment | None:
@@ -46,21 +45,6 @@ def raw_offset(segment: Segment, radius: float) -> Segment | None:
     if segment.radius + segment.sign * radius <= CLEARANCE:
         return None
     return segment.grown(segment.sign * radius)
-
-
-def cut_points(
-    piece: Segment, others: Sequence[Segment], joints: Sequence[Point], radius: float
-) -> list[Point]:
-    """Points at which a raw piece may enter or leave the boundary."""
-    points: list[Point] = []
-    for other in others:
-        points += carrier_intersections(piece, other)
-    for joint in joints:
-        if isinstance(piece, Line):
-            points += line_circle(piece, joint, radius)
-        else:
-            points += circle_circle(piece.center, piece.radius, joint, radius)
-    return points
 
 
 def trimmed_offsets(
@@ -82,6 +66,7 @@ def trimmed_offsets(
     rows = segment_rows(segments)
     raw = [raw_offset(segment, radius) for segment in segments]
     joints = [s.start for s in segments if not (isinstance(s, Arc) and s.is_full)]
+    circles = [joint_circle(joint, radius) for joint in joints]
     boxes = np.array([bounding_box(segment) for segment in segments])
     joint_boxes = np.array([(*joint, *joint) for joint in joints]).reshape(-1, 4)
     pieces: list[tuple[int, Segment]] = []
@@ -103,8 +88,8 @@ def trimmed_offsets(
         near = np.flatnonzero(boxes_apart(boxes, bounding_box(piece)) <= 2 * radius + CLEARANCE)
         others = [r for side in sides for k in near if k != index and (r := side[k]) is not None]
         close = np.flatnonzero(boxes_apart(joint_boxes, bounding_box(piece)) <= radius + CLEARANCE)
-        points = cut_points(piece, others, [joints[k] for k in close], radius)
-        pieces += [(index, kept) for kept in kept_parts(piece, points, partial(is_clear, beside))]
+        others += [circles[k] for k in close]
+        pieces += [(index, kept) for kept in kept_parts(piece, others, partial(is_clear, beside))]
     return pieces
 
 
@@ -116,32 +101,40 @@ def clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[
     """
     rows = segment_rows(zone)
     others = [raw for segment in zone if (raw := raw_offset(segment, radius)) is not None]
-    points = cut_points(piece, others, [segment.start for segment in zone], radius)
+    others += [joint_circle(segment.start, radius) for segment in zone]
 
     def is_clear(middles: NDArray[np.float64]) -> NDArray[np.bool_]:
         outside = np.array([not is_inside(x, y, rows) for x, y in middles], np.bool_)
         return np.asarray(outside & (outline_distances(middles, rows) >= radius - CLEARANCE))
 
-    return kept_parts(piece, points, is_clear)
+    return kept_parts(piece, others, is_clear)
+
+
+def joint_circle(joint: Point, radius: float) -> Segment:
+    """The circle on which the centre of a disc rolls around a joint."""
+    return Arc(joint, radius, 0.0, pi, 1.0)
 
 
 def kept_parts(
-    piece: Segment, points: Sequence[Point], is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]]
+    piece: Segment,
+    others: Sequence[Segment],
+    is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]],
 ) -> list[Segment]:
-    """Parts of a raw piece, cut at some points, that stay clear; ``is_clear`` takes (M, 2) points."""
+    """Parts of a raw piece that stay clear; ``is_clear`` takes (M, 2) points.
+
+    It may enter or leave the boundary only where it meets the line or the circle of another piece.
+    """
     half = piece.half_extent
+    points = [point for other in others for point in carrier_intersections(piece, other)]
     inner = sorted(p for p in (piece.parameter(point) for point in points) if -half < p < half)
     cuts = [-half, *inner, half]
     scale = piece.radius if isinstance(piece, Arc) else 1.0
-    middles = np.array([piece.at((a + b) / 2) for a, b in pairwise(cuts)])
-    clear = is_clear(middles)
     spans: list[list[float]] = []
-    for a, b, keep in zip(cuts, cuts[1:], clear, strict=False):
-        if not keep:
-            continue
-        if spans and spans[-1][1] == a:
+    clear = is_clear(np.array([piece.at((a + b) / 2) for a, b in pairwise(cuts)]))
+    for (a, b), keep in zip(pairwise(cuts), clear, strict=True):
+        if keep and spans and spans[-1][1] == a:
             spans[-1][1] = b
-        else:
+        elif keep:
             spans.append([a, b])
     if spans == [[-half, half]]:
         return [piece]

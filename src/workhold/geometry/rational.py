@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.errors import InputError
-from workhold.geometry.segment import Arc, Point, Segment
+from workhold.geometry.segment import Arc, Point, Segment, segment_from_bulge
 
 __all__ = [
     "Pieces",
@@ -138,10 +138,6 @@ def ellipse_pieces(center: Point, major: Point, minor: Point, start: float, swee
 
 def arc_pieces(start: Point, end: Point, bulge: float) -> Pieces:
     """The pieces of the arc of a bulge from one point to another, or of a line for a bulge of 0."""
-    if bulge == 0.0:
-        return polynomial_pieces([start, end])
-    from workhold.geometry.segment import Arc, segment_from_bulge
-
     segment = segment_from_bulge(start, end, bulge)
     if not isinstance(segment, Arc):
         return polynomial_pieces([start, end])
@@ -296,6 +292,8 @@ Array = NDArray[np.float64]
 
 # Halvings, after which a bound is within some thousandth of the curve's own size of what it bounds, squared.
 MOST_HALVINGS = 7
+# So many pieces are halved no more where they are near enough without.
+MOST_HALVED = 4096
 # A bound this near to a distance that is reached is good enough.
 NEAR_ENOUGH = 1.03
 # A share of the coefficients: a derivative that is nowhere below minus this vanishes or rises, but for
@@ -304,7 +302,7 @@ ROUNDING = 1e-11
 
 
 @lru_cache(maxsize=64)
-def product_table(n: int, m: int) -> tuple[Array, ...]:
+def product_table(n: int, m: int) -> Array:
     """Weights (n + 1, m + 1) of the products of Bernstein coefficients of degrees n and m."""
     i, j = np.arange(n + 1)[:, None], np.arange(m + 1)[None, :]
     weights = np.array(
@@ -312,14 +310,13 @@ def product_table(n: int, m: int) -> tuple[Array, ...]:
     )
     place = np.zeros((n + m + 1, n + 1, m + 1))
     place[i + j, i, j] = weights
-    return (place.reshape(n + m + 1, -1),)
+    return place.reshape(n + m + 1, -1)
 
 
 def product(a: Array, b: Array) -> Array:
     """(P, n + m + 1) Bernstein coefficients of the products of (P, n + 1) and (P, m + 1) ones."""
-    (table,) = product_table(a.shape[1] - 1, b.shape[1] - 1)
     outer: Array = (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
-    return outer @ table.T
+    return outer @ product_table(a.shape[1] - 1, b.shape[1] - 1).T
 
 
 def turning(u: Array, v: Array) -> Array:
@@ -346,9 +343,8 @@ def departure(pieces: Pieces, segment: Segment, limit: float) -> float:
         reached, bound, forward = measured(pieces, segment)
         if reached > limit:
             return inf
-        if bound <= limit and forward and (bound <= NEAR_ENOUGH * reached + 1e-9 or halving == MOST_HALVINGS):
-            return bound
-        if len(pieces) > 4096 and bound <= limit and forward:
+        is_last = halving == MOST_HALVINGS or len(pieces) > MOST_HALVED
+        if bound <= limit and forward and (is_last or bound <= NEAR_ENOUGH * reached + 1e-9):
             return bound
         if halving < MOST_HALVINGS:
             pieces = halved(pieces)

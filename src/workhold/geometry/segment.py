@@ -14,9 +14,9 @@ box : a rectangle with sides along the axes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from math import atan, atan2, cos, hypot, pi, sin, sqrt
+from math import atan, atan2, cos, dist, hypot, pi, sin, sqrt
 
 import numpy as np
 from attrs import evolve, frozen
@@ -34,13 +34,14 @@ __all__ = [
     "carrier_intersections",
     "circle_circle",
     "common_points",
-    "contains_parameter",
-    "line_circle",
+    "holds",
     "segment_from_bulge",
     "segment_rows",
 ]
 
 Point = tuple[float, float]
+# mm. A line and a circle, or two circles, that miss each other by no more have one point in common.
+TOUCH = 1e-9
 
 
 @frozen
@@ -58,7 +59,7 @@ class Line:
     @property
     def length(self) -> float:
         """Length in mm."""
-        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
+        return dist(self.start, self.end)
 
     @property
     def half_extent(self) -> float:
@@ -253,33 +254,31 @@ def line_line(a: Line, b: Line) -> list[Point]:
     return [(ax + s * atx, ay + s * aty)]
 
 
-def line_circle(line: Line, center: Point, radius: float, tolerance: float = 1e-9) -> list[Point]:
-    """Common points of a line and a circle; a touch within the tolerance in mm gives one point."""
+def line_circle(line: Line, center: Point, radius: float) -> list[Point]:
+    """Common points of a line and a circle; a touch within ``TOUCH`` gives one point."""
     (px, py), (tx, ty) = line.middle, line.tangent
     dx, dy = center[0] - px, center[1] - py
     along = dx * tx + dy * ty
     across = abs(dx * ty - dy * tx)
     foot = (px + along * tx, py + along * ty)
     if across >= radius:
-        return [foot] if across - radius <= tolerance else []
+        return [foot] if across - radius <= TOUCH else []
     half = sqrt((radius - across) * (radius + across))
     return [(foot[0] - half * tx, foot[1] - half * ty), (foot[0] + half * tx, foot[1] + half * ty)]
 
 
-def circle_circle(
-    center_a: Point, radius_a: float, center_b: Point, radius_b: float, tolerance: float = 1e-9
-) -> list[Point]:
-    """Common points of two circles; a touch within the tolerance in mm gives one, equal circles none."""
+def circle_circle(center_a: Point, radius_a: float, center_b: Point, radius_b: float) -> list[Point]:
+    """Common points of two circles; a touch within ``TOUCH`` gives one, equal circles none."""
     dx, dy = center_b[0] - center_a[0], center_b[1] - center_a[1]
     distance = hypot(dx, dy)
-    if distance <= tolerance:
+    if distance <= TOUCH:
         return []
     ux, uy = dx / distance, dy / distance
     along = (distance + (radius_a - radius_b) * (radius_a + radius_b) / distance) / 2
     square = (radius_a - along) * (radius_a + along)
     if square <= 0:
         gap = max(distance - radius_a - radius_b, abs(radius_a - radius_b) - distance)
-        if gap > tolerance:
+        if gap > TOUCH:
             return []
         along = radius_a if along > 0 else -radius_a
         return [(center_a[0] + along * ux, center_a[1] + along * uy)]
@@ -297,22 +296,18 @@ def carrier_intersections(a: Segment, b: Segment) -> list[Point]:
     return circle_circle(a.center, a.radius, b.center, b.radius)
 
 
-def contains_parameter(segment: Segment, parameter: float, tolerance: float) -> bool:
-    """Whether a parameter lies on a segment, ends included, to within a tolerance in mm."""
+def holds(segment: Segment, point: Point, tolerance: float) -> bool:
+    """Whether a point of a segment's carrier lies on the segment, ends included, to a tolerance in mm."""
     slack = tolerance if isinstance(segment, Line) else tolerance / segment.radius
-    return abs(parameter) <= segment.half_extent + slack
+    return abs(segment.parameter(point)) <= segment.half_extent + slack
 
 
 def distance_to_segment(point: Point, segment: Segment) -> float:
     """Distance in mm from a point to a segment."""
-    parameter = segment.parameter(point)
-    parameter = min(max(parameter, -segment.half_extent), segment.half_extent)
-    x, y = segment.at(parameter)
-    nearest = hypot(point[0] - x, point[1] - y)
-    if isinstance(segment, Arc) and abs(segment.parameter(point)) > segment.half_extent:
-        x, y = segment.at(-parameter)
-        nearest = min(nearest, hypot(point[0] - x, point[1] - y))
-    return nearest
+    parameter, half = segment.parameter(point), segment.half_extent
+    if abs(parameter) <= half:
+        return dist(point, segment.at(parameter))
+    return min(dist(point, segment.at(end)) for end in (-half, half))
 
 
 def common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
@@ -320,18 +315,12 @@ def common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
 
     Overlapping segments (same line or circle) give the ends of each that lie on the other.
     """
-    points = [
-        p
-        for p in carrier_intersections(a, b)
-        if contains_parameter(a, a.parameter(p), tolerance)
-        and contains_parameter(b, b.parameter(p), tolerance)
-    ]
+    points = [p for p in carrier_intersections(a, b) if holds(a, p, tolerance) and holds(b, p, tolerance)]
     points += [p for p in (a.start, a.end) if distance_to_segment(p, b) <= tolerance]
     points += [p for p in (b.start, b.end) if distance_to_segment(p, a) <= tolerance]
     if isinstance(a, Arc) and isinstance(b, Arc) and a.is_full and b.is_full:
-        apart = hypot(a.center[0] - b.center[0], a.center[1] - b.center[1])
-        if apart <= tolerance and abs(a.radius - b.radius) <= tolerance:
-            points.append(a.start)
+        same = dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance
+        points += [a.start] if same else []
     return points
 
 
@@ -344,6 +333,12 @@ def bounding_box(segment: Segment) -> tuple[float, float, float, float]:
                 xs.append(segment.center[0] + segment.radius * dx)
                 ys.append(segment.center[1] + segment.radius * dy)
     return min(xs), min(ys), max(xs), max(ys)
+
+
+def box_around(segments: Iterable[Segment]) -> tuple[float, float, float, float]:
+    """(smallest x, smallest y, largest x, largest y) in mm of some segments, one at least."""
+    x0, y0, x1, y1 = zip(*map(bounding_box, segments), strict=True)
+    return min(x0), min(y0), max(x1), max(y1)
 
 
 @frozen
@@ -375,6 +370,11 @@ class Box:
     def center(self) -> Point:
         """The middle."""
         return (self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2
+
+    @property
+    def corners(self) -> list[Point]:
+        """The corners, counter-clockwise from the lower left."""
+        return [(self.x0, self.y0), (self.x1, self.y0), (self.x1, self.y1), (self.x0, self.y1)]
 
     def grown(self, margin: float) -> Box:
         """The box with every side moved out."""

@@ -15,8 +15,8 @@ span : a range of positions that some segment covers.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from itertools import pairwise
-from math import atan2, cos, hypot, pi, sin, tau
+from itertools import pairwise, product
+from math import atan2, cos, dist, pi, sin, tau
 
 import numpy as np
 from attrs import Factory, define, field, frozen
@@ -26,7 +26,7 @@ from workhold.errors import InputError
 from workhold.geometry.loop import near_pairs
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, carrier_intersections
 
-__all__ = ["BorderPiece", "CutCarrier", "border_loops", "border_pieces", "subdivide"]
+__all__ = ["BorderPiece", "CutCarrier", "border_loops", "border_pieces", "distinct_sorted", "subdivide"]
 
 # Carriers, and points along one, that differ by less than this in mm are one.
 ONE = 1e-6
@@ -65,8 +65,7 @@ class CutCarrier:
             (x, y), (tx, ty) = own.middle, own.tangent
             return all(abs((px - x) * ty - (py - y) * tx) <= ONE for px, py in (other.start, other.end))
         if isinstance(own, Arc) and isinstance(other, Arc):
-            apart = hypot(own.center[0] - other.center[0], own.center[1] - other.center[1])
-            return apart <= ONE and abs(own.radius - other.radius) <= ONE
+            return dist(own.center, other.center) <= ONE and abs(own.radius - other.radius) <= ONE
         return False
 
     def position(self, point: Point) -> float:
@@ -193,15 +192,14 @@ def carrier_of(
 
 def rough_keys(segment: Segment) -> list[tuple[int, ...]]:
     """Where a carrier may be kept: the cell of its place first, then the neighbouring cells."""
+    around = (0, -1, 1)
     if isinstance(segment, Arc):
-        cell = [round(value / 1e-3) for value in (*segment.center, segment.radius)]
-        around = [(a, b, c) for a in (0, -1, 1) for b in (0, -1, 1) for c in (0, -1, 1)]
-        return [(cell[0] + a, cell[1] + b, cell[2] + c) for a, b, c in around]
+        x, y, r = (round(value / 1e-3) for value in (*segment.center, segment.radius))
+        return [(x + a, y + b, r + c) for a, b, c in product(around, repeat=3)]
     tx, ty = segment.tangent
     # A short segment leaves its direction open; the cells of lines are therefore by direction only.
-    cell = [round(atan2(ty, tx) % pi / 1e-2)]
-    last = round(pi / 1e-2)
-    return [((cell[0] + a) % last, 0) for a in (0, -1, 1)]
+    cell, last = round(atan2(ty, tx) % pi / 1e-2), round(pi / 1e-2)
+    return [((cell + a) % last, 0) for a in around]
 
 
 def covered_box(carrier: CutCarrier) -> tuple[float, float, float, float]:
@@ -220,8 +218,7 @@ def cut_each_other(a: CutCarrier, b: CutCarrier) -> None:
     points = list(carrier_intersections(a.segment, b.segment))
     for one, other in ((a, b), (b, a)):
         for point in one.ends_near(other.segment):
-            foot = other.at(other.position(point))
-            if hypot(point[0] - foot[0], point[1] - foot[1]) <= ONE:
+            if dist(point, other.at(other.position(point))) <= ONE:
                 points.append(point)
     for point in points:
         first, second = a.position(point), b.position(point)

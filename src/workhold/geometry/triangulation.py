@@ -12,6 +12,7 @@ helper : of a side, the lowest vertex above that sees the side along a horizonta
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from itertools import pairwise
 from math import atan2, tau
@@ -119,15 +120,10 @@ class Sweep:
 
     def count_left_of(self, v: int) -> int:
         """How many sides cross the line to the left of a vertex."""
-        low, high, points = 0, len(self.sides), self.points
-        while low < high:
-            middle = (low + high) // 2
-            side = self.sides[middle]
-            if turn(points[side], points[self.after[side]], points[v]) > 0:
-                low = middle + 1
-            else:
-                high = middle
-        return low
+        points, after = self.points, self.after
+        return bisect_right(
+            self.sides, 0, key=lambda side: turn(points[side], points[after[side]], points[v]) <= 0
+        )
 
     def connect(self, v: int, other: int) -> None:
         """Adds a diagonal."""

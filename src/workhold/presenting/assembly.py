@@ -22,8 +22,8 @@ from workhold.files.part.data import wrapped_shapes
 from workhold.files.part.finding import read_bytes
 from workhold.files.part.load import load
 from workhold.files.step.heights import foot_height
+from workhold.files.step.library import along, axis_named, bounding_box, sub_shapes, turn_along
 from workhold.files.step.part_shape import pose_move
-from workhold.files.step.solids import along, axis_named, bounding_box, sub_shapes, turn_along
 from workhold.files.step.writer import named_solids
 from workhold.model.bodies import COLOURS, BodySizes, FixtureBody, fixture_bodies
 from workhold.model.setup import PartZero, part_zero

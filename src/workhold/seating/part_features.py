@@ -21,7 +21,7 @@ from workhold.contact.problem import centered
 from workhold.conventions import CLEARANCE, JOINT, LEAST_HULL_EDGE, SAME_POSE, TANGENT, TOUCHING
 from workhold.errors import InputError
 from workhold.geometry.hull import HullPieces
-from workhold.geometry.offset import cut_points, kept_parts, raw_offset, trimmed_offsets
+from workhold.geometry.offset import joint_circle, kept_parts, raw_offset, trimmed_offsets
 from workhold.geometry.segment import Arc, Point, Segment, segment_rows
 from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.base.feature import X, Y
@@ -79,10 +79,9 @@ def rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, 
         if turn <= STRAIGHT_ON:
             continue
         arc = Arc(segment.start, radius, low + turn / 2, turn / 2, 1.0)
-        others = [joint for joint in joints if 0.0 < distance(joint, segment.start) <= 2 * radius + CLEARANCE]
-        out += [
-            (segment.start, kept) for kept in kept_parts(arc, cut_points(arc, raw, others, radius), is_clear)
-        ]
+        near = [joint for joint in joints if 0.0 < distance(joint, segment.start) <= 2 * radius + CLEARANCE]
+        others = [*raw, *(joint_circle(joint, radius) for joint in near)]
+        out += [(segment.start, kept) for kept in kept_parts(arc, others, is_clear)]
     return [(corner, arc) for corner, arc in out if isinstance(arc, Arc)]
 
 

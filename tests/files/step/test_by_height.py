@@ -30,8 +30,8 @@ from workhold.errors import InputError
 from workhold.files.part.survey import survey
 from workhold.files.step.by_height import HeightView, shapes_by_height
 from workhold.files.step.heights import StandingSolid, standing
+from workhold.files.step.library import along, bounding_box, sub_shapes
 from workhold.files.step.regions import area_of, section
-from workhold.files.step.solids import along, bounding_box, sub_shapes
 from workhold.files.toolkit_file import load_toolkit
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Line, segment_rows

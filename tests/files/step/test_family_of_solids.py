@@ -18,7 +18,7 @@ from solid_truth import fixture_faults
 from workhold import Fence, FlatJaw, Plate, Query, Vise, answer, load
 from workhold.cli.main import app
 from workhold.family.members import RANKINGS
-from workhold.files.step.solids import along
+from workhold.files.step.library import along
 from workhold.fixels.toolkit import Toolkit
 
 
@@ -94,7 +94,7 @@ def lowered(shape: Any) -> Any:
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
     from OCP.gp import gp_Trsf, gp_Vec
 
-    from workhold.files.step.solids import bounding_box
+    from workhold.files.step.library import bounding_box
 
     move = gp_Trsf()
     move.SetTranslation(gp_Vec(0, 0, -bounding_box(shape)[0][2]))

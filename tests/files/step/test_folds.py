@@ -20,9 +20,8 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import box, cut, cylinder, fused
 
 from workhold.files.step.edge_curves import bisected, crossing
-from workhold.files.step.heights import standing
+from workhold.files.step.heights import measures, standing
 from workhold.files.step.projected import OtherCurveError
-from workhold.files.step.which_height import measures
 
 
 def area_at(shape: Any, high: float) -> float:

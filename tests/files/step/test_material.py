@@ -16,8 +16,7 @@ from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fuse
 
 from workhold.files.step.edge_curves import edge_curves
 from workhold.files.step.faces import solid_faces
-from workhold.files.step.heights import Material
-from workhold.files.step.plane_faces import PlaneFaces
+from workhold.files.step.material import Material, PlaneFaces
 
 CONE = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(20, 12, 8), gp_Dir(0, 0, 1)), 9.0, 4.0, 14.0).Shape()
 DRILLED = cut(

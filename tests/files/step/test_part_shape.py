@@ -53,7 +53,7 @@ def test_the_shape_stands_where_the_pegs_touch_it(result: Result, part: Path, tm
     (own, *others) = read_glb((tmp_path / "a.glb").read_bytes())[1]
     own.assert_closed()
     assert own.volume == pytest.approx(solid, rel=3e-3) and own.kind == "part" and len(others) == 6
-    from workhold.files.step.solids import bounding_box
+    from workhold.files.step.library import bounding_box
 
     low, high = bounding_box(bodies[0][2])
     assert np.allclose(own.positions.min(axis=0), low, atol=0.06)

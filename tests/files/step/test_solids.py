@@ -19,7 +19,7 @@ from workhold import Fence, FlatJaw, Plate, Vise, Workpiece, design, load
 from workhold.files.part.loaded import from_heights
 from workhold.files.step.by_height import HeightView, shapes_by_height
 from workhold.files.step.heights import StandingSolid, standing
-from workhold.files.step.solids import along
+from workhold.files.step.library import along
 from workhold.geometry.segment import segment_rows
 
 QUICK = ("bearing housing", "rounded top", "casting", "dovetail")

@@ -31,10 +31,9 @@ from solid_examples import EXAMPLES
 from workhold import load
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.files.step.heights import standing
+from workhold.files.step.heights import measures, standing
 from workhold.files.step.level_faces import bottom_loops, top_loops
-from workhold.files.step.solids import sub_shapes
-from workhold.files.step.which_height import measures
+from workhold.files.step.library import sub_shapes
 from workhold.geometry.loop import loop_segments, signed_area
 
 PLATE = cut(filleted(box(60, 40, 20), 5, upright), cylinder(6, 40, (30, 20, -5)))

@@ -216,6 +216,10 @@ def test_strokes_count_however_thin() -> None:
             "rect 'r' has the transform-origin '1em 2em'",
         ),
         (
+            f'{R} transform="scale(2)" style="transform-origin:5px% 2px"/>',
+            "rect 'r' has the transform-origin '5px% 2px'",
+        ),
+        (
             f'{R} style="width:5"/>',
             "rect 'r' has width=\"5\", which is not a plain length: write a number with px",
         ),

@@ -28,6 +28,7 @@ __all__ = ["REFUSED", "SHAPES", "RawChain"]
 
 Point3 = tuple[float, float, float]
 
+# What is refused, and what messages call it.
 REFUSED = {
     "HELIX": "a helix",
     "MLINE": "a multiline",
@@ -36,12 +37,9 @@ REFUSED = {
     "3DSOLID": "a 3D solid",
     "BODY": "a 3D body",
     "MESH": "a 3D mesh",
-    "SURFACE": "a 3D surface",
-    "EXTRUDEDSURFACE": "a 3D surface",
-    "LOFTEDSURFACE": "a 3D surface",
-    "REVOLVEDSURFACE": "a 3D surface",
-    "SWEPTSURFACE": "a 3D surface",
 }
+SURFACES = ("SURFACE", "EXTRUDEDSURFACE", "LOFTEDSURFACE", "REVOLVEDSURFACE", "SWEPTSURFACE")
+REFUSED |= dict.fromkeys(SURFACES, "a 3D surface")
 
 
 @frozen
@@ -60,13 +58,7 @@ class RawChain:
 
 
 def seen_from_below(entity: Any) -> bool:
-    """Whether an entity's extrusion is (0, 0, -1).
-
-    Raises
-    ------
-    InputError
-        When it is tilted.
-    """
+    """Whether an entity's extrusion is (0, 0, -1); raises InputError when it is tilted."""
     x, y, z = entity.dxf.extrusion
     if z == 0 or abs(x) > TILT * abs(z) or abs(y) > TILT * abs(z):
         raise InputError(
@@ -117,10 +109,7 @@ def arc(entity: Any) -> RawChain:
 def positive_radius(entity: Any) -> float:
     """The radius in drawing units.
 
-    Raises
-    ------
-    InputError
-        When it is negative or not a number (zero gives a chain of zero length, dropped later).
+    Raises InputError when it is negative or not a number (zero gives a chain of zero length, dropped later).
     """
     radius = float(entity.dxf.radius)
     if not radius >= 0:
@@ -131,17 +120,14 @@ def positive_radius(entity: Any) -> float:
 def lwpolyline(entity: Any) -> RawChain:
     """An LWPOLYLINE with bulges."""
     height = float(entity.dxf.elevation)
-    rows = [(float(x), float(y), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
-    return polyline_chain(entity, [((x, y, height), bulge) for x, y, bulge in rows], bool(entity.closed))
+    rows = [((float(x), float(y), height), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
+    return in_layout(entity, *polyline_points(rows, bool(entity.closed)), numbered=True)
 
 
 def polyline(entity: Any) -> RawChain:
     """An old-style POLYLINE: flat ones with bulges, 3D ones as lines (refused later unless they lie flat).
 
-    Raises
-    ------
-    InputError
-        For meshes and for polylines smoothed into splines.
+    Raises InputError for meshes and for polylines smoothed into splines.
     """
     if entity.is_poly_face_mesh or entity.is_polygon_mesh:
         raise InputError("is a 3D mesh, which has no outline: draw the part flat, with lines and arcs.")
@@ -151,19 +137,11 @@ def polyline(entity: Any) -> RawChain:
         )
     if entity.is_3d_polyline:
         rows = [(tuple(vertex.dxf.location), 0.0) for vertex in entity.vertices]
-        chain = polyline_points(rows, bool(entity.is_closed))
-        return RawChain(*chain, numbered=True)
+        return RawChain(*polyline_points(rows, bool(entity.is_closed)), numbered=True)
     height = float(entity.dxf.elevation[2])
-    rows = [
-        ((float(v.dxf.location[0]), float(v.dxf.location[1]), height), float(v.dxf.get("bulge", 0.0)))
-        for v in entity.vertices
-    ]
-    return polyline_chain(entity, rows, bool(entity.is_closed))
-
-
-def polyline_chain(entity: Any, rows: Sequence[tuple[Point3, float]], closed: bool) -> RawChain:
-    """A flat polyline's chain from (point, bulge) rows in OCS."""
-    return in_layout(entity, *polyline_points(rows, closed), numbered=True)
+    places = [(vertex.dxf.location, float(vertex.dxf.get("bulge", 0.0))) for vertex in entity.vertices]
+    rows = [((float(place[0]), float(place[1]), height), bulge) for place, bulge in places]
+    return in_layout(entity, *polyline_points(rows, bool(entity.is_closed)), numbered=True)
 
 
 def polyline_points(rows: Sequence[tuple[Point3, float]], closed: bool) -> tuple[list[Point3], list[float]]:
@@ -177,10 +155,7 @@ def polyline_points(rows: Sequence[tuple[Point3, float]], closed: bool) -> tuple
 def spline(entity: Any) -> RawChain:
     """A SPLINE by its control points, or else through its fit points; its numbers are never in OCS.
 
-    Raises
-    ------
-    InputError
-        For one whose numbers do not agree.
+    Raises InputError for one whose numbers do not agree.
     """
     control = [tuple(map(float, point)) for point in entity.control_points]
     if not control:
@@ -198,10 +173,7 @@ def through_fit_points(entity: Any) -> RawChain:
     It is the cubic of continuous curvature through them whose parameter grows as the chords are long. At its
     ends it has the tangents given, or else no curvature; where it is closed, it is periodic.
 
-    Raises
-    ------
-    InputError
-        For fewer than two different points, and numbers that are none.
+    Raises InputError for fewer than two different points, and numbers that are none.
     """
     every = [(float(x), float(y), float(z)) for x, y, z in entity.fit_points]
     if not all(isfinite(value) and abs(value) <= MOST_LENGTH for point in every for value in point):
@@ -226,10 +198,7 @@ def through_fit_points(entity: Any) -> RawChain:
 def ellipse(entity: Any) -> RawChain:
     """An ELLIPSE or a part of one; its numbers are never in OCS.
 
-    Raises
-    ------
-    InputError
-        When its axes are not those of an ellipse.
+    Raises InputError when its axes are not those of an ellipse.
     """
     seen_from_below(entity)
     center, major = entity.dxf.center, entity.dxf.major_axis

@@ -85,13 +85,7 @@ def read_document(
     layers: Sequence[str] | None,
     fit: float | None = None,
 ) -> Drawing:
-    """Reads the outline entities of the model space of a document of ezdxf; see :func:`read_dxf`.
-
-    Raises
-    ------
-    InputError
-        See there.
-    """
+    """Reads the outline entities of the model space of a document of ezdxf; see :func:`read_dxf`."""
     known = scale_of(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
     walk = DxfWalk(document, layers, fit)
@@ -111,10 +105,7 @@ def read_document(
 def refuse_other_formats(content: bytes) -> None:
     """Refuses what is plainly no DXF, or cut short, before ezdxf tries its best with it.
 
-    Raises
-    ------
-    InputError
-        Saying what it is.
+    Raises InputError, saying what it is.
     """
     if content[:4] == b"AC10" or content[:2] == b"MC":
         raise InputError("this is a DWG drawing, not a DXF file: save it as DXF.")
@@ -129,10 +120,7 @@ def refuse_other_formats(content: bytes) -> None:
 def opened(path: Path) -> tuple[Any, list[str]]:
     """The ezdxf document, with a remark when the file had to be repaired.
 
-    Raises
-    ------
-    InputError
-        When even the repair fails.
+    Raises InputError when even the repair fails.
     """
     from ezdxf import recover
     from ezdxf.filemanagement import readfile
@@ -168,19 +156,16 @@ def scale_of(code: int, unit: str | None, usual_unit: str | None) -> tuple[float
 
     None when neither the file nor the user gives a unit.
     """
-    known = INSUNITS.get(code)
-    if unit is not None:
-        scale = unit_named(unit).millimetres
-        if known is not None and known[1] != scale:
-            return scale, [f"The file says its unit is {known[0]}; it was read in {unit} as asked."]
-        return scale, []
-    if known is not None:
-        if usual_unit is not None and known[1] != unit_named(usual_unit).millimetres:
-            # Whoever gave the unit for the drawing's sake learns here that it did not count.
-            return known[1], [
-                f"The file says its unit is {known[0]}; it was read so ({DRAWING_UNIT} overrides it)."
-            ]
-        return known[1], []
-    if usual_unit is not None:
-        return unit_named(usual_unit).millimetres, []
-    return None
+    name, scale = INSUNITS.get(code, ("", None))
+    asked = unit if unit is not None or scale is not None else usual_unit
+    if asked is not None:
+        millimetres = unit_named(asked).millimetres
+        differs = scale is not None and scale != millimetres
+        said = f"The file says its unit is {name}; it was read in {unit} as asked."
+        return millimetres, [said] if differs else []
+    if scale is None:
+        return None
+    if usual_unit is not None and scale != unit_named(usual_unit).millimetres:
+        # Whoever gave the unit for the drawing's sake learns here that it did not count.
+        return scale, [f"The file says its unit is {name}; it was read so ({DRAWING_UNIT} overrides it)."]
+    return scale, []

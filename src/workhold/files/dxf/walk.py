@@ -147,11 +147,9 @@ class DxfWalk:
             raw = RawChain([*raw.points, *raw.points][:2] or [(0.0, 0.0, 0.0)] * 2, [0.0])
         self.check_level(raw, placement, label)
         count = len(raw.bulges)
-        labels = (
-            tuple(numbered(label, k) for k in range(count))
-            if raw.numbered and count > 1
-            else (label,) * count
-        )
+        labels = (label,) * count
+        if raw.numbered and count > 1:
+            labels = tuple(numbered(label, k) for k in range(count))
         chain = self.curves.chain(raw.points, raw.bulges, labels, raw.curved, placement)
         if chain is None:
             chain = Chain((placement(raw.points[0]),) * 2, (0.0,), (label,))
@@ -260,10 +258,7 @@ class DxfWalk:
 def said_of(label: str, function: Callable[[Any], T], entity: Any) -> T:
     """Apply a function to an entity; its complaints begin with the entity's label.
 
-    Raises
-    ------
-    InputError
-        As the function does.
+    Raises InputError as the function does.
     """
     try:
         return function(entity)

@@ -10,18 +10,16 @@ each other stands at the right of the one before it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import StringIO
 from math import tan
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ezdxf import options, units  # type: ignore[attr-defined]
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 
-from workhold.files.atomic import write_bytes
 from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.pegs import peg_outline
 from workhold.fixels.toolkit import Toolkit
@@ -41,12 +39,9 @@ __all__ = [
     "CLEARANCE",
     "PLATE_LAYERS",
     "content_of",
-    "fixed_stamps",
     "layers_of",
     "plates_dxf",
     "setup_dxf",
-    "write_plates_dxf",
-    "write_setup_dxf",
 ]
 
 # Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT, PLATE or
@@ -65,30 +60,6 @@ ARROW_HEAD, HALF_HEAD = 0.3, 0.12
 POINT_HOLE = 1 / 7
 
 
-def write_setup_dxf(
-    fixture: Fixture,
-    workpiece: Workpiece,
-    toolkit: Toolkit,
-    path: str | Path,
-    *,
-    zero: PartZero | None = None,
-    clearance: float = CLEARANCE,
-) -> None:
-    """Writes a set-up as a DXF drawing; the same set-up gives the same bytes.
-
-    Parameters
-    ----------
-    zero : part zero; that of :func:`part_zero` without a wish if None.
-    clearance : how far the cutter is to keep off the pegs' bodies, in mm.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
-    write_bytes(path, setup_dxf(fixture, workpiece, toolkit, zero, clearance))
-
-
 def setup_dxf(
     fixture: Fixture,
     workpiece: Workpiece,
@@ -96,23 +67,44 @@ def setup_dxf(
     zero: PartZero | None = None,
     clearance: float = CLEARANCE,
 ) -> bytes:
-    """The bytes of a set-up's DXF drawing, see :func:`write_setup_dxf`."""
-    with fixed_stamps():
-        document = new(VERSION)
-        document.units = units.MM
-        document.header["$MEASUREMENT"] = 1
-        document.header["$LASTSAVEDBY"] = "workhold"
-        for name, color in layers_of(toolkit).items():
-            document.layers.add(name, color=color)
+    """The bytes of a set-up's DXF drawing; the same set-up gives the same bytes.
+
+    Parameters
+    ----------
+    zero : part zero; that of :func:`part_zero` without a wish if None.
+    clearance : how far the cutter is to keep off the pegs' bodies, in mm.
+    """
+    with drawn(layers_of(toolkit)) as document:
         space, seen = document.modelspace(), shown(fixture, toolkit, workpiece)
         add_carriers(space, seen)
-        add_walls(space, seen)
+        for wall in seen.walls:
+            space.add_lwpolyline(wall.bar.corners, close=True, dxfattribs={"layer": layer_of(wall.carrier)})
         add_part(space, workpiece.placed(fixture.pose))
         add_pegs(space, seen, clearance)
         add_clamps(space, seen, clearance)
         add_travel(space, seen)
         add_zero(space, fixture.pose, (zero or part_zero(workpiece)).point, AXIS * seen.pitch)
         return content_of(document)
+
+
+@contextmanager
+def drawn(layers: Mapping[str, int]) -> Iterator[Drawing]:
+    """A new drawing in mm with layers of some colours, into which ezdxf writes no time and no random numbers.
+
+    That holds while the block runs.
+    """
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        document = new(VERSION)
+        document.units = units.MM
+        document.header["$MEASUREMENT"] = 1
+        document.header["$LASTSAVEDBY"] = "workhold"
+        for name, color in layers.items():
+            document.layers.add(name, color=color)
+        yield document
+    finally:
+        options.write_fixed_meta_data_for_testing = before
 
 
 def content_of(document: Drawing) -> bytes:
@@ -164,17 +156,6 @@ def layers_of(toolkit: Toolkit) -> dict[str, int]:
     }
 
 
-@contextmanager
-def fixed_stamps() -> Iterator[None]:
-    """Makes ezdxf write no time and no random numbers while the block runs."""
-    before = options.write_fixed_meta_data_for_testing
-    options.write_fixed_meta_data_for_testing = True
-    try:
-        yield
-    finally:
-        options.write_fixed_meta_data_for_testing = before
-
-
 def add_part(space: Modelspace, part: Workpiece) -> None:
     """Adds the loops of the part in its pose."""
     number = 0
@@ -207,11 +188,8 @@ def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
 def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
     """Adds the clamps: each tip, its body from the hole, what to keep out of, and an arrow along its push."""
     for clamp in seen.clamps:
-        layer, radius, tip = (
-            {"layer": layer_of(clamp.carrier)},
-            clamp.carrier.peg_radius,
-            (clamp.tip.x, clamp.tip.y),
-        )
+        layer = {"layer": layer_of(clamp.carrier)}
+        radius, tip = clamp.carrier.peg_radius, (clamp.tip.x, clamp.tip.y)
         if radius > 0:
             space.add_circle(tip, radius, layer)
         else:
@@ -247,8 +225,7 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
     """Adds the plates with their holes, column letters below them and row numbers beside them."""
     for each in seen.carriers:
         carrier, plate = each.carrier, each.plate
-        corners = [(plate.x0, plate.y0), (plate.x1, plate.y0), (plate.x1, plate.y1), (plate.x0, plate.y1)]
-        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(carrier)})
+        space.add_lwpolyline(plate.corners, close=True, dxfattribs={"layer": layer_of(carrier)})
         half_x, half_y = carrier.pitch[0] / 2, carrier.pitch[1] / 2
         holes = each.holes(MOST_HOLES)
         for hole in holes:
@@ -263,14 +240,6 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
         for row, y in each.named_rows:
             if row in rows:
                 add_text(space, str(row + 1), (beside, y), seen)
-
-
-def add_walls(space: Modelspace, seen: Shown) -> None:
-    """Adds the walls that the part lies on as bars."""
-    for wall in seen.walls:
-        bar = wall.bar
-        corners = [(bar.x0, bar.y0), (bar.x1, bar.y0), (bar.x1, bar.y1), (bar.x0, bar.y1)]
-        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer_of(wall.carrier)})
 
 
 def add_travel(space: Modelspace, seen: Shown) -> None:
@@ -309,55 +278,25 @@ NAME_HEIGHT, TITLE_HEIGHT = 0.3, 5.0
 
 
 def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
-    """The bytes of the drawing; the same plates give the same bytes."""
-    with fixed_stamps():
-        document = new(VERSION)
-        document.units = units.MM
-        document.header["$MEASUREMENT"] = 1
-        document.header["$LASTSAVEDBY"] = "workhold"
-        for name, color in PLATE_LAYERS.items():
-            document.layers.add(name, color=color)
+    """The bytes of a DXF drawing of jaw plates; the same plates give the same bytes."""
+    with drawn(PLATE_LAYERS) as document:
         space = document.modelspace()
 
         def write(words: str, height: float, at: Point, align: TextEntityAlignment) -> None:
             space.add_text(words, height=height, dxfattribs={"layer": "TEXT"}).set_placement(at, align=align)
 
         for plate, right in zip(plates, plate_places(plates), strict=True):
-            box = plate.outline
-            corners = [(box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1)]
-            space.add_lwpolyline(
-                [(x + right, y) for x, y in corners], close=True, dxfattribs={"layer": "PLATE"}
-            )
+            corners = [(x + right, y) for x, y in plate.outline.corners]
+            space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "PLATE"})
             for name, (x, y) in plate.holes:
-                space.add_circle((x + right, y), plate.hole_diameter / 2, {"layer": "DOWEL_HOLES"})
-                write(
-                    name, NAME_HEIGHT * plate.hole_diameter, (x + right, y), TextEntityAlignment.MIDDLE_CENTER
-                )
-            for x, y in plate.bolts.places if plate.bolts else ():
-                space.add_circle(
-                    (x + right, y), plate.bolts.diameter / 2 if plate.bolts else 0.0, {"layer": "BOLT_HOLES"}
-                )
-            bolts = (
-                ""
-                if plate.bolts is None
-                else f", {len(plate.bolts.places)} bolt holes %%c{plate.bolts.diameter:.6g} mm"
-            )
-            words = f"{plate.title}: {len(plate.holes)} dowel holes %%c{plate.hole_diameter:.6g} mm{bolts}"
-            write(
-                words,
-                TITLE_HEIGHT / 2,
-                (box.x0 + right, box.y1 + TITLE_HEIGHT),
-                TextEntityAlignment.BOTTOM_LEFT,
-            )
+                center = (x + right, y)
+                space.add_circle(center, plate.hole_diameter / 2, {"layer": "DOWEL_HOLES"})
+                write(name, NAME_HEIGHT * plate.hole_diameter, center, TextEntityAlignment.MIDDLE_CENTER)
+            words = f"{plate.title}: {len(plate.holes)} dowel holes %%c{plate.hole_diameter:.6g} mm"
+            if plate.bolts is not None:
+                for x, y in plate.bolts.places:
+                    space.add_circle((x + right, y), plate.bolts.diameter / 2, {"layer": "BOLT_HOLES"})
+                words += f", {len(plate.bolts.places)} bolt holes %%c{plate.bolts.diameter:.6g} mm"
+            at = (plate.outline.x0 + right, plate.outline.y1 + TITLE_HEIGHT)
+            write(words, TITLE_HEIGHT / 2, at, TextEntityAlignment.BOTTOM_LEFT)
         return content_of(document)
-
-
-def write_plates_dxf(plates: Sequence[JawPlate], path: str | Path) -> None:
-    """Writes jaw plates as a DXF drawing.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
-    write_bytes(path, plates_dxf(plates))

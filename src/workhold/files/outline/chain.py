@@ -14,14 +14,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from math import copysign, hypot, isfinite, pi, sqrt, tan
+from itertools import pairwise
+from math import copysign, dist, hypot, isfinite, pi, sqrt, tan
 
 from attrs import field, frozen
 
 from workhold.conventions import CIRCULAR, SAME_POINT, SHORTEST
 from workhold.errors import InputError
 from workhold.geometry.rational import Pieces
-from workhold.geometry.segment import Point
+from workhold.geometry.segment import Point, Segment, segment_from_bulge
 from workhold.limits import MOST_LENGTH
 from workhold.model.solid import FileSolid
 
@@ -107,13 +108,18 @@ class Chain:
     @property
     def closed(self) -> bool:
         """Whether the last point is the first (to within 1e-9 mm)."""
-        (x0, y0), (x1, y1) = self.points[0], self.points[-1]
-        return hypot(x1 - x0, y1 - y0) <= SAME_POINT
+        return dist(self.points[0], self.points[-1]) <= SAME_POINT
 
     @property
     def entity(self) -> str:
         """The entity's name: the first label without its segment number."""
         return without_segment(self.labels[0])
+
+    @property
+    def segments(self) -> list[Segment]:
+        """The lines and arcs of the chain, without those from a point to itself."""
+        steps = zip(pairwise(self.points), self.bulges, strict=True)
+        return [segment_from_bulge(start, end, bulge) for (start, end), bulge in steps if start != end]
 
     def reversed(self) -> Chain:
         """Returns the chain run the other way."""
@@ -181,7 +187,7 @@ def rebulged(start: Point, end: Point, bulge: float, new_start: Point, new_end: 
     """
     if bulge == 0.0:
         return 0.0
-    chord = hypot(end[0] - start[0], end[1] - start[1])
+    chord = dist(start, end)
     size = abs(bulge)
     sign = 1.0 if bulge > 0 else -1.0
     # Signed distance from the chord's middle to the centre, to the left of the chord for a short
@@ -189,7 +195,7 @@ def rebulged(start: Point, end: Point, bulge: float, new_start: Point, new_end: 
     apart = sign * chord * (1 - size * size) / (4 * size)
     ux, uy = (end[0] - start[0]) / chord, (end[1] - start[1]) / chord
     center = ((start[0] + end[0]) / 2 - apart * uy, (start[1] + end[1]) / 2 + apart * ux)
-    new_chord = hypot(new_end[0] - new_start[0], new_end[1] - new_start[1])
+    new_chord = dist(new_start, new_end)
     if new_chord < SHORTEST:
         return bulge
     vx, vy = (new_end[0] - new_start[0]) / new_chord, (new_end[1] - new_start[1]) / new_chord
@@ -219,7 +225,9 @@ def cleaned(chains: Iterable[Chain]) -> Drawing:
     empty: list[str] = []
     doubled: list[str] = []
     for chain in chains:
-        refuse_unusable(chain)
+        labels, bulges = (*chain.labels, chain.labels[-1]), (*chain.bulges, 0.0)
+        for label, (x, y), bulge in zip(labels, chain.points, bulges, strict=True):
+            refuse_numbers(label, x, y, bulge)
         good = without_doubled_points(chain)
         if good is None:
             empty.append(f"{chain.entity} at {at(chain.points[0])}")
@@ -240,30 +248,10 @@ def cleaned(chains: Iterable[Chain]) -> Drawing:
     return Drawing(tuple(kept), tuple(remarks))
 
 
-def refuse_unusable(chain: Chain) -> None:
-    """Refuses numbers that are not finite or absurdly large.
-
-    Raises
-    ------
-    InputError
-        Naming the segment.
-    """
-    for k, (x, y) in enumerate(chain.points):
-        refuse_numbers(
-            chain.labels[min(k, len(chain.labels) - 1)],
-            x,
-            y,
-            chain.bulges[k] if k < len(chain.bulges) else 0.0,
-        )
-
-
 def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.0) -> None:
     """Refuses a place in mm or a bulge of a labelled segment that is not finite or absurdly large.
 
-    Raises
-    ------
-    InputError
-        Naming the segment.
+    Raises InputError, naming the segment.
     """
     if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
         raise InputError(
@@ -281,11 +269,10 @@ def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.
 def without_doubled_points(chain: Chain) -> Chain | None:
     """The chain without segments of zero length; None when nothing is left."""
     if len(chain.bulges) == 1:
-        (x0, y0), (x1, y1) = chain.points
-        return chain if hypot(x1 - x0, y1 - y0) >= SHORTEST else None
+        return chain if dist(*chain.points) >= SHORTEST else None
     points, bulges, labels = [chain.points[0]], [], []
     for k, point in enumerate(chain.points[1:]):
-        if hypot(point[0] - points[-1][0], point[1] - points[-1][1]) < SHORTEST:
+        if dist(point, points[-1]) < SHORTEST:
             continue
         points.append(point)
         bulges.append(chain.bulges[k])

@@ -19,10 +19,9 @@ from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, CurveReading, Placement, at, counted, listed, refuse_numbers
 from workhold.files.outline.joining import Loop
 from workhold.files.questions import FIT, LAYERS
-from workhold.geometry.curve_fit import fitted_curve
+from workhold.geometry.curve_fit import FittedCurve, fitted_curve
 from workhold.geometry.merged_runs import merged_chords
 from workhold.geometry.rational import Pieces, arc_pieces, joined_pieces, mapped
-from workhold.geometry.segment import Point
 
 __all__ = [
     "CurveReader",
@@ -112,17 +111,17 @@ class CurveReader:
             read = self.read(run, labels[k])
             if read is not None:
                 if not out_bulges:
-                    out_points = [read[0][0]]
-                out_points += read[0][1:]
-                out_bulges += read[1]
-                out_labels += [labels[k]] * len(read[1])
+                    out_points = [read.points[0]]
+                out_points += read.points[1:]
+                out_bulges += read.bulges
+                out_labels += [labels[k]] * len(read.bulges)
             k = last
         if not out_bulges:
             return None
         return Chain(tuple(out_points), tuple(out_bulges), tuple(out_labels))
 
-    def read(self, pieces: Pieces, label: str) -> tuple[tuple[Point, ...], tuple[float, ...]] | None:
-        """Points and bulges of the lines and arcs for a curve in mm; None for a curve of no length.
+    def read(self, pieces: Pieces, label: str) -> FittedCurve | None:
+        """The lines and arcs for a curve in mm; None for a curve of no length.
 
         Raises
         ------
@@ -138,12 +137,11 @@ class CurveReader:
                 "only."
             )
         fitted = fitted_curve(pieces, self.fit)
-        if fitted is None:
-            return None
-        self.found[label] = CurveReading(
-            fitted.points[0], fitted.departure, fitted.is_disguise, pieces, len(fitted.bulges)
-        )
-        return fitted.points, fitted.bulges
+        if fitted is not None:
+            self.found[label] = CurveReading(
+                fitted.points[0], fitted.departure, fitted.is_disguise, pieces, len(fitted.bulges)
+            )
+        return fitted
 
 
 def readings_of(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dict[str, CurveReading]:

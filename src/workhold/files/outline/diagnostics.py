@@ -20,7 +20,8 @@ from workhold.files.outline.chain import Chain, Drawing, at, counted, listed
 from workhold.files.outline.joining import Stray, join
 from workhold.files.outline.nesting import DrawnPart
 from workhold.files.questions import JOIN_TOLERANCE, LAYERS, PART_NUMBER, UNIT, UnitAskedError
-from workhold.geometry.segment import Point, bounding_box, segment_from_bulge
+from workhold.geometry.loop import loop_segments
+from workhold.geometry.segment import Point, box_around
 from workhold.units import INCH
 
 __all__ = [
@@ -35,17 +36,11 @@ __all__ = [
 
 def size_of(chains: Sequence[Chain]) -> tuple[float, float] | None:
     """Width and height in mm of the smallest upright rectangle around chains; None without any."""
-    boxes = [
-        bounding_box(segment_from_bulge(start, end, bulge))
-        for chain in chains
-        for start, end, bulge in zip(chain.points, chain.points[1:], chain.bulges, strict=False)
-        if start != end
-    ]
-    if not boxes:
+    segments = [segment for chain in chains for segment in chain.segments]
+    if not segments:
         return None
-    all_boxes = np.array(boxes)
-    low, high = all_boxes[:, :2].min(axis=0), all_boxes[:, 2:].max(axis=0)
-    return float(high[0] - low[0]), float(high[1] - low[1])
+    x0, y0, x1, y1 = box_around(segments)
+    return x1 - x0, y1 - y0
 
 
 def unit_asked(lacking: str, chains: Sequence[Chain]) -> UnitAskedError:
@@ -59,10 +54,8 @@ def unit_asked(lacking: str, chains: Sequence[Chain]) -> UnitAskedError:
     size = size_of(chains)
     shown = ""
     if size is not None:
-        wide = f"{size[0]:.5g}"
-        shown = f"it is {wide} mm wide, or {wide} in = {size[0] * INCH.millimetres:,.4g} mm; "
-        if size[0] * INCH.millimetres >= 1000:
-            shown = f"it is {wide} mm wide, or {wide} in = {size[0] * INCH.millimetres:,.0f} mm; "
+        wide, inches = f"{size[0]:.5g}", size[0] * INCH.millimetres
+        shown = f"it is {wide} mm wide, or {wide} in = {inches:,{'.0f' if inches >= 1000 else '.4g'}} mm; "
     return UnitAskedError(f"{lacking}: {shown}say which with {UNIT} mm (or inch, cm, m).")
 
 
@@ -97,13 +90,10 @@ def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
     InputError
         Naming the open ends.
     """
-    x0, y0, x1, y1 = part.bounds
     for stray in strays:
-        chain = stray.chain
-        low_x, low_y, high_x, high_y = bounds([*chain.points], chain.bulges)
-        gap = dist(stray.chain.points[0], stray.chain.points[-1])
-        size = dist((low_x, low_y), (high_x, high_y))
-        if low_x < x0 and low_y < y0 and high_x > x1 and high_y > y1 and gap < NEARLY_CLOSED * size:
+        box = box_around(stray.chain.segments)
+        gap, size = dist(stray.chain.points[0], stray.chain.points[-1]), dist(box[:2], box[2:])
+        if surrounds(box, part.bounds) and gap < NEARLY_CLOSED * size:
             raise InputError(
                 f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part all "
                 f"the same, give {PART_NUMBER} {part.number}."
@@ -121,7 +111,6 @@ def gap_around(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
     chains = [stray.chain for stray in strays]
     if not 1 < len(chains) <= MOST_JOINED:
         return None
-    x0, y0, x1, y1 = part.bounds
     ends = np.array([end for chain in chains for end in (chain.points[0], chain.points[-1])])
     away = np.hypot(*(ends[:, None] - ends[None]).T)
     np.fill_diagonal(away, np.inf)
@@ -131,22 +120,14 @@ def gap_around(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
             loops = join(chains, gap * (1 + 1e-9)).loops
         except InputError:
             continue
-        for loop in loops:
-            points = [(float(x), float(y)) for x, y, _ in loop.vertices]
-            low_x, low_y, high_x, high_y = bounds([*points, points[0]], loop.vertices[:, 2].tolist())
-            if low_x < x0 and low_y < y0 and high_x > x1 and high_y > y1:
-                return gap
+        if any(surrounds(box_around(loop_segments(loop.vertices)), part.bounds) for loop in loops):
+            return gap
     return None
 
 
-def bounds(points: Sequence[Point], bulges: Sequence[float]) -> tuple[float, float, float, float]:
-    """Bounding box in mm of the segments from point to point."""
-    steps = zip(points, points[1:], bulges, strict=False)
-    boxes = np.array([bounding_box(segment_from_bulge(p, q, b)) for p, q, b in steps if p != q]).reshape(
-        -1, 4
-    )
-    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
-    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+def surrounds(a: Sequence[float], b: Sequence[float]) -> bool:
+    """Whether a bounding box reaches out of another one on every side."""
+    return a[0] < b[0] and a[1] < b[1] and a[2] > b[2] and a[3] > b[3]
 
 
 def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
@@ -161,21 +142,17 @@ def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
         away = np.hypot(points[:, 0] - point[0], points[:, 1] - point[1])
         away[k] = np.inf
         nearest = int(away.argmin())
-        found.append((float(away[nearest]), point, name, ends[nearest][1], nearest))
+        found.append((float(away[nearest]), point, name, ends[nearest][1]))
     found.sort(key=lambda item: item[0])
     words = [
         f"{name} ends at {at(point)}, {gap:.3g} mm from the nearest other end ({other})"
-        for gap, point, name, other, _ in found[:ENDS_NAMED]
+        for gap, point, name, other in found[:ENDS_NAMED]
     ]
     more = f", and {len(ends) - len(words)} more ends are open" if len(ends) > len(words) else ""
     needed = found[0][0] if enough is None else enough
-    larger = f"give a larger {JOIN_TOLERANCE}, above {rounded_up(needed)} mm"
+    # A little more than is needed, in two digits.
+    larger = f"give a larger {JOIN_TOLERANCE}, above {needed * 1.05:.2g} mm"
     return f"{'; '.join(words)}{more}; close the drawing, or {larger}."
-
-
-def rounded_up(gap: float) -> str:
-    """A gap rounded up to two digits."""
-    return f"{gap * 1.05:.2g}"
 
 
 def stray_remarks(strays: Sequence[Stray]) -> list[str]:
@@ -209,7 +186,12 @@ def with_layers_named(error: InputError, drawing: Drawing, usable: Callable[[Dra
     usable : whether a part can be read of a drawing.
     """
     said = str(error)
-    meeting = {layer: label for label, layer in drawing.layers.items() if is_named(label, said)}
+    # The name of a segment may begin like that of another one.
+    meeting = {
+        layer: label
+        for label, layer in drawing.layers.items()
+        if re.search(rf"{re.escape(label)}(?!\w)", said) is not None
+    }
     every = list(dict.fromkeys(drawing.layers.values()))
     if len(meeting) < 2 or len(every) > MOST_LAYERS:
         return error
@@ -219,25 +201,11 @@ def with_layers_named(error: InputError, drawing: Drawing, usable: Callable[[Dra
         [one] for one in meeting
     ]
     for chosen in choices:
-        if usable(of_layers(drawing, chosen)):
+        chains = tuple(chain for chain in drawing.chains if drawing.layers.get(chain.labels[0]) in chosen)
+        if usable(evolve(drawing, chains=chains)):
+            # As a command takes it, one option after the other.
+            words = " ".join(f"{LAYERS} {quote(layer)}" for layer in chosen)
             return InputError(
-                f"{said.rstrip('.')}. {where}: give {chosen_words(chosen)} to read an outline without the "
-                "rest."
+                f"{said.rstrip('.')}. {where}: give {words} to read an outline without the rest."
             )
     return InputError(f"{said.rstrip('.')}. {where}.")
-
-
-def is_named(label: str, sentence: str) -> bool:
-    """Whether a sentence names a segment, and not only one whose name begins like it."""
-    return re.search(rf"{re.escape(label)}(?!\w)", sentence) is not None
-
-
-def of_layers(drawing: Drawing, layers: Sequence[str]) -> Drawing:
-    """The part of a drawing that is on some layers."""
-    chains = tuple(chain for chain in drawing.chains if drawing.layers.get(chain.labels[0]) in layers)
-    return evolve(drawing, chains=chains)
-
-
-def chosen_words(layers: Sequence[str]) -> str:
-    """A choice of layers as a command takes it, one option after the other."""
-    return " ".join(f"{LAYERS} {quote(layer)}" for layer in layers)

@@ -264,13 +264,7 @@ def arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def joined_ends(chains: Sequence[Chain], node: NDArray[np.int64], tolerance: float) -> list[int]:
-    """The end that every end is joined to, or -1.
-
-    Raises
-    ------
-    InputError
-        For a junction.
-    """
+    """The end that every end is joined to, or -1; raises InputError for a junction."""
     partner = [-1] * len(node)
     at_node: defaultdict[int, list[int]] = defaultdict(list)
     for end, number in enumerate(node.tolist()):
@@ -287,10 +281,7 @@ def joined_ends(chains: Sequence[Chain], node: NDArray[np.int64], tolerance: flo
 def close_gaps(chains: Sequence[Chain], partner: list[int], tolerance: float) -> None:
     """Joins open ends across gaps, nearest first, writing into ``partner``.
 
-    Raises
-    ------
-    InputError
-        When a third end lies within the tolerance of a gap's ends, or very many do.
+    Raises InputError when a third end lies within the tolerance of a gap's ends, or very many do.
     """
     loose = [end for end, other in enumerate(partner) if other < 0]
     if not loose or tolerance <= 0:

@@ -23,7 +23,7 @@ from workhold.geometry.loop import (
     reversed_vertices,
     signed_area,
 )
-from workhold.geometry.segment import Segment, bounding_box, segment_rows
+from workhold.geometry.segment import Segment, box_around, segment_rows
 from workhold.kernels.base.distance import is_inside
 
 __all__ = ["DrawnPart", "as_one", "nest", "refuse_loops_across"]
@@ -69,22 +69,19 @@ class MeasuredLoop:
     area: float
     box: tuple[float, float, float, float]
 
-
-def ring(loop: Loop) -> MeasuredLoop:
-    """Measures a loop."""
-    segments = loop_segments(loop.vertices)
-    area = signed_area(segments)
-    if area < 0:
-        segments = loop_segments(reversed_vertices(loop.vertices))
-    boxes = np.array([bounding_box(segment) for segment in segments])
-    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
-    box = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
-    return MeasuredLoop(loop, segments, segment_rows(segments), abs(area), box)
+    @classmethod
+    def of(cls, loop: Loop) -> MeasuredLoop:
+        """Measures a loop."""
+        segments = loop_segments(loop.vertices)
+        area = signed_area(segments)
+        if area < 0:
+            segments = loop_segments(reversed_vertices(loop.vertices))
+        return cls(loop, segments, segment_rows(segments), abs(area), box_around(segments))
 
 
 def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
     """Sorts loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later."""
-    rings = sorted((ring(loop) for loop in loops), key=lambda r: -r.area)
+    rings = sorted(map(MeasuredLoop.of, loops), key=lambda r: -r.area)
     boxes = np.array([r.box for r in rings]).reshape(-1, 4)
     depths: list[int] = []
     holes: dict[int, list[int]] = {}
@@ -116,11 +113,10 @@ def nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
 def as_one(loops: Sequence[Loop]) -> DrawnPart:
     """Loops of one workpiece as one part, also where it has several outer ones."""
     parts = nest(loops)
-    boxes = np.array([part.bounds for part in parts])
-    x0, y0 = boxes[:, :2].min(axis=0).tolist()
-    x1, y1 = boxes[:, 2:].max(axis=0).tolist()
+    x0, y0, x1, y1 = zip(*(part.bounds for part in parts), strict=True)
     inside = tuple(loop for part in parts for loop in part.loops)
-    return DrawnPart(1, inside, sum(part.area for part in parts), (x0, y0, x1, y1))
+    bounds = min(x0), min(y0), max(x1), max(y1)
+    return DrawnPart(1, inside, sum(part.area for part in parts), bounds)
 
 
 def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart]) -> None:
@@ -131,11 +127,11 @@ def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart]) -> None:
     InputError
         Naming both segments and the point.
     """
-    own = [ring(loop) for loop in part.loops]
+    own = [MeasuredLoop.of(loop) for loop in part.loops]
     for other in others:
         if not overlap(part.bounds, other.bounds):
             continue
-        for theirs in (ring(loop) for loop in other.loops):
+        for theirs in map(MeasuredLoop.of, other.loops):
             for ours in own:
                 if overlap(ours.box, theirs.box):
                     refuse_meeting_loops(
@@ -154,10 +150,7 @@ def overlap(a: Sequence[float], b: Sequence[float]) -> bool:
 def chosen_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
     """The part of a number, or the largest.
 
-    Raises
-    ------
-    InputError
-        When there is no part of that number, and for a name.
+    Raises InputError when there is no part of that number, and for a name.
     """
     if number is None:
         return parts[0]

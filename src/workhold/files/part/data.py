@@ -164,8 +164,9 @@ def drawing_of_object(
     name = str(getattr(part, "label", "") or "shape")
     from workhold.files.step.by_height import HeightView, shapes_by_height, shapes_usual
 
-    heights = {key: view[key] for key in ("axis", "peg_height", "head_room", "least_band", "heights")}
-    height_view = HeightView(**heights, part_number=part_number)
+    keys = ("axis", "peg_height", "head_room", "least_band", "heights")
+    given = {key: view[key] for key in keys if view[key] is not None}
+    height_view = HeightView(**given, part_number=part_number)
     if by_height(view, fit):
         return ObjectPart(shapes_by_height(shapes, height_view), name, None)
     if view["section"] is None and fit is None:

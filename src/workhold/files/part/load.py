@@ -280,11 +280,11 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
         raise InputError(f"the STEP file gives its own unit: leave {DRAWING_UNIT} out.")
     asked = by_height(options, options["fit"])
     if asked or (options["section"] is None and options["fit"] is None):
-        from workhold.files.step.by_height import HeightView, read_by_height_apart, read_usual_apart
+        from workhold.files.step.by_height import HeightView, read_by_height_apart
 
         keys = ("axis", "peg_height", "head_room", "least_band", "part_number", "heights")
-        view = HeightView(**{key: options[key] for key in keys})
-        read = read_by_height_apart(content, view) if asked else read_usual_apart(content, view)
+        view = HeightView(**{key: options[key] for key in keys if options[key] is not None})
+        read = read_by_height_apart(content, view, or_silhouette=not asked)
         if isinstance(read, Drawing):
             loaded = from_drawing(path, read, None, 0.0, None)
         else:

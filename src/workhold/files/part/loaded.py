@@ -232,7 +232,7 @@ def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
         content = read_bytes(file)
         if kind_of(file, content) != "step":
             raise InputError("only STEP files have solids.")
-        from workhold.files.step.solid_list import listed_solids
+        from workhold.files.step.solids import listed_solids
 
         return listed_solids(content)
     except InputError as error:

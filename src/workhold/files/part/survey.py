@@ -216,7 +216,7 @@ def solids_of(path: Path, content: bytes) -> tuple[FileSolid, ...]:
     """The solids of a STEP file whose outline was refused; none of other files, and where it is damaged."""
     try:
         if kind_of(path, content) == "step":
-            from workhold.files.step.solid_list import listed_solids
+            from workhold.files.step.solids import listed_solids
 
             return listed_solids(content)
     except InputError:

@@ -11,35 +11,33 @@ from numpy.typing import NDArray
 
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
+from workhold.files import questions
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Drawing
-from workhold.files.questions import HEAD_ROOM, LEAST_BAND, PEG_HEIGHT
+from workhold.files.questions import PEG_HEIGHT
 from workhold.files.step.departures import other_axis_remarks
-from workhold.files.step.heights import HEAD_ROOM as USUAL_ROOM
-from workhold.files.step.heights import LEAST_BAND as USUAL_BAND
-from workhold.files.step.heights import StandingSolid, standing
-from workhold.files.step.level_faces import known_levels
-from workhold.files.step.library import load_step_library
-from workhold.files.step.projected import OtherCurveError
-from workhold.files.step.reader import drawing_of, guarded, plain_drawing, prepare, read_solid
-from workhold.files.step.solids import (
-    Solid,
-    along,
-    axis_named,
-    chosen_solid,
-    lost_remarks,
-    numbered,
-    read_solids,
-    solid_remarks,
-    sub_shapes,
-)
-from workhold.files.step.which_height import (
+from workhold.files.step.heights import (
+    HEAD_ROOM,
+    LEAST_BAND,
     OwnDrawing,
+    StandingSolid,
     advice,
     height_remarks,
     height_table,
-    ordered_loops,
     own_drawings,
+    standing,
+)
+from workhold.files.step.level_faces import known_levels
+from workhold.files.step.library import along, axis_named, guarded
+from workhold.files.step.projected import OtherCurveError
+from workhold.files.step.reader import drawing_of, plain_drawing, prepare, read_solid
+from workhold.files.step.solids import (
+    Solid,
+    chosen_solid,
+    lost_remarks,
+    read_solids,
+    solid_remarks,
+    solids_of_shapes,
 )
 from workhold.model.solid import FileSolid, HeightRow, SolidOutline
 
@@ -49,7 +47,6 @@ __all__ = [
     "prepare",
     "read_by_height",
     "read_by_height_apart",
-    "read_usual_apart",
     "shapes_by_height",
     "shapes_usual",
 ]
@@ -67,23 +64,23 @@ class HeightView:
     axis : direction of the file that points up; z when None.
     peg_height : up to which pegs reach above the plane on which the part lies, in mm; the part's height when
         None.
-    head_room, least_band : in mm; the usual ones when None.
+    head_room, least_band : in mm.
     heights : from which to which carriers with heights of their own reach, in mm, by their role.
     part_number : number or name of the solid to take of several; the largest when None.
     """
 
     axis: str | None = None
     peg_height: float | None = None
-    head_room: float | None = None
-    least_band: float | None = None
+    head_room: float = HEAD_ROOM
+    least_band: float = LEAST_BAND
     part_number: int | str | None = None
     heights: Mapping[str, Sequence[float]] = {}
 
     def __attrs_post_init__(self) -> None:
         for name, value, least in (
             (PEG_HEIGHT, self.peg_height, SAME_HEIGHT),
-            (HEAD_ROOM, self.head_room, 0.0),
-            (LEAST_BAND, self.least_band, 0.0),
+            (questions.HEAD_ROOM, self.head_room, 0.0),
+            (questions.LEAST_BAND, self.least_band, 0.0),
         ):
             if value is not None and not least <= value < 1e6:
                 raise InputError(
@@ -113,7 +110,9 @@ class HeightDrawing:
     solids: tuple[FileSolid, ...] = ()
 
 
-def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
+def read_by_height_apart(
+    content: bytes, view: HeightView, or_silhouette: bool = False
+) -> HeightDrawing | Drawing:
     """Runs :func:`read_by_height` in a process of its own: damaged files crash or hang the library.
 
     Raises
@@ -121,18 +120,7 @@ def read_by_height_apart(content: bytes, view: HeightView) -> HeightDrawing:
     InputError
         As :func:`read_by_height`, and for a file that the process does not survive.
     """
-    return height_drawing_of(run_apart(__name__, content, {"view": asdict(view)}, "the STEP file"))
-
-
-def read_usual_apart(content: bytes, view: HeightView) -> HeightDrawing | Drawing:
-    """Reads a solid as high as it is in a process of its own, see :func:`usual_drawing`.
-
-    Raises
-    ------
-    InputError
-        As :func:`usual_drawing`, and for a file that the process does not survive.
-    """
-    options = {"view": asdict(view), "or_silhouette": True}
+    options = {"view": asdict(view), "or_silhouette": or_silhouette}
     by_height, answered = run_apart(__name__, content, options, "the STEP file")
     return height_drawing_of(answered) if by_height else drawing_of(answered)
 
@@ -150,35 +138,13 @@ def height_drawing_of(answered: Any) -> HeightDrawing:
     )
 
 
-def plain(content: bytes, view: dict[str, Any], or_silhouette: bool = False) -> Any:
-    """What :func:`read_by_height` reads as plain data; or which of two :func:`read_usual` reads, with it.
+def plain(content: bytes, view: dict[str, Any], or_silhouette: bool) -> Any:
+    """What :func:`read_by_height` reads as plain data, and before it whether that is an outline by height.
 
-    Raises
-    ------
-    InputError
-        As these, and where the library or the arithmetic after it fails over the file.
+    Raises InputError as it does, and where the library or the arithmetic after it fails over the file.
     """
-    if not or_silhouette:
-        return guarded(lambda: plain_heights(read_by_height(content, HeightView(**view))), ValueError)
-    found = guarded(lambda: read_usual(content, HeightView(**view)), ValueError)
-    if isinstance(found, Drawing):
-        return False, plain_drawing(found)
-    return True, plain_heights(found)
-
-
-def read_usual(content: bytes, view: HeightView) -> HeightDrawing | Drawing:
-    """The outline of a solid in a STEP file of which nobody says how high the pegs are.
-
-    Raises
-    ------
-    InputError
-        As :func:`usual_drawing`.
-    """
-    load_step_library()
-    solids = read_solids(content)
-    found = usual_drawing(solids, view)
-    remarks = (*lost_remarks(content, solids), *found.remarks)
-    return evolve(found, remarks=remarks, solids=tuple(solid.listed for solid in solids))
+    found = guarded(lambda: read_by_height(content, HeightView(**view), or_silhouette), ValueError)
+    return (False, plain_drawing(found)) if isinstance(found, Drawing) else (True, plain_heights(found))
 
 
 def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing | Drawing:
@@ -187,10 +153,7 @@ def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing 
     The silhouette offers lines and arcs in the place of other curves. It has no heights, and faces that lean
     may be touched.
 
-    Raises
-    ------
-    InputError
-        As :func:`workhold.files.step.reader.read_step`.
+    Raises InputError as :func:`workhold.files.step.reader.read_step`.
     """
     chosen = chosen_solid(solids, view.part_number)
     solid = guarded(lambda: turned_up(chosen, view))
@@ -231,21 +194,22 @@ def plain_heights(drawing: HeightDrawing) -> Any:
     return loops, astuple(drawing.solid), drawing.remarks, rows, own, solids
 
 
-def read_by_height(content: bytes, view: HeightView) -> HeightDrawing:
+def read_by_height(content: bytes, view: HeightView, or_silhouette: bool = False) -> HeightDrawing | Drawing:
     """The outline of a solid in a STEP file at the height of the pegs.
+
+    Parameters
+    ----------
+    or_silhouette : where nobody says how high the pegs are, see :func:`usual_drawing`.
 
     Raises
     ------
     InputError
         For files that cannot be read, and outlines that are not made of lines and arcs.
     """
-    load_step_library()
     solids = read_solids(content)
-    chosen = chosen_solid(solids, view.part_number)
-    drawing = drawn(chosen.shape, turned_up(chosen, view), view)
-    remarks = (*lost_remarks(content, solids), *solid_remarks(solids, chosen, view.part_number))
-    listed = tuple(solid.listed for solid in solids)
-    return evolve(drawing, remarks=(*remarks, *drawing.remarks), solids=listed)
+    found = usual_drawing(solids, view) if or_silhouette else height_drawing(solids, view)
+    remarks = (*lost_remarks(content, solids), *found.remarks)
+    return evolve(found, remarks=remarks, solids=tuple(solid.listed for solid in solids))
 
 
 def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
@@ -256,40 +220,36 @@ def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
     InputError
         For shapes without a solid, and as :func:`read_by_height`.
     """
-    load_step_library()
-    solids = numbered([solid for shape in shapes for solid in sub_shapes(shape, "SOLID")])
+    solids = solids_of_shapes(shapes)
     if not solids:
         raise InputError(f"only a solid has heights, and the shape holds none: leave {PEG_HEIGHT} out.")
-    chosen = chosen_solid(solids, view.part_number)
-    drawing = drawn(chosen.shape, turned_up(chosen, view), view)
-    return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
+    return height_drawing(solids, view)
 
 
 def shapes_usual(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Drawing | None:
-    """The outline of one of some shapes of Open CASCADE of which nobody says how high the pegs are.
-
-    Returns
-    -------
-    As of :func:`usual_drawing`; None for shapes without a solid.
+    """What :func:`usual_drawing` makes of some shapes of Open CASCADE; None for shapes without a solid.
 
     Raises
     ------
     InputError
         As :func:`usual_drawing`.
     """
-    load_step_library()
-    solids = numbered([solid for shape in shapes for solid in sub_shapes(shape, "SOLID")])
+    solids = solids_of_shapes(shapes)
     return usual_drawing(solids, view) if solids else None
 
 
-def turned_up(chosen: Solid, view: HeightView) -> StandingSolid:
-    """A solid as it is looked at.
+def height_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing:
+    """The outline of one of some solids at the height of the pegs, with remarks on the others.
 
-    Raises
-    ------
-    InputError
-        For an axis that there is not.
+    Raises InputError as :func:`read_by_height`.
     """
+    chosen = chosen_solid(solids, view.part_number)
+    drawing = drawn(chosen.shape, turned_up(chosen, view), view)
+    return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
+
+
+def turned_up(chosen: Solid, view: HeightView) -> StandingSolid:
+    """A solid as it is looked at; raises InputError for an axis that there is not."""
     return standing(along(chosen.shape, axis_named(view.axis)))
 
 
@@ -314,40 +274,32 @@ def drawn(
     InputError
         As :func:`read_by_height`.
     """
-    axis, (room, least) = axis_named(view.axis), lengths_of(view)
+    axis, room, least = axis_named(view.axis), view.head_room, view.least_band
     try:
         outline = solid.outline(view.peg_height, room, least)
     except InputError as error:
         refusal = InputError(f"along {axis}: {error}.")
         raise advised(refusal, solid, view) if is_advised else refusal from error
-    ordered = ordered_loops(outline)
-    if not any(ordered.bands):
+    if not any(outline.bands):
         raise InputError(
             f"along {axis} no upright face of the part is at least {least:g} mm high below "
             f"{outline.peg_height:g} mm: {advice(solid, room, least)}."
         )
     sizes = (solid.height, outline.peg_height, room, least)
-    found = SolidOutline(axis, *sizes, ordered.bands, ordered.faces, **known_levels(solid))
+    found = SolidOutline(axis, *sizes, outline.bands, outline.faces, **known_levels(solid))
     own = tuple(own_drawings(solid, view.heights, found))
     plain_prism = view.peg_height is None and is_prism(solid)
     rows = height_table(solid, room, least) if has_table and not plain_prism else []
-    remarks = [] if plain_prism else height_remarks(outline, found, rows, ordered.feet)
-    if any(band is None for band in ordered.bands):
+    remarks = [] if plain_prism else height_remarks(outline, found, rows)
+    if any(band is None for band in outline.bands):
         remarks += other_axis_remarks(shape, axis)
-    return HeightDrawing(ordered.loops, found, tuple(remarks), tuple(rows), own)
-
-
-def lengths_of(view: HeightView) -> tuple[float, float]:
-    """Head room and shortest band in mm, the usual ones where none are given."""
-    return (
-        USUAL_ROOM if view.head_room is None else view.head_room,
-        USUAL_BAND if view.least_band is None else view.least_band,
-    )
+    return HeightDrawing(outline.vertices, found, tuple(remarks), tuple(rows), own)
 
 
 def advised(refusal: InputError, solid: StandingSolid, view: HeightView) -> InputError:
     """A refusal with what to give instead."""
-    return InputError(f"{str(refusal).removesuffix('.')}; {advice(solid, *lengths_of(view))}.")
+    instead = advice(solid, view.head_room, view.least_band)
+    return InputError(f"{str(refusal).removesuffix('.')}; {instead}.")
 
 
 def is_prism(solid: StandingSolid) -> bool:

@@ -23,8 +23,8 @@ from workhold.files.outline.joining import closed_loop
 from workhold.files.outline.nesting import DrawnPart, nest
 from workhold.files.questions import AXIS, SECTION
 from workhold.files.step.faces import Layer, SolidFace, lie_of, surface_points
+from workhold.files.step.library import AXES, occ, sub_shapes
 from workhold.files.step.regions import Borders, area_of, section
-from workhold.files.step.solids import AXES, sub_shapes
 from workhold.geometry.loop import loop_segments, reversed_vertices, signed_area
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
@@ -63,7 +63,13 @@ class Outline:
             right.
         """
         parts = nest([closed_loop(chain) for chain in edges.chains])
-        allowed = (FREE_AREA if edges.curves else 1e-6) * area + edges.departure * lengths_of(parts)
+        border = sum(
+            segment.length
+            for part in parts
+            for loop in part.loops
+            for segment in loop_segments(loop.vertices)
+        )
+        allowed = (FREE_AREA if edges.curves else 1e-6) * area + edges.departure * border
         if len(parts) != 1 or abs(parts[0].area - area) > allowed:
             raise InputError(
                 f"the sections of the solid do not make one outline: give another {AXIS}, or {SECTION}, or "
@@ -79,12 +85,6 @@ class Outline:
             overhangs.append(float(np.where(inside, 0.0, away).max(initial=0.0)))
         low, high = min(face.low for face in faces), max(face.high for face in faces)
         return cls(area, low, high, tuple(insets), tuple(overhangs), edges.departure)
-
-
-def lengths_of(parts: Sequence[DrawnPart]) -> float:
-    """Length of all loops of some parts, in mm."""
-    loops = [loop for part in parts for loop in part.loops]
-    return sum(segment.length for loop in loops for segment in loop_segments(loop.vertices))
 
 
 def oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
@@ -110,7 +110,8 @@ def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, ax
     if outline.overhangs[worst] <= OVERHANG + outline.departure:
         return
     face = faces[worst]
-    another = other_axis(solid, axis, f", or {AXIS} ")
+    name = other_axis(solid, axis)
+    another = f", or {AXIS} {name}" if name else ""
     raise InputError(
         f"along {axis} the silhouette is not made of lines and circles: a {face.kind} at "
         f"{heights(outline, face)} reaches {outline.overhangs[worst]:.3g} mm out of what is; give "
@@ -153,9 +154,9 @@ def departure_remarks(
 
 def other_axis_remarks(solid: Any, axis: str) -> list[str]:
     """A sentence on another axis along which no face of a solid leans, where there is one."""
-    hint = other_axis(solid, axis, "")
+    name = other_axis(solid, axis)
     return (
-        [f"Along {hint} no face leans: give {AXIS} {hint} if the pegs are parallel to that."] if hint else []
+        [f"Along {name} no face leans: give {AXIS} {name} if the pegs are parallel to that."] if name else []
     )
 
 
@@ -189,7 +190,9 @@ def silhouette_remark(outline: Outline, layers: Sequence[Layer], shape: Any) -> 
     whole: list[tuple[float, float]] = []
     lacks: list[tuple[float, float]] = []
     for layer in layers:
-        found = [(outline.area - area_of(section(shape, z)), z) for z in probed(layer)]
+        height = layer.high - layer.low
+        probed = [layer.middle] if layer.prismatic else [layer.low + s * height for s in (0.01, 0.5, 0.99)]
+        found = [(outline.area - area_of(section(shape, z)), z) for z in probed]
         lacks += found
         if layer.prismatic and found[0][0] <= SAME_AREA * outline.area:
             if whole and layer.low - whole[-1][1] <= 2 * SAME_HEIGHT:
@@ -209,19 +212,10 @@ def silhouette_remark(outline: Outline, layers: Sequence[Layer], shape: Any) -> 
     return f"The outline is the silhouette, which is {where}: pegs have to touch there."
 
 
-def probed(layer: Layer) -> list[float]:
-    """Heights at which a layer's section is compared with the outline."""
-    if layer.prismatic:
-        return [layer.middle]
-    return [layer.low + share * (layer.high - layer.low) for share in (0.01, 0.5, 0.99)]
-
-
-def other_axis(solid: Any, axis: str, before: str) -> str:
-    """Another axis along which no face of a solid leans, after some words; nothing when there is none."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-
-    surfaces = [BRepAdaptor_Surface(face) for face in sub_shapes(solid, "FACE")]
+def other_axis(solid: Any, axis: str) -> str:
+    """Another axis along which no face of a solid leans; empty when there is none."""
+    surfaces = [occ.BRepAdaptor_Surface(face) for face in sub_shapes(solid, "FACE")]
     for name, (_, _, up) in AXES.items():
         if name != axis.lstrip("-") and all(lie_of(surface, up) != "leaning" for surface in surfaces):
-            return before + name
+            return name
     return ""

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, DISGUISE, SHORTEST
 from workhold.files.step.faces import SolidFace, surface_of
-from workhold.files.step.solids import sub_shapes
+from workhold.files.step.library import occ, sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = [
@@ -53,6 +53,8 @@ Known = tuple[float, float]
 # Steps of false position, at most, and of those that move the same end before the bracket is halved; half the
 # width of the last bracket, as a share of the first.
 STEPS, MOST_RUN, NARROW = 16, 3, 1e-12
+# Steps of the bisection after it.
+BISECTIONS = 60
 
 
 @frozen
@@ -125,9 +127,6 @@ class EdgeCurve:
 
 def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     """The edges of all faces, each as often as a face has it."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-
     # Edges that are the same whichever way a face runs them, by hash: the library's own map of shapes has
     # another name in every version.
     known: dict[int, list[tuple[Any, int]]] = {}
@@ -145,7 +144,7 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
         (index, edge, number_of(edge))
         for index, face in enumerate(faces)
         for edge in sub_shapes(face.shape, "EDGE")
-        if not BRep_Tool.Degenerated_s(edge)
+        if not occ.BRep_Tool.Degenerated_s(edge)
     ]
     carriers = {index: wall_carrier(face) for index, face in enumerate(faces) if face.lie == "upright"}
     walls = {number: carriers[index] for index, _, number in edges if carriers.get(index) is not None}
@@ -153,19 +152,17 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     curves: dict[int, EdgeCurve] = {}
     for index, edge, number in edges:
         if number not in curves:
-            curves[number] = on_wall(curve_of(index, BRepAdaptor_Curve(edge)), walls.get(number))
+            curves[number] = on_wall(curve_of(index, occ.BRepAdaptor_Curve(edge)), walls.get(number))
     return [evolve(curves[number], face=index) for index, _, number in edges]
 
 
 def wall_carrier(face: SolidFace) -> Segment | None:
     """A piece of the line or the circle over which an upright face stands; None for a free-form one."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     surface = surface_of(face.shape)
-    if surface.GetType() == Type.GeomAbs_Plane:
+    if surface.GetType() == occ.GeomAbs_Plane:
         place, normal = surface.Plane().Location(), surface.Plane().Axis().Direction()
         return Line((place.X(), place.Y()), (place.X() - normal.Y(), place.Y() + normal.X()))
-    if surface.GetType() == Type.GeomAbs_Cylinder:
+    if surface.GetType() == occ.GeomAbs_Cylinder:
         place = surface.Cylinder().Location()
         return Arc((place.X(), place.Y()), surface.Cylinder().Radius(), 0.0, pi, 1.0)
     return None
@@ -195,9 +192,7 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
     if isinstance(carrier, Line):
         segment: Segment = Line((px + low * tx, py + low * ty), (px + high * tx, py + high * ty))
     else:
-        half = (high - low) / 2
-        half = pi if half > pi - WHOLE_TURN else half
-        segment = Arc(carrier.center, carrier.radius, (low + high) / 2, half, 1.0)
+        segment = arc_over(carrier.center, carrier.radius, low, high)
     if segment.length < SHORTEST:
         return evolve(edge, segment=None, is_other=False)
     values = [(position_along(segment), along.tolist()), (height, edge.points[:, 2].tolist())]
@@ -209,11 +204,9 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
 
 def curve_of(face: int, curve: Any) -> EdgeCurve:
     """One edge seen from above."""
-    from OCP.GeomAbs import GeomAbs_CurveType
-
     first, last = curve.FirstParameter(), curve.LastParameter()
     kind = curve.GetType()
-    if kind == GeomAbs_CurveType.GeomAbs_Line:
+    if kind == occ.GeomAbs_Line:
         parameters = np.array([first, last])
         points = points_along(curve, parameters)
         (x0, y0, _), (x1, y1, _) = points.tolist()
@@ -221,7 +214,7 @@ def curve_of(face: int, curve: Any) -> EdgeCurve:
         return EdgeCurve(face, line, parameters, points, False, curve)
     parameters = np.linspace(first, last, SAMPLES)
     points = points_along(curve, parameters)
-    if kind == GeomAbs_CurveType.GeomAbs_Circle:
+    if kind == occ.GeomAbs_Circle:
         circle = curve.Circle()
         normal = circle.Axis().Direction()
         if hypot(normal.X(), normal.Y()) <= ALIGNED:
@@ -229,7 +222,9 @@ def curve_of(face: int, curve: Any) -> EdgeCurve:
             return EdgeCurve(face, arc, parameters, points, False, curve)
     segment = flattened(points[:, :2])
     if segment is None:
-        return EdgeCurve(face, None, parameters, points, is_wide(points[:, :2]), curve)
+        # An upright edge is a single point.
+        is_wide = bool(np.ptp(points[:, :2], axis=0).max() > SHORTEST)
+        return EdgeCurve(face, None, parameters, points, is_wide, curve)
     more = [
         one
         for value in (position_along(segment), height)
@@ -240,11 +235,6 @@ def curve_of(face: int, curve: Any) -> EdgeCurve:
         points = points_along(curve, parameters)
         segment = flattened(points[:, :2]) or segment
     return EdgeCurve(face, segment, parameters, points, False, curve)
-
-
-def is_wide(points: NDArray[np.float64]) -> bool:
-    """Whether points (N, 2) are no single point; an upright edge is one."""
-    return bool(np.ptp(points, axis=0).max() > SHORTEST)
 
 
 def height(point: Point3) -> float:
@@ -295,15 +285,19 @@ def points_along(curve: Any, parameters: NDArray[np.float64]) -> NDArray[np.floa
     return np.array([curve_point(curve, float(t)) for t in parameters])
 
 
+def arc_over(center: Point, radius: float, low: float, high: float) -> Arc:
+    """The arc between two angles in radians; a whole circle where it lacks no more than rounding."""
+    half = (high - low) / 2
+    return Arc(center, radius, (low + high) / 2, pi if half > pi - WHOLE_TURN else half, 1.0)
+
+
 def level_arc(circle: Any, first: float, last: float, points: NDArray[np.float64]) -> Arc:
     """A level circle's arc between two parameters, seen from above."""
     center = circle.Location()
-    middle = points[len(points) // 2]
-    angle = atan2(middle[1] - center.Y(), middle[0] - center.X())
-    half = min((last - first) / 2, pi)
-    if half > pi - 1e-9:
-        half = pi
-    return Arc((center.X(), center.Y()), circle.Radius(), angle, half, 1.0)
+    x, y, _ = points[len(points) // 2]
+    middle, half = atan2(y - center.Y(), x - center.X()), (last - first) / 2
+    arc = arc_over((center.X(), center.Y()), circle.Radius(), -half, half)
+    return evolve(arc, mid_angle=middle)
 
 
 def flattened(points: NDArray[np.float64]) -> Segment | None:
@@ -327,23 +321,19 @@ def flattened(points: NDArray[np.float64]) -> Segment | None:
     if np.abs(radii - radius).max() > 1e-7 or radius > 1e5:
         return None
     angles = np.unwrap(np.arctan2(points[:, 1] - center[1], points[:, 0] - center[0]))
-    low, high = float(angles.min()), float(angles.max())
-    half = (high - low) / 2
-    half = pi if half > pi - 1e-9 else half
-    return Arc((float(center[0]), float(center[1])), radius, (low + high) / 2, half, 1.0)
+    return arc_over((float(center[0]), float(center[1])), radius, float(angles.min()), float(angles.max()))
 
 
-def crossing(value: Function, low: Known, high: Known, steps: int = 60) -> float:
+def crossing(value: Function, low: Known, high: Known) -> float:
     """The place at which a value that is below 0 at one end and not at the other passes 0.
 
     Parameters
     ----------
     low, high : both ends, the one with the value below 0 first; it may be the greater one.
-    steps : of bisection.
     """
     a, b = low[0], high[0]
     first, last = narrowed(value, low, high)
-    return sum(bisected(a, b, lambda t: value(t) >= 0.0, (first, last), steps)) / 2
+    return sum(bisected(a, b, lambda t: value(t) >= 0.0, (first, last), BISECTIONS)) / 2
 
 
 def bisected(

@@ -13,7 +13,7 @@ layer : a range of heights without a level face and without a leaning one inside
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise, product
 from math import hypot, tau
 from typing import Any, Literal
@@ -23,12 +23,15 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT
-from workhold.files.step.solids import bounding_box, sub_shapes
+from workhold.files.step.library import bounding_box, occ, sub_shapes
+from workhold.geometry.subdivision import distinct_sorted
 
 __all__ = [
     "SLOPING",
     "Layer",
     "SolidFace",
+    "is_level",
+    "is_upright",
     "layers_of",
     "lie_of",
     "plane_height",
@@ -95,12 +98,8 @@ def solid_faces(shape: Any) -> list[SolidFace]:
 
 def solid_face(face: Any) -> SolidFace:
     """Look at one face."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-    from OCP.TopAbs import TopAbs_Orientation
-
     low, high = bounding_box(face)
-    written, surface = BRepAdaptor_Surface(face), surface_of(face)
+    written, surface = occ.BRepAdaptor_Surface(face), surface_of(face)
     lie = lie_of(surface, 2)
     bottom, top = low[2], high[2]
     if (z := plane_height(surface)) is not None:
@@ -108,7 +107,7 @@ def solid_face(face: Any) -> SolidFace:
     fold = fold_of(surface) if lie == "leaning" else None
     upward = False
     if lie == "level":
-        turned = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+        turned = face.Orientation() == occ.TopAbs_REVERSED
         upward = (sampled_normals(written)[0].Z() > 0) != turned
     return SolidFace(
         face,
@@ -119,7 +118,7 @@ def solid_face(face: Any) -> SolidFace:
         fold,
         upward,
         (low[0], low[1], high[0], high[1]),
-        written.GetType() in (Type.GeomAbs_BSplineSurface, Type.GeomAbs_BezierSurface),
+        written.GetType() in (occ.GeomAbs_BSplineSurface, occ.GeomAbs_BezierSurface),
     )
 
 
@@ -129,38 +128,30 @@ def surface_of(face: Any) -> Any:
     Some programs write every surface as a spline. Of what is found the bounds are those of the face's box, at
     least: more of it does no harm where folds and cuts are looked for.
     """
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-    from OCP.GeomAdaptor import GeomAdaptor_Surface
-    from OCP.GeomConvert import GeomConvert_SurfToAnaSurf
-
-    surface = BRepAdaptor_Surface(face)
-    if surface.GetType() not in (Type.GeomAbs_BSplineSurface, Type.GeomAbs_BezierSurface):
+    surface = occ.BRepAdaptor_Surface(face)
+    if surface.GetType() not in (occ.GeomAbs_BSplineSurface, occ.GeomAbs_BezierSurface):
         return surface
-    converter = GeomConvert_SurfToAnaSurf(BRep_Tool.Surface_s(face))
+    converter = occ.GeomConvert_SurfToAnaSurf(occ.BRep_Tool.Surface_s(face))
     found = converter.ConvertToAnalytical(AS_QUADRIC)
     if found is None or converter.Gap() > AS_QUADRIC:
         return surface
-    quadric = GeomAdaptor_Surface(found)
-    if quadric.GetType() == Type.GeomAbs_Plane:
-        return GeomAdaptor_Surface(found, *plane_bounds(quadric.Plane().Position(), face))
-    if quadric.GetType() not in (Type.GeomAbs_Cylinder, Type.GeomAbs_Cone):
-        return quadric
-    place = (quadric.Cylinder() if quadric.GetType() == Type.GeomAbs_Cylinder else quadric.Cone()).Position()
-    return GeomAdaptor_Surface(found, 0.0, tau, *span_along(place, place.Direction(), face))
-
-
-def plane_bounds(place: Any, face: Any) -> tuple[float, float, float, float]:
-    """The parameters over which a plane holds a face's box."""
-    return *span_along(place, place.XDirection(), face), *span_along(place, place.YDirection(), face)
+    quadric = occ.GeomAdaptor_Surface(found)
+    kind = quadric.GetType()
+    if kind == occ.GeomAbs_Plane:
+        place = quadric.Plane().Position()
+        across = span_along(place, place.XDirection(), face)
+        return occ.GeomAdaptor_Surface(found, *across, *span_along(place, place.YDirection(), face))
+    if kind in (occ.GeomAbs_Cylinder, occ.GeomAbs_Cone):
+        place = (quadric.Cylinder() if kind == occ.GeomAbs_Cylinder else quadric.Cone()).Position()
+        return occ.GeomAdaptor_Surface(found, 0.0, tau, *span_along(place, place.Direction(), face))
+    return quadric
 
 
 def span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
     """How far a face's box reaches along a direction from a place, at least and at most."""
-    start, step = place.Location(), direction
+    start = place.Location()
     along = [
-        (x - start.X()) * step.X() + (y - start.Y()) * step.Y() + (z - start.Z()) * step.Z()
+        (x - start.X()) * direction.X() + (y - start.Y()) * direction.Y() + (z - start.Z()) * direction.Z()
         for x, y, z in product(*zip(*bounding_box(face), strict=True))
     ]
     return min(along), max(along)
@@ -168,9 +159,7 @@ def span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
 
 def plane_height(surface: Any) -> float | None:
     """The z in mm of a level plane, without what the library adds to a box; None for any other surface."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
-    if surface.GetType() != Type.GeomAbs_Plane or lie_of(surface, 2) != "level":
+    if surface.GetType() != occ.GeomAbs_Plane or lie_of(surface, 2) != "level":
         return None
     # The middle of the face, because a plane that is level but for rounding is higher far from it.
     u, v = (surface.FirstUParameter() + surface.LastUParameter()) / 2, surface.FirstVParameter()
@@ -179,16 +168,14 @@ def plane_height(surface: Any) -> float | None:
 
 def lie_of(surface: Any, axis: int) -> Lie:
     """How a surface lies to the axis of number 0 (x), 1 (y) or 2 (z)."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Plane:
+    if kind == occ.GeomAbs_Plane:
         inward, across = components(surface.Plane().Axis().Direction(), axis)
         return "level" if across <= ALIGNED else "upright" if inward <= ALIGNED else "leaning"
-    if kind == Type.GeomAbs_Cylinder:
+    if kind == occ.GeomAbs_Cylinder:
         _, across = components(surface.Cylinder().Axis().Direction(), axis)
         return "upright" if across <= ALIGNED else "leaning"
-    if kind in (Type.GeomAbs_Cone, Type.GeomAbs_Sphere, Type.GeomAbs_Torus):
+    if kind in (occ.GeomAbs_Cone, occ.GeomAbs_Sphere, occ.GeomAbs_Torus):
         return "leaning"
     slopes = [components(normal, axis) for normal in sampled_normals(surface)]
     if not slopes:
@@ -204,39 +191,51 @@ def components(direction: Any, axis: int) -> tuple[float, float]:
     return abs(inward), hypot(*values)
 
 
+def grid(surface: Any) -> Iterator[tuple[float, float]]:
+    """Pairs of parameters all over a surface."""
+    us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS)
+    vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS)
+    return product(us.tolist(), vs.tolist())
+
+
 def sampled_normals(surface: Any) -> list[Any]:
     """Unit normals of a surface at a grid of points, without those where it has none."""
-    from OCP.gp import gp_Dir, gp_Pnt, gp_Vec
-
     normals = []
-    for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS):
-        for v in np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS):
-            point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
-            surface.D1(float(u), float(v), point, along_u, along_v)
-            normal = along_u.Crossed(along_v)
-            if normal.Magnitude() > 1e-12:
-                normals.append(gp_Dir(normal))
+    for u, v in grid(surface):
+        point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
+        surface.D1(u, v, point, along_u, along_v)
+        normal = along_u.Crossed(along_v)
+        if normal.Magnitude() > 1e-12:
+            normals.append(occ.gp_Dir(normal))
     return normals
 
 
 def kind_of(surface: Any, lie: Lie) -> str:
     """A face in words, in the singular."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Plane:
+    if kind == occ.GeomAbs_Plane:
         return {"level": "level plane", "upright": "wall", "leaning": SLOPING}[lie]
     if lie == "upright":
-        round_wall = kind == Type.GeomAbs_Cylinder
+        round_wall = kind == occ.GeomAbs_Cylinder
         return (
             f"round wall of radius {surface.Cylinder().Radius():.6g} mm" if round_wall else "free-form wall"
         )
-    if kind == Type.GeomAbs_Cylinder:
+    if kind == occ.GeomAbs_Cylinder:
         along_axis, _ = components(surface.Cylinder().Axis().Direction(), 2)
         lies = "across" if along_axis < 1e-6 else "aslant"
         return f"cylinder of radius {surface.Cylinder().Radius():.6g} mm {lies}"
-    names = {Type.GeomAbs_Cone: "cone", Type.GeomAbs_Sphere: "sphere", Type.GeomAbs_Torus: "rounded rim"}
+    names = {occ.GeomAbs_Cone: "cone", occ.GeomAbs_Sphere: "sphere", occ.GeomAbs_Torus: "rounded rim"}
     return names.get(kind, "free-form surface")
+
+
+def is_upright(axis: Any) -> bool:
+    """Whether an axis of the library is parallel to z."""
+    return components(axis.Direction(), 2)[1] <= ALIGNED
+
+
+def is_level(axis: Any) -> bool:
+    """Whether an axis of the library is square to z."""
+    return components(axis.Direction(), 2)[0] <= ALIGNED
 
 
 def fold_of(surface: Any) -> float | None:
@@ -244,32 +243,21 @@ def fold_of(surface: Any) -> float | None:
 
     It is the equator of a sphere, an upright torus or a lying cylinder.
     """
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Sphere:
+    if kind == occ.GeomAbs_Sphere:
         return float(surface.Sphere().Location().Z())
-    if kind == Type.GeomAbs_Torus:
-        torus = surface.Torus()
-        return float(torus.Location().Z()) if components(torus.Axis().Direction(), 2)[1] <= ALIGNED else None
-    if kind == Type.GeomAbs_Cylinder:
-        cylinder = surface.Cylinder()
-        return (
-            float(cylinder.Location().Z())
-            if components(cylinder.Axis().Direction(), 2)[0] <= ALIGNED
-            else None
-        )
+    if kind == occ.GeomAbs_Torus and is_upright(surface.Torus().Axis()):
+        return float(surface.Torus().Location().Z())
+    if kind == occ.GeomAbs_Cylinder and is_level(surface.Cylinder().Axis()):
+        return float(surface.Cylinder().Location().Z())
     return None
 
 
 def layers_of(faces: Sequence[SolidFace]) -> list[Layer]:
     """The layers between the heights where level and leaning faces begin or end, from the lowest up."""
     leaning = np.array([(face.low, face.high) for face in faces if face.lie == "leaning"]).reshape(-1, 2)
-    heights = sorted({z for face in faces if face.lie != "upright" for z in (face.low, face.high)})
-    levels: list[float] = []
-    for z in heights:
-        if not levels or z - levels[-1] > SAME_HEIGHT:
-            levels.append(z)
+    ends = [z for face in faces if face.lie != "upright" for z in (face.low, face.high)]
+    levels = distinct_sorted(np.array(ends), SAME_HEIGHT)
     layers = []
     for low, high in pairwise(levels):
         inside = (leaning[:, 0] < high - SAME_HEIGHT) & (leaning[:, 1] > low + SAME_HEIGHT)
@@ -279,32 +267,18 @@ def layers_of(faces: Sequence[SolidFace]) -> list[Layer]:
 
 def surface_points(face: SolidFace) -> NDArray[np.float64]:
     """(N, 2) points (x, y) of a face: along its edges, and all over it when it is curved and leans."""
-    from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType
-
     points = []
     for edge in sub_shapes(face.shape, "EDGE"):
-        curve = BRepAdaptor_Curve(edge)
+        curve = occ.BRepAdaptor_Curve(edge)
         points += [
             curve.Value(float(t))
             for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), EDGE_POINTS)
         ]
-    surface = BRepAdaptor_Surface(face.shape)
-    if face.lie == "leaning" and surface.GetType() != GeomAbs_SurfaceType.GeomAbs_Plane:
-        points += inner_points(face.shape, surface)
+    surface = occ.BRepAdaptor_Surface(face.shape)
+    if face.lie == "leaning" and surface.GetType() != occ.GeomAbs_Plane:
+        points += [
+            surface.Value(u, v)
+            for u, v in grid(surface)
+            if occ.BRepClass_FaceClassifier(face.shape, occ.gp_Pnt2d(u, v), 1e-7).State() == occ.TopAbs_IN
+        ]
     return np.array([(point.X(), point.Y()) for point in points]).reshape(-1, 2)
-
-
-def inner_points(face: Any, surface: Any) -> list[Any]:
-    """Points of a grid over a surface that lie on the face."""
-    from OCP.BRepClass import BRepClass_FaceClassifier
-    from OCP.gp import gp_Pnt2d
-    from OCP.TopAbs import TopAbs_State
-
-    points = []
-    for u in np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS):
-        for v in np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS):
-            state = BRepClass_FaceClassifier(face, gp_Pnt2d(float(u), float(v)), 1e-7).State()
-            if state == TopAbs_State.TopAbs_IN:
-                points.append(surface.Value(float(u), float(v)))
-    return points

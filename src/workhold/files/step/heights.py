@@ -8,48 +8,66 @@ Glossary
 --------
 peg height : the height p in mm above the plane on which the part lies up to which pegs reach.
 head room : what is kept free above the pegs, in mm.
-interval : a range of z in mm in which an upright line runs inside the solid.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from itertools import pairwise
 from math import inf
 from typing import Any
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
+from workhold.files.questions import PEG_HEIGHT, SECTION
 from workhold.files.step.bands import Walls
 from workhold.files.step.edge_curves import EdgeCurve, Found, edge_curves
 from workhold.files.step.faces import SolidFace, plane_height, solid_faces
-from workhold.files.step.folds import folds
-from workhold.files.step.plane_faces import PlaneFaces
-from workhold.files.step.projected import FLAT, ProjectedCurves, other_curve, projected_curves, refuse_others
-from workhold.files.step.solids import bounding_box, sub_shapes
+from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
+from workhold.files.step.material import Material
+from workhold.files.step.projected import (
+    FLAT,
+    ProjectedCurves,
+    folds,
+    other_curve,
+    projected_curves,
+    refuse_others,
+)
 from workhold.files.step.strips import Strip, strips_of_loop
-from workhold.geometry.segment import Point
+from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.subdivision import BorderPiece, border_loops, border_pieces, subdivide
+from workhold.model.solid import Band, HeightRow, SolidOutline
 
-__all__ = ["HEAD_ROOM", "LEAST_BAND", "HeightOutline", "Material", "StandingSolid"]
+__all__ = [
+    "HEAD_ROOM",
+    "LEAST_BAND",
+    "HeightOutline",
+    "OwnDrawing",
+    "StandingSolid",
+    "advice",
+    "height_remarks",
+    "height_table",
+    "measures",
+    "own_drawings",
+    "standing",
+]
 
 # What is kept free above the pegs, and the shortest band that may be touched, both in mm.
 HEAD_ROOM, LEAST_BAND = 0.5, 1.0
-# How far in mm a line may miss a face's border and still meet the face.
-ON_FACE = 1e-7
 
 
-@frozen
+@define(frozen=True, slots=False, eq=False)
 class HeightOutline:
     """The outline between two heights with what may be touched of it.
 
     Parameters
     ----------
-    loops : strips in running order with the material on the left; the largest outer loop first.
+    loops : strips in running order with the material on the left.
     peg_height, head_room, least_band : in mm.
     """
 
@@ -57,6 +75,36 @@ class HeightOutline:
     peg_height: float
     head_room: float
     least_band: float
+
+    @cached_property
+    def ordered(self) -> list[tuple[Strip, ...]]:
+        """Outer loops first, the largest of them before all."""
+        return sorted(self.loops, key=lambda loop: -signed_area(loop_segments(vertices_of(loop))))
+
+    @property
+    def vertices(self) -> tuple[NDArray[np.float64], ...]:
+        """Vertices (N, 3) in mm of each loop, in order."""
+        return tuple(vertices_of(loop) for loop in self.ordered)
+
+    @property
+    def bands(self) -> tuple[Band | None, ...]:
+        """The band of every segment of the loops in order, as ``SolidOutline`` has them."""
+        return tuple(strip.band for loop in self.ordered for strip in loop)
+
+    @property
+    def faces(self) -> tuple[tuple[int, ...], ...]:
+        """The faces over every segment of the loops in order, as ``SolidOutline`` has them."""
+        return tuple(strip.faces for loop in self.ordered for strip in loop)
+
+    @property
+    def feet(self) -> int:
+        """How many loops are outer ones."""
+        return sum(signed_area(loop_segments(loop)) > 0 for loop in self.vertices)
+
+
+def vertices_of(loop: Sequence[Any]) -> NDArray[np.float64]:
+    """Vertices (N, 3) of a loop of strips, each running to the next."""
+    return np.array([(*strip.start, strip.bulge) for strip in loop])
 
 
 @define
@@ -166,121 +214,157 @@ class StandingSolid:
 
 def standing(shape: Any) -> StandingSolid:
     """A solid moved so that its lowest point is at height 0, and turned right side out."""
-    from OCP.BRepLib import BRepLib
-    from OCP.gp import gp_Trsf, gp_Vec
-    from OCP.TopLoc import TopLoc_Location
-
     shape = sub_shapes(shape, "SOLID")[0]
-    BRepLib.OrientClosedSolid_s(shape)
-    move = gp_Trsf()
-    move.SetTranslation(gp_Vec(0.0, 0.0, -foot_height(shape)))
-    return StandingSolid(shape.Moved(TopLoc_Location(move)))
+    occ.BRepLib.OrientClosedSolid_s(shape)
+    return StandingSolid(raised(shape, -foot_height(shape)))
 
 
 def foot_height(shape: Any) -> float:
     """The height of a shape's lowest point in mm, with the very number of a level face that lies there."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-
     low = bounding_box(shape)[0][2]
-    level = [plane_height(BRepAdaptor_Surface(face)) for face in sub_shapes(shape, "FACE")]
+    level = [plane_height(occ.BRepAdaptor_Surface(face)) for face in sub_shapes(shape, "FACE")]
     return min((z for z in level if z is not None and z - low <= SAME_HEIGHT), default=low)
 
 
-@define
-class Material:
-    """Answers where a solid's upright lines run inside it. Upright faces are not met by such lines.
+# Heights of the pegs that the table looks at, at most.
+MOST_ROWS = 60
+# Edges of a solid times heights that the table looks at, at most: of parts with many faces it has fewer rows.
+MOST_EDGES = 6_000
+
+
+def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
+    """Area, border, touchable border and shortest band of an outline, in mm² and mm."""
+    border = touchable = area = 0.0
+    bands = []
+    for loop in outline.loops:
+        segments = loop_segments(vertices_of(loop))
+        area += signed_area(segments)
+        border += sum(segment.length for segment in segments)
+        for segment, strip in zip(segments, loop, strict=True):
+            if strip.band is not None:
+                touchable += segment.length
+                bands.append(strip.band[1] - strip.band[0])
+    return area, border, touchable, min(bands, default=0.0)
+
+
+def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
+    """Ranges of peg heights with what their outlines offer, without those whose outline is refused."""
+    levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
+    levels |= {round(z - room, 6) for z in levels} | {round(solid.height, 6)}
+    heights = sorted(z for z in levels if least < z <= solid.height + SAME_HEIGHT)
+    most = min(MOST_ROWS, max(2, MOST_EDGES // len(solid.edges)))
+    if len(heights) > most:
+        heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
+    rows: list[HeightRow] = []
+    for low, high in pairwise([0.0, *heights]):
+        try:
+            figures = measures(solid.outline(high, room, least))
+        except InputError:
+            continue
+        row = HeightRow(low, high, *figures)
+        if rows and rows[-1].high == low and is_like(rows[-1], row):
+            rows[-1] = evolve(row, low=rows[-1].low)
+        else:
+            rows.append(row)
+    return rows
+
+
+def is_like(a: HeightRow, b: HeightRow) -> bool:
+    """Whether two ranges offer the same outline, as far as its figures show."""
+    pairs = ((a.area, b.area), (a.border, b.border), (a.touchable, b.touchable))
+    return all(abs(one - other) <= 1e-6 * max(one, 1.0) for one, other in pairs)
+
+
+def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
+    """The range with the longest touchable border; of equal ones that of the highest pegs."""
+    most = max((row.touchable for row in rows), default=0.0)
+    return max(
+        (row for row in rows if row.touchable >= most * (1 - 1e-9) > 0),
+        key=lambda row: row.high,
+        default=None,
+    )
+
+
+def advice(solid: StandingSolid, room: float, least: float) -> str:
+    """What to give instead, in words."""
+    best = longest(height_table(solid, room, least))
+    if best is None:
+        return f"give another axis, or {SECTION}"
+    return f"give {PEG_HEIGHT} {best.high:.6g}mm, or another axis"
+
+
+def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]) -> list[str]:
+    """What an outline by height is, what may be touched of it, and a height at which more may be."""
+    _, border, touchable, band = measures(outline)
+    reach = (
+        "pegs are taken to reach as high"
+        if outline.peg_height == found.height
+        else f"the outline is what pegs of {outline.peg_height:.6g} mm, with {outline.head_room:g} mm free "
+        "above, can meet"
+    )
+    remarks = [f"The part is {found.height:.6g} mm high along {found.axis}; {reach}."]
+    if outline.feet > 1:
+        remarks.append(f"It has {outline.feet} separate pieces, between which pegs may stand.")
+    if touchable < border * (1 - 1e-9):
+        remarks.append(
+            f"Upright faces stand over {touchable:.4g} of {border:.4g} mm of the outline, and only these are "
+            f"touched; the shortest is {band:.4g} mm high there."
+        )
+    elif band < min(outline.peg_height, found.height) - SAME_HEIGHT:
+        remarks.append(f"The shortest upright face on the outline is {band:.4g} mm high there.")
+    return [*remarks, *better_height(rows, touchable)]
+
+
+def better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
+    """A sentence on the height of pegs that could touch most, if that is more than a length in mm."""
+    best = longest(rows)
+    if best is None or best.touchable <= touchable * (1 + 1e-6):
+        return []
+    return [f"With {PEG_HEIGHT} {best.high:.6g}mm most could be touched: {best.touchable:.4g} mm."]
+
+
+@frozen(eq=False)
+class OwnDrawing:
+    """What carriers of a role meet of a solid: loops (N, 3) in mm, and the solid with their bands."""
+
+    role: str
+    loops: tuple[NDArray[np.float64], ...]
+    solid: SolidOutline
+
+
+def own_drawings(
+    solid: StandingSolid, heights: Mapping[str, Sequence[float]], found: SolidOutline
+) -> Iterator[OwnDrawing]:
+    """What carriers with heights of their own meet.
 
     Parameters
     ----------
-    shape : Open CASCADE's solid, turned so that the axis points up.
-    faces, edges : all faces of the solid, and the edges of each.
+    heights : by role, in mm.
+    found : the solid as all other pegs meet it.
+
+    Raises
+    ------
+    InputError
+        Naming the role, where such an outline cannot be made or has nothing to touch.
     """
-
-    shape: Any
-    faces: Sequence[SolidFace]
-    edges: Sequence[EdgeCurve]
-    flat: PlaneFaces = field(init=False)
-    meeting: list[Any] = field(init=False)
-    # (F, 6) of each face met: its box seen from above, and its lowest and highest z, in mm.
-    boxes: NDArray[np.float64] = field(init=False)
-    below: float = field(init=False)
-    known: dict[Point, list[tuple[float, float]]] = field(init=False, factory=dict)
-    # Heights at which an upright line passes a face that is not flat, by the line's point and the face.
-    hits: dict[tuple[Point, int], list[float]] = field(init=False, factory=dict)
-    classifier: Any = field(init=False, default=None)
-
-    def __attrs_post_init__(self) -> None:
-        from OCP.IntCurvesFace import IntCurvesFace_Intersector
-
-        self.flat, others = PlaneFaces.of(self.faces, self.edges)
-        met = [self.faces[k] for k in others]
-        self.meeting = [IntCurvesFace_Intersector(face.shape, ON_FACE) for face in met]
-        self.boxes = np.array([(*face.box, face.low, face.high) for face in met]).reshape(-1, 6)
-        self.below = min(face.low for face in self.faces) - 1.0
-
-    def intervals(self, point: Point) -> list[tuple[float, float]]:
-        """The intervals of the upright line through a point (x, y), from the lowest up."""
-        if point not in self.known:
-            heights = self.heights(point)
-            is_clear = all(high - low > SAME_HEIGHT for low, high in pairwise(heights))
-            if len(heights) % 2 == 0 and is_clear:
-                self.known[point] = list(zip(heights[0::2], heights[1::2], strict=True))
-            else:
-                # On an edge the line may meet one face too few, or two neighbours at once; then each range is
-                # asked for by itself.
-                self.known[point] = [
-                    (low, high)
-                    for low, high in pairwise(heights)
-                    if high - low > SAME_HEIGHT and self.is_inside(point, (low + high) / 2)
-                ]
-        return self.known[point]
-
-    def is_inside(self, point: Point, z: float) -> bool:
-        """Whether the solid has material at a point of the plane and a height."""
-        from OCP.BRepClass3d import BRepClass3d_SolidClassifier
-        from OCP.gp import gp_Pnt
-        from OCP.TopAbs import TopAbs_State
-
-        if self.classifier is None:
-            # It looks at the whole solid first, which takes much longer than each of its answers.
-            self.classifier = BRepClass3d_SolidClassifier(self.shape)
-        self.classifier.Perform(gp_Pnt(*point, z), 1e-7)
-        return bool(self.classifier.State() == TopAbs_State.TopAbs_IN)
-
-    def heights(self, point: Point) -> list[float]:
-        """Sorted z in mm at which the upright line through a point passes a face."""
-        found = self.flat.heights(point)
-        for index in np.flatnonzero(self.near(point)).tolist():
-            found += self.hits_of(point, index)
-        return sorted(found)
-
-    def near(self, point: Point) -> NDArray[np.bool_]:
-        """Which faces that are not flat may lie over a point, seen by their boxes."""
-        (x, y), boxes = point, self.boxes
-        near = (boxes[:, 0] - ON_FACE <= x) & (x <= boxes[:, 2] + ON_FACE)
-        return near & (boxes[:, 1] - ON_FACE <= y) & (y <= boxes[:, 3] + ON_FACE)
-
-    def hits_of(self, point: Point, index: int) -> list[float]:
-        """The z in mm at which the upright line through a point passes a face that is not flat."""
-        from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
-
-        key = point, index
-        if key not in self.hits:
-            face = self.meeting[index]
-            face.Perform(gp_Lin(gp_Pnt(*point, self.below), gp_Dir(0.0, 0.0, 1.0)), -1.0, 1e7)
-            met = range(1, face.NbPnt() + 1) if face.IsDone() else ()
-            self.hits[key] = [self.below + face.WParameter(k) for k in met]
-        return self.hits[key]
-
-    def reaches_into(self, point: Point, low: float, high: float) -> bool:
-        """Whether some material over a point lies strictly between two z in mm."""
-        # A face has material on one of its sides, so one hit within is enough. Flat faces are asked first,
-        # because they answer much faster.
-        inner = low + 2 * SAME_HEIGHT, high - 2 * SAME_HEIGHT
-        if self.flat.meets(point, *inner):
-            return True
-        near = self.near(point) & (self.boxes[:, 4] < inner[1]) & (self.boxes[:, 5] > inner[0])
-        for index in np.flatnonzero(near).tolist():
-            if any(inner[0] < z < inner[1] for z in self.hits_of(point, index)):
-                return True
-        return any(min(end, high) - max(start, low) > SAME_HEIGHT for start, end in self.intervals(point))
+    for role, (low, high) in heights.items():
+        where = f"along {found.axis}, from {low:g} to {high:g} mm, where the {role} reaches"
+        if low >= solid.height:
+            raise InputError(
+                f"{where}, there is nothing of the part, which is {solid.height:.6g} mm high: give heights "
+                f"of the {role} that begin below that."
+            )
+        try:
+            outline = solid.outline(high, found.head_room, found.least_band, low)
+        except InputError as error:
+            raise InputError(
+                f"{where}, {str(error).rstrip('.')}: give other heights of the {role}."
+            ) from error
+        if not any(outline.bands):
+            raise InputError(
+                f"{where}, no upright face of the part is at least {found.least_band:g} mm high: give other "
+                f"heights of the {role}."
+            )
+        own = evolve(found, low=low, peg_height=high, bands=outline.bands, faces=outline.faces)
+        own = evolve(own, bottom=(), top=(), top_heights=())
+        yield OwnDrawing(role, outline.vertices, own)

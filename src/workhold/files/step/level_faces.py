@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain
+from workhold.files.outline.joining import closed_loop
 from workhold.files.step.edge_curves import EdgeCurve
 from workhold.files.step.faces import SLOPING, SolidFace
 from workhold.files.step.heights import StandingSolid
@@ -119,16 +119,12 @@ def loops_of(face: SolidFace) -> list[Array]:
         return []
     if not all(one.is_disguise for one in edges.curves.values()):
         return []
-    loops = sorted(map(vertices_of, edges.chains), key=lambda loop: -abs(signed_area(loop_segments(loop))))
+    loops = [closed_loop(chain).vertices for chain in edges.chains]
+    loops.sort(key=lambda loop: -abs(signed_area(loop_segments(loop))))
     return [
         loop if (signed_area(loop_segments(loop)) > 0) == (number == 0) else reversed_vertices(loop)
         for number, loop in enumerate(loops)
     ]
-
-
-def vertices_of(chain: Chain) -> Array:
-    """Vertices (N, 3) of a closed chain."""
-    return np.column_stack([np.array(chain.points[:-1]), np.array(chain.bulges)])
 
 
 def is_free(solid: StandingSolid, face: SolidFace, loops: Sequence[Array]) -> bool:

@@ -7,10 +7,30 @@ libGL and libX11.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from workhold.errors import InputError
 
-__all__ = ["REQUIREMENT", "load_step_library"]
+__all__ = [
+    "AXES",
+    "REQUIREMENT",
+    "along",
+    "axis_named",
+    "bounding_box",
+    "guarded",
+    "load_step_library",
+    "occ",
+    "raised",
+    "sub_shapes",
+    "turn_along",
+]
+
+T = TypeVar("T")
+# What becomes x, y and up for each axis: the part is seen from the axis's far end, right-handed.
+AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
+# A point: x, y and z in mm.
+Corner = tuple[float, float, float]
 
 # What the extra asks for; nobody else's distribution can be had by its name.
 REQUIREMENT = "cadquery-ocp-novtk>=8"
@@ -19,8 +39,25 @@ REQUIREMENT = "cadquery-ocp-novtk>=8"
 SYSTEM_PACKAGES = {"libGL.so.1": "libgl1", "libX11.so.6": "libx11-6"}
 
 
+class OpenCascade:
+    """Whatever the library has, by its name alone: what stands before the first underscore names its package.
+
+    It is looked for when it is asked for the first time, as ``occ.gp_Pnt``, and kept then.
+    """
+
+    def __getattr__(self, name: str) -> Any:
+        import OCP
+
+        found = getattr(getattr(OCP, name.partition("_")[0]), name)
+        setattr(self, name, found)
+        return found
+
+
+occ = OpenCascade()
+
+
 def load_step_library() -> None:
-    """Load Open CASCADE and keep it from writing its progress to the terminal, where a result file may go.
+    """Loads Open CASCADE and keeps it from writing its progress to the terminal, where a result file may go.
 
     Raises
     ------
@@ -47,3 +84,85 @@ def remedy(error: ImportError) -> str:
     return (
         f"the library for STEP files cannot be loaded ({why}): pip install --force-reinstall '{REQUIREMENT}'."
     )
+
+
+def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
+    """What some reading returns; ``further`` are errors that come of a damaged file as well.
+
+    Raises
+    ------
+    InputError
+        Its own, and one where the library or the arithmetic after it fails over what it was given.
+    """
+    try:
+        return read()
+    except InputError:
+        raise
+    except Exception as error:
+        damaged = isinstance(error, ArithmeticError | LookupError | RuntimeError | TypeError)
+        if not (damaged or isinstance(error, further)) and not type(error).__module__.startswith("OCP"):
+            raise
+        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
+
+
+def sub_shapes(shape: Any, kind: str) -> list[Any]:
+    """The parts of one kind of a shape, each as often as it is used.
+
+    Parameters
+    ----------
+    kind : "SOLID", "FACE", "WIRE", "EDGE" or "VERTEX".
+    """
+    cast = getattr(occ.TopoDS, kind.capitalize())
+    explorer = occ.TopExp_Explorer(shape, getattr(occ, f"TopAbs_{kind}"))
+    found = []
+    while explorer.More():
+        found.append(cast(explorer.Current()))
+        explorer.Next()
+    return found
+
+
+def bounding_box(shape: Any) -> tuple[Corner, Corner]:
+    """Both corners of a shape's bounding box in mm, to rounding."""
+    box = occ.Bnd_Box()
+    occ.BRepBndLib.AddOptimal_s(shape, box, False, False)
+    low, high = box.CornerMin(), box.CornerMax()
+    return (low.X(), low.Y(), low.Z()), (high.X(), high.Y(), high.Z())
+
+
+def raised(shape: Any, height: float) -> Any:
+    """A shape moved up by a height in mm."""
+    move = occ.gp_Trsf()
+    move.SetTranslation(occ.gp_Vec(0.0, 0.0, height))
+    return shape.Moved(occ.TopLoc_Location(move))
+
+
+def axis_named(axis: str | None) -> str:
+    """The name of an axis, z for None.
+
+    Raises
+    ------
+    InputError
+        When there is none of that name.
+    """
+    name = "z" if axis is None else axis.strip().lower().removeprefix("+")
+    if name.removeprefix("-") not in AXES:
+        raise InputError(f"the axis '{name[:40]}' is not known: give x, y or z, or -x, -y or -z.")
+    return name
+
+
+def along(shape: Any, axis: str) -> Any:
+    """A shape turned so that an axis of the file points up; see :func:`turn_along`."""
+    return shape.Moved(occ.TopLoc_Location(turn_along(axis)))
+
+
+def turn_along(axis: str) -> Any:
+    """The turn that makes an axis of the file point up; coordinates only change places and signs.
+
+    With a minus the part lies on its other side, turned over like a page: what pointed to x points to -x.
+    """
+    signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
+    sources = zip(signs, AXES[axis.lstrip("-")], strict=True)
+    rows = [[sign if column == source else 0.0 for column in range(3)] + [0.0] for sign, source in sources]
+    turn = occ.gp_Trsf()
+    turn.SetValues(*rows[0], *rows[1], *rows[2])
+    return turn

@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
-from workhold.files.step.by_height import HeightView, drawn
-from workhold.files.step.heights import standing
-from workhold.files.step.library import load_step_library
-from workhold.files.step.reader import guarded, prepare
-from workhold.files.step.solids import along, read_solids, sub_shapes
+from workhold.files.step.by_height import HeightView, drawn, turned_up
+from workhold.files.step.library import guarded, load_step_library, occ, sub_shapes
+from workhold.files.step.reader import prepare
+from workhold.files.step.solids import read_solids
 from workhold.geometry.loop import loop_segments, signed_area
 from workhold.geometry.segment import Point
 from workhold.model.pose import Pose
@@ -58,20 +57,14 @@ class PartShape:
 
     def solid(self, pose: Pose) -> Any:
         """Open CASCADE's solid in the pose of a fixture."""
-        from OCP.BRep import BRep_Builder
-        from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
-        from OCP.BRepTools import BRepTools
-        from OCP.TopLoc import TopLoc_Location
-        from OCP.TopoDS import TopoDS_Shape
-
         load_step_library()
-        shape = TopoDS_Shape()
-        BRepTools.Read_s(shape, BytesIO(self.kept.encode("ascii")), BRep_Builder())
+        shape = occ.TopoDS_Shape()
+        occ.BRepTools.Read_s(shape, BytesIO(self.kept.encode("ascii")), occ.BRep_Builder())
         move = pose_move(pose)
         # An assembly keeps no place that a solid has of its own: it becomes part of the surfaces.
         move.Multiply(shape.Location().Transformation())
-        bare = shape.Located(TopLoc_Location())
-        return sub_shapes(BRepBuilderAPI_Transform(bare, move, True).Shape(), "SOLID")[0]
+        bare = shape.Located(occ.TopLoc_Location())
+        return sub_shapes(occ.BRepBuilderAPI_Transform(bare, move, True).Shape(), "SOLID")[0]
 
     def surface(self, pose: Pose) -> tuple[Array, Array, NDArray[np.int64]]:
         """Positions in mm, normals and triangles in the pose of a fixture."""
@@ -82,10 +75,8 @@ class PartShape:
 
 def pose_move(pose: Pose) -> Any:
     """The move of Open CASCADE that carries a part into a pose."""
-    from OCP.gp import gp_Trsf
-
     (ux, uy), (vx, vy), (x, y) = frame(pose)
-    move = gp_Trsf()
+    move = occ.gp_Trsf()
     move.SetValues(ux, vx, 0.0, x, uy, vy, 0.0, y, 0.0, 0.0, 1.0, 0.0)
     return move
 
@@ -112,12 +103,7 @@ def part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
             "the part of this result was not read from a solid at the height of the pegs: design it again "
             "from its STEP file to show its shape."
         )
-    view = {
-        "axis": solid.axis,
-        "peg_height": solid.peg_height,
-        "head_room": solid.head_room,
-        "least_band": solid.least_band,
-    }
+    view = {name: getattr(solid, name) for name in ("axis", "peg_height", "head_room", "least_band")}
     loops = [loop.tolist() for loop in workpiece.loops]
     options = {"view": view, "loops": loops, "height": solid.height, "levels": levels_of(solid)}
     positions, normals, triangles, kept = run_apart(__name__, content, options, "the STEP file")
@@ -138,32 +124,25 @@ def levels_of(solid: SolidOutline) -> Levels:
 def plain(content: bytes, view: dict[str, Any], loops: list[Any], height: float, levels: Levels) -> Any:
     """Mesh and shape of the solid that gives some loops, as plain data.
 
-    Raises
-    ------
-    InputError
-        As :func:`part_shape`.
+    Raises InputError as :func:`part_shape`.
     """
     wanted = [np.array(loop) for loop in loops]
-    return guarded(lambda: shape_of_outline(content, view, wanted, height, levels), ValueError)
+    return guarded(lambda: shape_of_outline(content, HeightView(**view), wanted, height, levels), ValueError)
 
 
 def shape_of_outline(
-    content: bytes, view: dict[str, Any], loops: list[Array], height: float, levels: Levels
+    content: bytes, view: HeightView, loops: list[Array], height: float, levels: Levels
 ) -> Any:
     """Meshes and keeps the solid of a file that gives some loops and levels, see :func:`plain`.
 
-    Raises
-    ------
-    InputError
-        Where no solid of the file gives these loops.
+    Raises InputError where no solid of the file gives these loops.
     """
-    load_step_library()
     for solid in read_solids(content):
-        found = standing(along(solid.shape, view["axis"]))
+        found = turned_up(solid, view)
         if abs(found.height - height) > SAME_HEIGHT:
             continue
         with suppress(InputError):
-            own = drawn(solid.shape, found, HeightView(**view), is_advised=False, has_table=False)
+            own = drawn(solid.shape, found, view, is_advised=False, has_table=False)
             if is_same(loops, own.loops) and has_levels(levels, levels_of(own.solid)):
                 return *meshed(found.shape), kept(found.shape)
     raise InputError(
@@ -199,33 +178,25 @@ def have_same(one: list[list[float]], other: list[list[float]]) -> bool:
 
 def kept(shape: Any) -> str:
     """A shape in Open CASCADE's own form, without its triangles."""
-    from OCP.BRepTools import BRepTools
-
-    BRepTools.Clean_s(shape)
+    occ.BRepTools.Clean_s(shape)
     stream = BytesIO()
-    BRepTools.Write_s(shape, stream)
+    occ.BRepTools.Write_s(shape, stream)
     return stream.getvalue().decode("ascii")
 
 
 def meshed(shape: Any) -> tuple[list[Any], list[Any], list[Any]]:
     """Positions in mm, normals and triangles of a shape; each face has its own vertices."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepLib import BRepLib_ToolTriangulatedShape
-    from OCP.BRepMesh import BRepMesh_IncrementalMesh
-    from OCP.TopAbs import TopAbs_Orientation
-    from OCP.TopLoc import TopLoc_Location
-
-    BRepMesh_IncrementalMesh(shape, SAGITTA, False, TURN, False)
+    occ.BRepMesh_IncrementalMesh(shape, SAGITTA, False, TURN, False)
     positions: list[Any] = []
     normals: list[Any] = []
     triangles: list[Any] = []
     for face in sub_shapes(shape, "FACE"):
-        location = TopLoc_Location()
-        mesh = BRep_Tool.Triangulation_s(face, location)
+        location = occ.TopLoc_Location()
+        mesh = occ.BRep_Tool.Triangulation_s(face, location)
         if mesh is None:
             continue
-        BRepLib_ToolTriangulatedShape.ComputeNormals_s(face, mesh)
-        turned = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+        occ.BRepLib_ToolTriangulatedShape.ComputeNormals_s(face, mesh)
+        turned = face.Orientation() == occ.TopAbs_REVERSED
         move, sign, first = location.Transformation(), -1.0 if turned else 1.0, len(positions)
         for k in range(1, mesh.NbNodes() + 1):
             point, normal = mesh.Node(k).Transformed(move), mesh.Normal(k).Transformed(move)

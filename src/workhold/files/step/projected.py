@@ -3,12 +3,20 @@
 A point on the border of a slab's projection lies on an edge, on a fold of a face, or on the cut at either end
 of the slab. Further curves do no harm, because only pieces with material on one side are taken. So curves are
 taken whole where that is simple. A curve of the border that is neither line nor arc is refused.
+
+Folds and level cuts of a surface turned about an upright axis are circles, whatever is turned.
+
+Glossary
+--------
+fold : where a leaning face stands upright, and so may bound what is seen of it from above. It is the contour
+    generator of computer vision (Cipolla and Giblin, "Visual Motion of Curves and Surfaces", 2000).
+turned surface : a curve turned about an axis, as of a part from the lathe.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from math import acos, atan2, cos, hypot, sin, sqrt
+from collections.abc import Callable, Iterator, Sequence
+from math import acos, atan2, cos, hypot, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -17,10 +25,18 @@ from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT, SHORTEST
 from workhold.errors import InputError
-from workhold.files.step.edge_curves import EdgeCurve, Found, curve_of
-from workhold.files.step.faces import SLOPING, SolidFace, surface_of
-from workhold.files.step.folds import is_upright, turned_cuts, whole_circle
-from workhold.files.step.solids import sub_shapes
+from workhold.files.step.edge_curves import (
+    EdgeCurve,
+    Found,
+    Point3,
+    crossing,
+    curve_of,
+    curve_point,
+    extremes,
+    height,
+)
+from workhold.files.step.faces import SLOPING, SolidFace, is_level, is_upright, surface_of
+from workhold.files.step.library import occ, sub_shapes
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = [
@@ -28,6 +44,7 @@ __all__ = [
     "Other",
     "OtherCurveError",
     "ProjectedCurves",
+    "folds",
     "level_cuts",
     "other_curve",
     "projected_curves",
@@ -41,6 +58,8 @@ Other = tuple[int, NDArray[np.float64]]
 BESIDE = (4e-4, 4e-5, 4e-6)
 # Of how many points along a curve one is looked at first.
 FEW = 10
+# Points along the curve that is turned.
+SAMPLES = 65
 # What flat faces are called.
 FLAT = ("level plane", "wall", SLOPING)
 
@@ -72,7 +91,7 @@ def projected_curves(
 
     Parameters
     ----------
-    folds_of : the folds of the face of a number, see ``files.step.folds``; they are the same for all slabs.
+    folds_of : the folds of the face of a number, see :func:`folds`; they are the same for all slabs.
     """
     segments: list[Segment] = []
     cuts: list[tuple[Segment, Point]] = []
@@ -101,37 +120,26 @@ def projected_curves(
 
 def level_cuts(face: SolidFace, z: float) -> list[Found]:
     """The curves in which a level plane meets a leaning face's surface, seen from above."""
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Type
-
     surface = surface_of(face.shape)
     kind = surface.GetType()
-    if kind == Type.GeomAbs_Plane:
+    if kind == occ.GeomAbs_Plane:
         return plane_cut(surface.Plane(), face, z)
-    if kind == Type.GeomAbs_Sphere:
+    if kind == occ.GeomAbs_Sphere:
         ball = surface.Sphere()
         square = ball.Radius() ** 2 - (z - ball.Location().Z()) ** 2
-        return [whole_circle(ball.Location(), sqrt(square))] if square > SHORTEST**2 else []
-    if kind == Type.GeomAbs_Cylinder:
-        cylinder = surface.Cylinder()
-        axis = cylinder.Axis().Direction()
-        if abs(axis.Z()) <= ALIGNED:
-            return lying_cut(surface, cylinder, z)
-    if kind == Type.GeomAbs_Cone:
-        cone = surface.Cone()
-        axis = cone.Axis().Direction()
-        if hypot(axis.X(), axis.Y()) <= ALIGNED:
-            apex = cone.Apex()
-            radius = abs((z - apex.Z()) * sin(cone.SemiAngle()) / cos(cone.SemiAngle()))
-            return [whole_circle(apex, radius)] if radius > SHORTEST else []
-    if kind == Type.GeomAbs_Torus:
+        return circles(ball.Location(), sqrt(max(square, 0.0)))
+    if kind == occ.GeomAbs_Cylinder and is_level(surface.Cylinder().Axis()):
+        return lying_cut(surface, surface.Cylinder(), z)
+    if kind == occ.GeomAbs_Cone and is_upright(surface.Cone().Axis()):
+        half, apex = surface.Cone().SemiAngle(), surface.Cone().Apex()
+        return circles(apex, abs((z - apex.Z()) * sin(half) / cos(half)))
+    if kind == occ.GeomAbs_Torus and is_upright(surface.Torus().Axis()):
         ring = surface.Torus()
-        axis = ring.Axis().Direction()
-        if hypot(axis.X(), axis.Y()) <= ALIGNED:
-            square = ring.MinorRadius() ** 2 - (z - ring.Location().Z()) ** 2
-            reach = sqrt(max(square, 0.0))
-            radii = {ring.MajorRadius() + reach, ring.MajorRadius() - reach} if square >= 0 else set()
-            return [whole_circle(ring.Location(), radius) for radius in radii if radius > SHORTEST]
-    if kind == Type.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
+        square = ring.MinorRadius() ** 2 - (z - ring.Location().Z()) ** 2
+        reach = sqrt(max(square, 0.0))
+        radii = {ring.MajorRadius() + reach, ring.MajorRadius() - reach} if square >= 0 else ()
+        return circles(ring.Location(), *radii)
+    if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
         return turned_cuts(surface, z)
     return cut_edges(face.shape, z)
 
@@ -171,19 +179,162 @@ def lying_cut(surface: Any, cylinder: Any, z: float) -> list[Found]:
 
 def cut_edges(shape: Any, z: float) -> list[Found]:
     """The curves in which a level plane cuts a face of any surface, by Open CASCADE."""
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Section
-    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
-
-    cut = BRepAlgoAPI_Section(shape, gp_Pln(gp_Pnt(0.0, 0.0, z), gp_Dir(0.0, 0.0, 1.0)))
+    cut = occ.BRepAlgoAPI_Section(shape, occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0)))
     found: list[Found] = []
     for edge in sub_shapes(cut.Shape(), "EDGE"):
-        curve = curve_of(0, BRepAdaptor_Curve(edge))
+        curve = curve_of(0, occ.BRepAdaptor_Curve(edge))
         if curve.segment is not None:
             found.append(curve.segment)
         elif curve.is_other:
             found.append(curve.points[:, :2])
     return found
+
+
+def folds(face: SolidFace) -> list[Found]:
+    """Where a leaning face stands upright, seen from above; more of it than the face has does no harm."""
+    surface = surface_of(face.shape)
+    kind = surface.GetType()
+    if kind == occ.GeomAbs_Plane:
+        return []
+    if kind == occ.GeomAbs_Sphere:
+        return circles(surface.Sphere().Location(), surface.Sphere().Radius())
+    if kind in (occ.GeomAbs_Cylinder, occ.GeomAbs_Cone):
+        return list(ruled_folds(surface, kind == occ.GeomAbs_Cylinder))
+    if kind == occ.GeomAbs_Torus:
+        ring = surface.Torus()
+        if is_upright(ring.Axis()):
+            major, minor = ring.MajorRadius(), ring.MinorRadius()
+            return circles(ring.Location(), major + minor, major - minor)
+        if is_level(ring.Axis()):
+            return lying_ring_folds(ring)
+    if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
+        return turned_folds(surface)
+    return free_folds(surface)
+
+
+def lying_ring_folds(ring: Any) -> list[Found]:
+    """Where a ring with a level axis stands upright, seen from above: two circles and two lines.
+
+    With the axis d and the radial direction r(u), the normal at the angle v of the tube is
+    cos v r(u) + sin v d. It is level at cos v = 0, and where r is level: at b and -b, across the axis.
+    """
+    center, axis = ring.Location(), ring.Axis().Direction()
+    x, y, major, minor = center.X(), center.Y(), ring.MajorRadius(), ring.MinorRadius()
+    dx, dy = axis.X(), axis.Y()
+    found: list[Found] = []
+    for side in (-1.0, 1.0):
+        px, py = x + side * minor * dx, y + side * minor * dy
+        found.append(Arc((x - side * major * dy, y + side * major * dx), minor, 0.0, pi, 1.0))
+        found.append(Line((px + major * dy, py - major * dx), (px - major * dy, py + major * dx)))
+    return found
+
+
+def ruled_folds(surface: Any, is_cylinder: bool) -> Iterator[Line]:
+    """The rulings of a cylinder or a cone along which the normal is level.
+
+    The radial direction is r(u) = X cos u + Y sin u. With the axis d and half the cone's angle h, 0 of a
+    cylinder, the normal is r(u) cos h - d sin h. It is level where r(u)_z cos h = d_z sin h.
+    """
+    shape = surface.Cylinder() if is_cylinder else surface.Cone()
+    half = 0.0 if is_cylinder else shape.SemiAngle()
+    position = shape.Position()
+    x, y, d = position.XDirection().Z(), position.YDirection().Z(), position.Direction().Z()
+    size = hypot(x, y)
+    if size <= ALIGNED:
+        return
+    value = d * sin(half) / (cos(half) * size)
+    if abs(value) > 1:
+        return
+    low, high = surface.FirstVParameter(), surface.LastVParameter()
+    for turn in {acos(value), -acos(value)}:
+        u = atan2(y, x) + turn
+        a, b = surface.Value(u, low), surface.Value(u, high)
+        if hypot(b.X() - a.X(), b.Y() - a.Y()) >= SHORTEST:
+            yield Line((a.X(), a.Y()), (b.X(), b.Y()))
+
+
+def free_folds(surface: Any, steps: int = 25) -> list[Found]:
+    """Points (N, 2) of a free-form face, or a tilted ring, at which its normal is level, found on a grid."""
+    us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), steps)
+    vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), steps)
+    values = np.array([[normal_height(surface, u, v) for v in vs] for u in us])
+    points = []
+    for i, j in zip(*np.nonzero(values[:, :-1] * values[:, 1:] < 0), strict=True):
+        a, b = vs[j], vs[j + 1]
+        below = values[i, j] < 0
+        for _ in range(40):
+            middle = (a + b) / 2
+            a, b = (middle, b) if (normal_height(surface, us[i], middle) < 0) == below else (a, middle)
+        point = surface.Value(float(us[i]), float(a))
+        points.append((point.X(), point.Y()))
+    return [np.array(points)] if points else []
+
+
+def normal_height(surface: Any, u: float, v: float) -> float:
+    """The z of a surface's normal, of any length."""
+    point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
+    surface.D1(float(u), float(v), point, along_u, along_v)
+    return float(along_u.X() * along_v.Y() - along_u.Y() * along_v.X())
+
+
+def circles(center: Any, *radii: float) -> list[Found]:
+    """Circles about a point of the library, seen from above, without those of no radius."""
+    return [Arc((center.X(), center.Y()), radius, 0.0, pi, 1.0) for radius in radii if radius > SHORTEST]
+
+
+@frozen
+class Meridian:
+    """The curve that a surface turns about an upright axis, asked as the library's curves are.
+
+    Parameters
+    ----------
+    surface : Open CASCADE's.
+    """
+
+    surface: Any
+
+    def Value(self, parameter: float) -> Any:
+        """The point at a parameter."""
+        return self.surface.Value(self.surface.FirstUParameter(), parameter)
+
+    @property
+    def axis(self) -> Any:
+        """A point of the axis."""
+        return self.surface.AxeOfRevolution().Location()
+
+    def radius(self, point: Point3) -> float:
+        """The distance in mm of a point from the axis."""
+        return hypot(point[0] - self.axis.X(), point[1] - self.axis.Y())
+
+    def samples(self) -> tuple[NDArray[np.float64], list[Point3]]:
+        """Parameters (N,) from end to end, and the points there in mm."""
+        parameters = np.linspace(self.surface.FirstVParameter(), self.surface.LastVParameter(), SAMPLES)
+        return parameters, [curve_point(self, float(t)) for t in parameters]
+
+    def circles(self, parameters: Sequence[float]) -> list[Found]:
+        """The circles that some of its points run through."""
+        return circles(self.axis, *(self.radius(curve_point(self, t)) for t in parameters))
+
+
+def turned_folds(surface: Any) -> list[Found]:
+    """The circles at which a turned surface is widest or narrowest around."""
+    curve = Meridian(surface)
+    parameters, points = curve.samples()
+    return curve.circles(extremes(curve, parameters, [curve.radius(point) for point in points], curve.radius))
+
+
+def turned_cuts(surface: Any, z: float) -> list[Found]:
+    """The circles in which a turned surface passes a height."""
+    curve = Meridian(surface)
+    parameters, points = curve.samples()
+    away = np.array([height(point) - z for point in points])
+
+    def passed(k: int) -> float:
+        sign = 1.0 if away[k] < 0 else -1.0
+        low, high = ((float(parameters[m]), sign * float(away[m])) for m in (k, k + 1))
+        return crossing(lambda t: sign * (height(curve_point(curve, t)) - z), low, high)
+
+    return curve.circles([passed(int(k)) for k in np.flatnonzero((away[:-1] < 0) != (away[1:] < 0))])
 
 
 class OtherCurveError(InputError):

@@ -10,41 +10,44 @@ they are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import inf
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from attrs import astuple, evolve
 
-from workhold.conventions import ALIGNED, EDGE_GAP, FREE_VOLUME, SAME_HEIGHT, SAME_VOLUME
+from workhold.conventions import ALIGNED, FREE_VOLUME, SAME_HEIGHT, SAME_VOLUME
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Chain, CurveReading, Drawing
 from workhold.files.questions import AXIS
 from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
 from workhold.files.step.faces import Layer, SolidFace, layers_of, solid_faces
-from workhold.files.step.library import load_step_library
-from workhold.files.step.regions import Borders, area_of, borders, level_region, section, union
-from workhold.files.step.solids import (
+from workhold.files.step.library import (
     AXES,
-    Solid,
     along,
     axis_named,
     bounding_box,
+    guarded,
+    load_step_library,
+    occ,
+    sub_shapes,
+)
+from workhold.files.step.regions import area_of, borders, level_region, section, union
+from workhold.files.step.solids import (
+    Solid,
     chosen_solid,
     lost_remarks,
-    numbered,
     read_solids,
     solid_remarks,
-    sub_shapes,
+    solids_of_shapes,
 )
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 from workhold.model.solid import FileSolid
 
 __all__ = [
-    "border_remarks",
     "drawing_of",
     "plain",
     "prepare",
@@ -53,9 +56,6 @@ __all__ = [
     "read_step",
     "read_step_apart",
 ]
-
-
-T = TypeVar("T")
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
@@ -104,25 +104,6 @@ def plain(content: bytes, **options: Any) -> Any:
     return guarded(lambda: plain_drawing(read_step(content, **options)))
 
 
-def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
-    """What some reading returns; ``further`` are errors that come of a damaged file as well.
-
-    Raises
-    ------
-    InputError
-        Its own, and one where the library or the arithmetic after it fails over what it was given.
-    """
-    try:
-        return read()
-    except InputError:
-        raise
-    except Exception as error:
-        damaged = isinstance(error, ArithmeticError | LookupError | RuntimeError | TypeError)
-        if not (damaged or isinstance(error, further)) and not type(error).__module__.startswith("OCP"):
-            raise
-        raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
-
-
 def plain_drawing(drawing: Drawing) -> Any:
     """A drawing as plain data, see :func:`drawing_of`."""
     chains = [[chain.points, chain.bulges, chain.labels] for chain in drawing.chains]
@@ -161,7 +142,6 @@ def read_step(
     InputError
         For files that cannot be read, and parts whose silhouette is not that of their upright faces.
     """
-    load_step_library()
     solids = read_solids(content)
     drawing = read_solid(solids, axis, section_height, part_number, fit)
     remarks = (*lost_remarks(content, solids), *drawing.remarks)
@@ -197,7 +177,7 @@ def read_solid(
         refuse_overhang(outline, faces, solid.shape, axis)
     remarks = [
         *solid_remarks(solids, solid, part_number),
-        *border_remarks(edges),
+        *edges.remarks,
         *departure_remarks(outline, faces, layers, shape, solid.shape, axis, section_height),
     ]
     return Drawing(edges.chains, tuple(remarks), edges.curves)
@@ -206,10 +186,7 @@ def read_solid(
 def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[Layer]) -> Any:
     """The union of everything flat that the silhouette must hold.
 
-    Raises
-    ------
-    InputError
-        When the library cannot cut the solid or unite its sections.
+    Raises InputError when the library cannot cut the solid or unite its sections.
     """
     prismatic = [layer for layer in layers if layer.prismatic]
     regions = [section(shape, layer.middle) for layer in prismatic]
@@ -244,10 +221,7 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
 def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None:
     """Refuses a solid whose sections do not fill it: it is open, or runs through itself.
 
-    Raises
-    ------
-    InputError
-        Giving both volumes, in mm³.
+    Raises InputError, giving both volumes, in mm³.
     """
     if abs(swept - volume) > tolerance * volume:
         raise InputError(
@@ -258,22 +232,18 @@ def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None
 
 def has_layer(layers: Sequence[Layer], z: float, *, below: bool) -> bool:
     """Whether a prismatic layer ends at z from below, or begins there, or holds z."""
-    for layer in layers:
-        if not layer.prismatic:
-            continue
-        ends = layer.high if below else layer.low
-        if abs(ends - z) <= 2 * SAME_HEIGHT or layer.low < z < layer.high:
-            return True
-    return False
+    return any(
+        abs((layer.high if below else layer.low) - z) <= 2 * SAME_HEIGHT or layer.low < z < layer.high
+        for layer in layers
+        if layer.prismatic
+    )
 
 
 def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any:
     """The section at a height above the lowest point.
 
-    Raises
-    ------
-    InputError
-        For a height outside the part or at a level face, and where the section falls into pieces.
+    Raises InputError for a height outside the part or at a level face, and where the section falls into
+    pieces.
     """
     low, high = min(face.low for face in faces), max(face.high for face in faces)
     if not 0 < height < high - low:
@@ -294,14 +264,6 @@ def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any
             "in one."
         )
     return region
-
-
-def border_remarks(edges: Borders) -> list[str]:
-    """What was done to the borders."""
-    remarks = []
-    if edges.gap > EDGE_GAP:
-        remarks.append(f"Closed gaps of up to {edges.gap:.2g} mm between edges of the outline.")
-    return remarks
 
 
 def read_shapes(
@@ -326,10 +288,9 @@ def read_shapes(
         For shapes without solids and faces, for solids as in :func:`read_step`, and for faces that are not
         flat, or not at one height along an axis.
     """
-    load_step_library()
-    solids = [solid for shape in shapes for solid in sub_shapes(shape, "SOLID")]
+    solids = solids_of_shapes(shapes)
     if solids:
-        return read_solid(numbered(solids), axis, section_height, part_number, fit), None
+        return read_solid(solids, axis, section_height, part_number, fit), None
     faces = [face for shape in shapes for face in sub_shapes(shape, "FACE")]
     if not faces:
         raise InputError("the shape has neither a face nor a solid: make a face of its outline first.")
@@ -343,21 +304,17 @@ def read_shapes(
             f"the faces are not flat, level to an axis and at one height: move them there, or give {AXIS}."
         )
     edges = borders(union([level_region(face, bounding_box(face)[0][2], True) for face in level[0]]), fit)
-    return Drawing(edges.chains, tuple(border_remarks(edges)), edges.curves), part_number
+    return Drawing(edges.chains, edges.remarks, edges.curves), part_number
 
 
 def lie_level(faces: Sequence[Any]) -> bool:
     """Whether faces are flat and level, all at one height."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType
-
-    heights = []
-    for face in faces:
-        surface = BRepAdaptor_Surface(face)
-        if surface.GetType() != GeomAbs_SurfaceType.GeomAbs_Plane:
-            return False
-        normal = surface.Plane().Axis().Direction()
-        if max(abs(normal.X()), abs(normal.Y())) > ALIGNED:
-            return False
-        heights.append(surface.Plane().Location().Z())
+    surfaces = [occ.BRepAdaptor_Surface(face) for face in faces]
+    if any(surface.GetType() != occ.GeomAbs_Plane for surface in surfaces):
+        return False
+    planes = [surface.Plane() for surface in surfaces]
+    normals = [plane.Axis().Direction() for plane in planes]
+    if any(max(abs(normal.X()), abs(normal.Y())) > ALIGNED for normal in normals):
+        return False
+    heights = [plane.Location().Z() for plane in planes]
     return bool(max(heights) - min(heights) <= SAME_HEIGHT)

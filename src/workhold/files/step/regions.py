@@ -7,18 +7,18 @@ pieces, exactly: Open CASCADE's own poles, weights and knots.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import dist, hypot
+from math import dist
 from typing import Any
 
 import numpy as np
 from attrs import frozen
 
-from workhold.conventions import SHORTEST
+from workhold.conventions import EDGE_GAP, SHORTEST
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, CurveReading, arc_bulges, rebulged
 from workhold.files.outline.curves import CurveReader
 from workhold.files.questions import SECTION
-from workhold.files.step.solids import bounding_box, sub_shapes
+from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
 from workhold.geometry.rational import Pieces, spline_pieces
 from workhold.geometry.segment import Point
 
@@ -33,17 +33,12 @@ def edge_curve(edge: Any) -> Pieces:
     InputError
         Where the library knows no curve of the edge, or the curve is no spline that can be used.
     """
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-    from OCP.Geom import Geom_TrimmedCurve
-    from OCP.GeomConvert import GeomConvert
-
-    adaptor = BRepAdaptor_Curve(edge)
+    adaptor = occ.BRepAdaptor_Curve(edge)
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
-    curve = BRep_Tool.Curve_s(edge, first, last)
+    curve = occ.BRep_Tool.Curve_s(edge, first, last)
     if curve is None:
         raise InputError("the outline has an edge without a curve: repair the solid in the CAD program.")
-    spline = GeomConvert.CurveToBSplineCurve_s(Geom_TrimmedCurve(curve, first, last))
+    spline = occ.GeomConvert.CurveToBSplineCurve_s(occ.Geom_TrimmedCurve(curve, first, last))
     if spline.IsPeriodic():
         spline.SetNotPeriodic()
     numbers = range(1, spline.NbPoles() + 1)
@@ -80,6 +75,12 @@ class Borders:
         """How far the chains may be from the region's border, in mm."""
         return max((one.departure for one in self.curves.values()), default=0.0)
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was done to them."""
+        closed = f"Closed gaps of up to {self.gap:.2g} mm between edges of the outline."
+        return (closed,) if self.gap > EDGE_GAP else ()
+
 
 def section(solid: Any, z: float) -> Any:
     """The region in which the plane at height z cuts a solid.
@@ -89,23 +90,16 @@ def section(solid: Any, z: float) -> Any:
     InputError
         When the library finds none, though the solid reaches from below z to above.
     """
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
-    from OCP.TopLoc import TopLoc_Location
-
     (x0, y0, _), (x1, y1, _) = bounding_box(solid)
     more = max(x1 - x0, y1 - y0)
-    plane = gp_Pln(gp_Pnt(0.0, 0.0, z), gp_Dir(0.0, 0.0, 1.0))
-    sheet = BRepBuilderAPI_MakeFace(plane, x0 - more, x1 + more, y0 - more, y1 + more).Face()
-    cut = BRepAlgoAPI_Common(sheet, solid).Shape()
+    plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
+    sheet = occ.BRepBuilderAPI_MakeFace(plane, x0 - more, x1 + more, y0 - more, y1 + more).Face()
+    cut = occ.BRepAlgoAPI_Common(sheet, solid).Shape()
     if not sub_shapes(cut, "FACE"):
         raise InputError(
             "the solid cannot be cut by a plane: repair it in the CAD program and export it again."
         )
-    move = gp_Trsf()
-    move.SetTranslation(gp_Vec(0.0, 0.0, -z))
-    return cut.Moved(TopLoc_Location(move))
+    return raised(cut, -z)
 
 
 def level_region(face: Any, z: float, upward: bool) -> Any:
@@ -118,20 +112,14 @@ def level_region(face: Any, z: float, upward: bool) -> Any:
     InputError
         As :func:`section`.
     """
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
-    from OCP.gp import gp_Vec
-
     height = 1.0 if upward else -1.0
-    return section(BRepPrimAPI_MakePrism(face, gp_Vec(0.0, 0.0, height)).Shape(), z + height / 2)
+    return section(occ.BRepPrimAPI_MakePrism(face, occ.gp_Vec(0.0, 0.0, height)).Shape(), z + height / 2)
 
 
 def area_of(region: Any) -> float:
     """Area in mm²."""
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(region, properties)
+    properties = occ.GProp_GProps()
+    occ.BRepGProp.SurfaceProperties_s(region, properties)
     return abs(float(properties.Mass()))
 
 
@@ -145,16 +133,14 @@ def union(regions: Sequence[Any]) -> Any:
     InputError
         When the areas do not add up, so that the library's union cannot be right.
     """
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
-
     ordered = sorted(regions, key=area_of, reverse=True)
     whole = ordered[0]
     for region in ordered[1:]:
-        more = area_of(BRepAlgoAPI_Cut(region, whole).Shape())
+        more = area_of(occ.BRepAlgoAPI_Cut(region, whole).Shape())
         size = area_of(whole)
         if more <= 1e-9 * size:
             continue
-        fuse = BRepAlgoAPI_Fuse(whole, region)
+        fuse = occ.BRepAlgoAPI_Fuse(whole, region)
         fuse.SimplifyResult()
         whole = fuse.Shape()
         if abs(area_of(whole) - size - more) > 1e-6 * size:
@@ -182,26 +168,17 @@ def borders(region: Any, fit: float | None = None) -> Borders:
     gap = 0.0
     for wire in sub_shapes(region, "WIRE"):
         pieces: list[Piece] = []
-        for edge in wire_edges(wire):
-            piece = edge_piece(edge, curves, f"curved edge {len(pieces)} of border {len(chains)}")
+        edges = occ.BRepTools_WireExplorer(wire)
+        while edges.More():
+            label = f"curved edge {len(pieces)} of border {len(chains)}"
+            piece = edge_piece(edges.Current(), curves, label)
             if piece is not None:
                 pieces.append(piece)
+            edges.Next()
         chain, chain_gap = closed(pieces, len(chains))
         chains.append(chain)
         gap = max(gap, chain_gap)
     return Borders(tuple(chains), curves.found, gap)
-
-
-def wire_edges(wire: Any) -> list[Any]:
-    """The edges of a wire in running order."""
-    from OCP.BRepTools import BRepTools_WireExplorer
-
-    explorer = BRepTools_WireExplorer(wire)
-    edges = []
-    while explorer.More():
-        edges.append(explorer.Current())
-        explorer.Next()
-    return edges
 
 
 # Points, bulges and what messages call the curve that they stand for; None for a line and an arc.
@@ -211,24 +188,17 @@ Piece = tuple[list[Point], list[float], str | None]
 def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
     """An edge in the direction its wire runs; None for an edge of zero length.
 
-    Raises
-    ------
-    InputError
-        For an edge that cannot be read.
+    Raises InputError for an edge that cannot be read.
     """
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
-    from OCP.GeomAbs import GeomAbs_CurveType
-    from OCP.TopAbs import TopAbs_Orientation
-
-    curve = BRepAdaptor_Curve(edge)
+    curve = occ.BRepAdaptor_Curve(edge)
     first, last = curve.FirstParameter(), curve.LastParameter()
     kind = curve.GetType()
     name = None
-    if kind == GeomAbs_CurveType.GeomAbs_Line:
+    if kind == occ.GeomAbs_Line:
         points, bulges = points_of(curve, [first, last]), [0.0]
         if dist(points[0], points[-1]) < SHORTEST:
             return None
-    elif kind == GeomAbs_CurveType.GeomAbs_Circle:
+    elif kind == occ.GeomAbs_Circle:
         up = curve.Circle().Axis().Direction().Z()
         bulges = arc_bulges((last - first) * (1.0 if up > 0 else -1.0))
         points = points_of(curve, list(np.linspace(first, last, len(bulges) + 1)))
@@ -236,8 +206,8 @@ def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
         read = curves.read(edge_curve(edge), label)
         if read is None:
             return None
-        name, points, bulges = label, list(read[0]), list(read[1])
-    if edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
+        name, points, bulges = label, list(read.points), list(read.bulges)
+    if edge.Orientation() == occ.TopAbs_REVERSED:
         points, bulges = points[::-1], [-bulge if bulge else 0.0 for bulge in reversed(bulges)]
     return points, bulges, name
 
@@ -252,15 +222,14 @@ def closed(pieces: Sequence[Piece], number: int) -> tuple[Chain, float]:
     """One closed chain of pieces in running order, and the largest gap closed; arcs keep their centres."""
     points: list[Point] = []
     bulges: list[float] = []
-    gap = 0.0
     labels: list[str] = []
+    gap = 0.0
     for k, (own, own_bulges, name) in enumerate(pieces):
-        following = pieces[(k + 1) % len(pieces)][0][0]
-        end = own[-1]
-        step = hypot(following[0] - end[0], following[1] - end[1])
+        following, end = pieces[(k + 1) % len(pieces)][0][0], own[-1]
+        step = dist(following, end)
         gap = max(gap, step)
-        points += own[:-1]
         last = own_bulges[-1] if step == 0 else rebulged(own[-2], end, own_bulges[-1], own[-2], following)
         labels += [name or f"edge {len(bulges)} of border {number}"] * len(own_bulges)
+        points += own[:-1]
         bulges += [*own_bulges[:-1], last]
     return Chain((*points, points[0]), tuple(bulges), tuple(labels)), gap

@@ -1,38 +1,51 @@
-"""The solids of a STEP file, in mm, turned so that the chosen axis points up."""
+"""The solids of a STEP file, in mm, with what the file calls them.
+
+A solid may be named itself, by its product, and by the places in which assemblies use the product. The
+nearest of these names that says something is taken. That is its own where a product has several solids, else
+that of the product, else that of what the product is in.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from difflib import get_close_matches
+from io import BytesIO
 from math import isfinite
 from typing import Any
 
-from attrs import evolve, frozen
+from attrs import astuple, evolve, frozen
 
-from workhold.errors import InputError, plain, shortened
+from workhold.errors import InputError, shortened
+from workhold.errors import plain as plain_text
+from workhold.files.apart import run_apart
 from workhold.files.questions import PART_NUMBER
-from workhold.files.step.body_names import bounding_box, named_shapes, sub_shapes
+from workhold.files.step.library import bounding_box, guarded, load_step_library, occ, sub_shapes
 from workhold.limits import MOST_LENGTH
 from workhold.model.solid import FileSolid
 
 __all__ = [
-    "AXES",
     "Solid",
-    "along",
-    "axis_named",
-    "bounding_box",
     "chosen_solid",
+    "listed_solids",
     "lost_remarks",
     "numbered",
+    "plain",
+    "prepare",
     "read_solids",
     "solid_remarks",
-    "sub_shapes",
+    "solids_of_shapes",
 ]
 
-# What becomes x, y and up for each axis: the part is seen from the axis's far end, right-handed.
-AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
 SOLID_LIST = 10
+LONGEST_NAME = 80
+# What programs write where nobody has given a name.
+NO_NAME = re.compile(
+    r"(?:none|unnamed|no_?name|solid|compound|shell|shape|body|\d+|nauo\d*|=>\[[\d:]*\]|open cascade .*)?",
+    re.IGNORECASE,
+)
 
 
 @frozen
@@ -70,6 +83,7 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
     InputError
         For files that are no STEP, damaged, without a unit of length, or without a solid.
     """
+    load_step_library()
     refuse_other_formats(content)
     reader = read_through(content)
     shape = reader.OneShape()
@@ -87,6 +101,33 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
     return solids
 
 
+def listed_solids(content: bytes) -> tuple[FileSolid, ...]:
+    """The solids of the bytes of a STEP file, read in a process of its own.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_solids`, and for a file that the process does not survive.
+    """
+    return tuple(FileSolid(*one) for one in run_apart(__name__, content, {}, "the STEP file"))
+
+
+def prepare() -> None:
+    """Loads the library, see :func:`workhold.files.apart.run_apart`."""
+    load_step_library()
+
+
+def plain(content: bytes) -> Any:
+    """The solids as plain data.
+
+    Raises
+    ------
+    InputError
+        As :func:`listed_solids`.
+    """
+    return guarded(lambda: [astuple(solid.listed) for solid in read_solids(content)], ValueError)
+
+
 def numbered(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, ...]:
     """Solids of Open CASCADE by decreasing volume, with their names where these are known.
 
@@ -99,6 +140,12 @@ def numbered(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, .
     found = [evolve(measured(shape), name=name) for shape, name in zip(shapes, called, strict=True)]
     solids = sorted(found, key=lambda solid: (-solid.volume, solid.low, solid.high))
     return tuple(evolve(solid, number=number) for number, solid in enumerate(solids, start=1))
+
+
+def solids_of_shapes(shapes: Sequence[Any]) -> tuple[Solid, ...]:
+    """Every solid of some shapes of Open CASCADE, by decreasing volume; none of shapes without one."""
+    load_step_library()
+    return numbered([solid for shape in shapes for solid in sub_shapes(shape, "SOLID")])
 
 
 def counted_in_text(content: bytes) -> int:
@@ -120,10 +167,7 @@ def lost_remarks(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
 def refuse_other_formats(content: bytes) -> None:
     """Refuses what is plainly no STEP file, is cut short, or has no unit (the library would take mm).
 
-    Raises
-    ------
-    InputError
-        Saying what it is.
+    Raises InputError, saying what it is.
     """
     if content.startswith(b"PK"):
         raise InputError("this is a compressed file, not a STEP file: unpack it first.")
@@ -141,25 +185,17 @@ def refuse_other_formats(content: bytes) -> None:
 def read_through(content: bytes) -> Any:
     """A reader of the library that has read the file, and has one shape of everything in it.
 
-    Raises
-    ------
-    InputError
-        When the library cannot read it.
+    Raises InputError when the library cannot read it.
     """
-    from io import BytesIO
-
-    from OCP.IFSelect import IFSelect_ReturnStatus
-    from OCP.STEPControl import STEPControl_Reader
-
-    reader = STEPControl_Reader()
+    reader = occ.STEPControl_Reader()
     try:
         status = reader.ReadStream("part", BytesIO(content))
-        is_read = status == IFSelect_ReturnStatus.IFSelect_RetDone and reader.TransferRoots()
+        is_read = status == occ.IFSelect_RetDone and reader.TransferRoots()
         if is_read and not reader.OneShape().IsNull():
             return reader
     except Exception as error:  # a damaged file may fail anywhere inside the library
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
-    if status != IFSelect_ReturnStatus.IFSelect_RetDone:
+    if status != occ.IFSelect_RetDone:
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.")
     raise InputError("the STEP file holds no solid: export the part as a closed solid.")
 
@@ -167,16 +203,10 @@ def read_through(content: bytes) -> Any:
 def measured(shape: Any) -> Solid:
     """A solid with its volume and bounding box; its number comes later.
 
-    Raises
-    ------
-    InputError
-        When it has no volume, or coordinates that leave no digits.
+    Raises InputError when it has no volume, or coordinates that leave no digits.
     """
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties)
+    properties = occ.GProp_GProps()
+    occ.BRepGProp.VolumeProperties_s(shape, properties)
     volume = abs(properties.Mass())
     low, high = bounding_box(shape)
     if not all(isfinite(value) and abs(value) <= MOST_LENGTH for value in (*low, *high)):
@@ -207,14 +237,13 @@ def chosen_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
 def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
     """The only solid of a name, as it is written, or else in any mixture of capitals.
 
-    Raises
-    ------
-    InputError
-        When there is none, naming those that are close, and when there are several, with their numbers.
+    Raises InputError when there is none, naming those that are close, and when there are several, with their
+    numbers.
     """
     if len(solids) == 1:
         raise InputError(f"the STEP file holds only one solid: leave {PART_NUMBER} out.")
     asked = " ".join(name.split())
+    shown = shortened(plain_text(asked))
     found = [solid for solid in solids if solid.name == asked]
     found = found or [solid for solid in solids if solid.name.casefold() == asked.casefold()]
     if len(found) == 1:
@@ -230,11 +259,11 @@ def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
     if not names:
         raise InputError(
             f"The solids of the file have no names: give a number from 1 to {len(solids)} instead of "
-            f"{shortened(plain(asked))!r}."
+            f"{shown!r}."
         )
     close = get_close_matches(asked.casefold(), list(names), SOLID_LIST, 0.5) or list(names)[:SOLID_LIST]
     raise InputError(
-        f"No solid of the file is called {shortened(plain(asked))!r}: give a number, or a name such as "
+        f"No solid of the file is called {shown!r}: give a number, or a name such as "
         f"{', '.join(names[one] for one in close)}."
     )
 
@@ -249,37 +278,98 @@ def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | N
     return [f"The file holds {len(solids)} solids: {listing}{more}. Solid {chosen.number} is used{because}."]
 
 
-def axis_named(axis: str | None) -> str:
-    """The name of an axis, z for None.
+def named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
+    """Every solid of what a reader of STEP files has read, with its name; empty where it has none.
 
-    Raises
-    ------
-    InputError
-        When there is none of that name.
+    Returns
+    -------
+    None where the library does not know: the solids are those of the reader then, without names.
     """
-    name = "z" if axis is None else axis.strip().lower().removeprefix("+")
-    if name.removeprefix("-") not in AXES:
-        raise InputError(f"the axis '{name[:40]}' is not known: give x, y or z, or -x, -y or -z.")
-    return name
+    # Whatever fails over names, the solids are there without them.
+    with suppress(Exception):
+        naming = occ.STEPCAFControl_Reader(reader.WS(), False)
+        for other in (naming.SetColorMode, naming.SetLayerMode, naming.SetPropsMode, naming.SetGDTMode):
+            other(False)
+        document = occ.TDocStd_Document(occ.TCollection_ExtendedString("names"))
+        if not naming.Transfer(document):
+            return None
+        process = naming.ChangeReader().WS().TransferReader()
+        found = []
+        for label in children(occ.XCAFDoc_DocumentTool.ShapesLabel_s(document.Main())):
+            if occ.XCAFDoc_ShapeTool.IsFree_s(label):
+                for product, names in places_under(label, occ.TopLoc_Location(), ()):
+                    solids = sub_shapes(product, "SOLID")
+                    found += [(solid, name_of(solid, names, len(solids), process)) for solid in solids]
+        wanted = Counter(map(position, sub_shapes(reader.OneShape(), "SOLID")))
+        return found if Counter(position(solid) for solid, _ in found) == wanted else None
+    return None
 
 
-def along(shape: Any, axis: str) -> Any:
-    """A shape turned so that an axis of the file points up; see :func:`turn_along`."""
-    from OCP.TopLoc import TopLoc_Location
+def position(shape: Any) -> tuple[float, ...]:
+    """Where a solid is placed, rounded so that two readings of a file agree."""
+    move = shape.Location().Transformation()
+    return tuple(round(move.Value(row, column), 6) for row in (1, 2, 3) for column in (1, 2, 3, 4))
 
-    return shape.Moved(TopLoc_Location(turn_along(axis)))
+
+def children(label: Any) -> Iterator[Any]:
+    """The labels directly under a label."""
+    at = occ.TDF_ChildIterator(label, False)
+    while at.More():
+        yield at.Value()
+        at.Next()
 
 
-def turn_along(axis: str) -> Any:
-    """The turn that makes an axis of the file point up; coordinates only change places and signs.
+def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[tuple[Any, tuple[str, ...]]]:
+    """Every place in which a product without others in it is used, at a label or below.
 
-    With a minus the part lies on its other side, turned over like a page: what pointed to x points to -x.
+    Parameters
+    ----------
+    moved : where the assemblies around it place it.
+    names : of these assemblies.
+
+    Returns
+    -------
+    The product's shape there, and names from the outermost assembly inward.
     """
-    from OCP.gp import gp_Trsf
+    product = label
+    if occ.XCAFDoc_ShapeTool.IsReference_s(label):
+        product = occ.TDF_Label()
+        occ.XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
+        moved = moved.Multiplied(occ.XCAFDoc_ShapeTool.GetLocation_s(label))
+    names = (*names, called(label), called(product))
+    if not occ.XCAFDoc_ShapeTool.IsAssembly_s(product):
+        yield occ.XCAFDoc_ShapeTool.GetShape_s(product).Moved(moved), names
+        return
+    for below in children(product):
+        if occ.XCAFDoc_ShapeTool.IsComponent_s(below):
+            yield from places_under(below, moved, names)
 
-    signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
-    sources = zip(signs, AXES[axis.lstrip("-")], strict=True)
-    rows = [[sign if column == source else 0.0 for column in range(3)] + [0.0] for sign, source in sources]
-    turn = gp_Trsf()
-    turn.SetValues(*rows[0], *rows[1], *rows[2])
-    return turn
+
+def called(label: Any) -> str:
+    """The name at a label; empty where it says nothing."""
+    name = occ.TDataStd_Name()
+    has_name = label.FindAttribute(occ.TDataStd_Name.GetID_s(), name)
+    return shown_name(name.Get().ToExtString()) if has_name else ""
+
+
+def shown_name(name: str) -> str:
+    """A name fit to be shown; empty where it says nothing.
+
+    >>> shown_name(" base  plate "), shown_name("=>[0:1:1:3]"), shown_name("NONE"), shown_name("12")
+    ('base plate', '', '', '')
+    """
+    words = shortened(plain_text(" ".join(name.split())), LONGEST_NAME)
+    return "" if NO_NAME.fullmatch(words) else words
+
+
+def name_of(solid: Any, names: tuple[str, ...], count: int, process: Any) -> str:
+    """The name of a solid of a product that has so many solids."""
+    own = ""
+    with suppress(Exception):
+        # Solids are known to the reader without the place that assemblies give them.
+        own = shown_name(
+            process.EntityFromShapeResult(solid.Located(occ.TopLoc_Location()), 1).Name().ToCString()
+        )
+    # The assembly of all says nothing about one of its solids.
+    of_product = next((name for name in reversed(names[2:] or names) if name), "")
+    return of_product if count == 1 and of_product else own or of_product

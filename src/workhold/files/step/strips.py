@@ -17,6 +17,7 @@ from attrs import frozen
 from workhold.conventions import SAME_HEIGHT
 from workhold.files.step.bands import Walls, length
 from workhold.files.step.edge_curves import ONE_HEIGHT, bisected, narrowed
+from workhold.geometry.loop import runs_around
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
 from workhold.model.solid import Band
@@ -97,16 +98,7 @@ def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> l
     least : shortest band in mm that may be touched.
     """
     ends = [ends_of(piece, walls) for piece in loop]
-    # Begin where the band jumps or the carrier changes, so that no run passes the loop's first point.
-    first = next((k for k in range(len(ends)) if not continues(ends[k - 1], ends[k])), 0)
-    ends = ends[first:] + ends[:first]
-    runs: list[list[Ends]] = []
-    for one in ends:
-        if runs and continues(runs[-1][-1], one):
-            runs[-1].append(one)
-        else:
-            runs.append([one])
-    return [strip for run in runs for strip in strips_of_run(run, walls, least)]
+    return [strip for run in runs_around(ends, continues) for strip in strips_of_run(run, walls, least)]
 
 
 def continues(before: Ends, after: Ends) -> bool:
@@ -182,17 +174,12 @@ def overlap(a: Band | None, b: Band) -> Band:
     return b if a is None else (max(a[0], b[0]), min(a[1], b[1]))
 
 
-def around(a: Band, b: Band) -> Band:
-    """The least range that holds both bands; it holds those between them, because both ends are monotone."""
-    return min(a[0], b[0]), max(a[1], b[1])
-
-
 def first_long(one: Ends, walls: Walls, share: float, least: float) -> float:
     """The least share after one from which on a piece's band is at least as long as asked; 1 for none."""
 
     def may_be(a: Band, b: Band) -> bool:
-        # Both ends of the band lie between those at both ends, whatever walls make it.
-        return length(around(a, b)) >= least - SAME_HEIGHT
+        # Both ends of the band are monotone and so lie between those at both ends, whatever walls make it.
+        return max(a[1], b[1]) - min(a[0], b[0]) >= least - SAME_HEIGHT
 
     def spare(band: Band) -> float:
         return length(band) - (least - ONE_HEIGHT)

@@ -24,8 +24,7 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.files.step.library import load_step_library
-from workhold.files.step.solids import sub_shapes
+from workhold.files.step.library import load_step_library, occ, raised, sub_shapes
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, fixture_bodies
@@ -42,7 +41,6 @@ __all__ = [
     "named_solids",
     "plates_step",
     "setup_step",
-    "write_plates_step",
     "write_setup_step",
 ]
 
@@ -105,21 +103,17 @@ def setup_step(
     workpiece: Workpiece,
     toolkit: Toolkit,
     *,
-    thickness: float | None = None,
-    plate_thickness: float | None = None,
-    peg_length: float | None = None,
-    peg_height: float | None = None,
     zero: PartZero | None = None,
+    **sizes: Any,
 ) -> bytes:
-    """The bytes of a set-up's STEP assembly; see :func:`write_setup_step`.
+    """The bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`.
 
     Raises
     ------
     InputError
         As :func:`write_setup_step`.
     """
-    sizes = BodySizes.of(workpiece, thickness, plate_thickness, peg_length, peg_height)
-    bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
+    bodies = fixture_bodies(fixture, workpiece, toolkit, BodySizes.of(workpiece, **sizes))
     return bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
 
 
@@ -165,16 +159,10 @@ def named_solids(bodies: Sequence[FixtureBody]) -> list[tuple[str, Any, Colour]]
 
 def axes_at(point: Point, pose: Pose, length: float) -> Any:
     """The axes of the part at a point of it, at z = 0: x of the given length, y half as long."""
-    from OCP.BRep import BRep_Builder
-    from OCP.TopoDS import TopoDS_Compound
-
-    axes, builder = TopoDS_Compound(), BRep_Builder()
+    axes, builder = occ.TopoDS_Compound(), occ.BRep_Builder()
     builder.MakeCompound(axes)
     x, y = point
-    start, *ends = (
-        (float(u), float(v))
-        for u, v in (pose.apply(*p) for p in ((x, y), (x + length, y), (x, y + length / 2)))
-    )
+    start, *ends = (pose.apply(*p) for p in ((x, y), (x + length, y), (x, y + length / 2)))
     for end in ends:
         builder.Add(axes, edge(Line(start, end)))
     return axes
@@ -182,22 +170,18 @@ def axes_at(point: Point, pose: Pose, length: float) -> Any:
 
 def solids_of(body: FixtureBody) -> list[Any]:
     """A body as one solid, or as one for each of its pieces."""
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
-
     first, *others = (
         extruded(wire(slab.outer), [wire(hole) for hole in slab.holes], slab.low, slab.high)
         for slab in body.slabs
     )
     for other in others:
-        first = BRepAlgoAPI_Fuse(first, other).Shape()
+        first = occ.BRepAlgoAPI_Fuse(first, other).Shape()
     return sub_shapes(first, "SOLID")
 
 
 def wire(segments: Iterable[Segment]) -> Any:
     """A closed wire at z = 0 of segments in running order."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
-
-    maker = BRepBuilderAPI_MakeWire()
+    maker = occ.BRepBuilderAPI_MakeWire()
     for segment in segments:
         maker.Add(edge(segment))
     return maker.Wire()
@@ -205,82 +189,66 @@ def wire(segments: Iterable[Segment]) -> Any:
 
 def edge(segment: Segment) -> Any:
     """A segment as an edge at z = 0; the circle of an arc run clockwise looks down."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-    from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pnt
-
     if isinstance(segment, Line):
-        return BRepBuilderAPI_MakeEdge(gp_Pnt(*segment.start, 0.0), gp_Pnt(*segment.end, 0.0)).Edge()
+        return occ.BRepBuilderAPI_MakeEdge(
+            occ.gp_Pnt(*segment.start, 0.0), occ.gp_Pnt(*segment.end, 0.0)
+        ).Edge()
     start = segment.mid_angle - segment.sign * segment.half_sweep
-    axes = gp_Ax2(
-        gp_Pnt(*segment.center, 0.0), gp_Dir(0.0, 0.0, segment.sign), gp_Dir(cos(start), sin(start), 0.0)
+    axes = occ.gp_Ax2(
+        occ.gp_Pnt(*segment.center, 0.0),
+        occ.gp_Dir(0.0, 0.0, segment.sign),
+        occ.gp_Dir(cos(start), sin(start), 0.0),
     )
-    return BRepBuilderAPI_MakeEdge(gp_Circ(axes, segment.radius), 0.0, 2 * segment.half_sweep).Edge()
+    return occ.BRepBuilderAPI_MakeEdge(occ.gp_Circ(axes, segment.radius), 0.0, 2 * segment.half_sweep).Edge()
 
 
 def extruded(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
     """The solid between two heights over a border with holes, which run clockwise."""
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
-    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
-    from OCP.TopLoc import TopLoc_Location
-
-    maker = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), outer)
+    maker = occ.BRepBuilderAPI_MakeFace(
+        occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, 0.0), occ.gp_Dir(0.0, 0.0, 1.0)), outer
+    )
     for hole in holes:
         maker.Add(hole)
-    move = gp_Trsf()
-    move.SetTranslation(gp_Vec(0.0, 0.0, low))
-    face = maker.Face().Moved(TopLoc_Location(move))
-    return BRepPrimAPI_MakePrism(face, gp_Vec(0.0, 0.0, high - low), True).Shape()
+    face = raised(maker.Face(), low)
+    return occ.BRepPrimAPI_MakePrism(face, occ.gp_Vec(0.0, 0.0, high - low), True).Shape()
 
 
 def assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> bytes:
     """The STEP file of an assembly of bodies, each with its name and, where there is one, its colour."""
-    from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
-    from OCP.BRep import BRep_Builder
-    from OCP.STEPCAFControl import STEPCAFControl_Writer
-    from OCP.STEPControl import STEPControl_StepModelType
-    from OCP.StepRepr import StepRepr_NextAssemblyUsageOccurrence
-    from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
-    from OCP.TDataStd import TDataStd_Name
-    from OCP.TDocStd import TDocStd_Document
-    from OCP.TopLoc import TopLoc_Location
-    from OCP.TopoDS import TopoDS_Compound
-    from OCP.XCAFDoc import XCAFDoc_DocumentTool
-
-    document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
-    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    compound = TopoDS_Compound()
-    BRep_Builder().MakeCompound(compound)
+    document = occ.TDocStd_Document(occ.TCollection_ExtendedString("XmlOcaf"))
+    shapes = occ.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    compound = occ.TopoDS_Compound()
+    occ.BRep_Builder().MakeCompound(compound)
     root = shapes.AddShape(compound, True)
-    TDataStd_Name.Set_s(root, TCollection_ExtendedString(name, True))
+    occ.TDataStd_Name.Set_s(root, occ.TCollection_ExtendedString(name, True))
     for word, body, _ in named:
         label = shapes.AddShape(body, False)
-        TDataStd_Name.Set_s(label, TCollection_ExtendedString(word, True))
-        placed = shapes.AddComponent(root, label, TopLoc_Location())
-        TDataStd_Name.Set_s(placed, TCollection_ExtendedString(word, True))
+        occ.TDataStd_Name.Set_s(label, occ.TCollection_ExtendedString(word, True))
+        placed = shapes.AddComponent(root, label, occ.TopLoc_Location())
+        occ.TDataStd_Name.Set_s(placed, occ.TCollection_ExtendedString(word, True))
     shapes.UpdateAssemblies()
-    writer = STEPCAFControl_Writer()
-    if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
+    writer = occ.STEPCAFControl_Writer()
+    if not writer.Transfer(document, occ.STEPControl_AsIs):
         raise RuntimeError("the STEP library could not translate the set-up")
     model = writer.ChangeWriter().Model()
-    header = APIHeaderSection_MakeHeader(model)
-    header.SetName(TCollection_HAsciiString("set-up"))
-    header.SetTimeStamp(TCollection_HAsciiString(TIME_STAMP))
-    header.SetAuthorValue(1, TCollection_HAsciiString(""))
-    header.SetOrganizationValue(1, TCollection_HAsciiString(""))
-    header.SetOriginatingSystem(TCollection_HAsciiString("workhold"))
+    header = occ.APIHeaderSection_MakeHeader(model)
+    header.SetName(occ.TCollection_HAsciiString("set-up"))
+    header.SetTimeStamp(occ.TCollection_HAsciiString(TIME_STAMP))
+    header.SetAuthorValue(1, occ.TCollection_HAsciiString(""))
+    header.SetOrganizationValue(1, occ.TCollection_HAsciiString(""))
+    header.SetOriginatingSystem(occ.TCollection_HAsciiString("workhold"))
     # The library numbers the places of an assembly through the life of the process.
     entities = (model.Entity(k) for k in range(1, model.NbEntities() + 1))
-    uses = (entity for entity in entities if isinstance(entity, StepRepr_NextAssemblyUsageOccurrence))
+    uses = (entity for entity in entities if isinstance(entity, occ.StepRepr_NextAssemblyUsageOccurrence))
     for number, use in enumerate(uses, start=1):
-        use.SetId(TCollection_HAsciiString(str(number)))
+        use.SetId(occ.TCollection_HAsciiString(str(number)))
     stream = BytesIO()
     writer.WriteStream(stream)
     return coloured(stream.getvalue(), [colour for _, _, colour in named if colour is not None])
 
 
 def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> bytes:
-    """The bytes of the assembly; the same plates give the same bytes.
+    """The bytes of a STEP assembly of jaw plates; the same plates give the same bytes.
 
     Parameters
     ----------
@@ -304,30 +272,13 @@ def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> b
 
 def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
     """A plate as a solid, moved to the right."""
-    box = plate.outline
-    corners = [
-        (box.x0 + right, box.y0),
-        (box.x1 + right, box.y0),
-        (box.x1 + right, box.y1),
-        (box.x0 + right, box.y1),
-    ]
+    corners = [(x + right, y) for x, y in plate.outline.corners]
     border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
     holes: list[tuple[Point, float]] = [(center, plate.hole_diameter) for _, center in plate.holes]
     if plate.bolts is not None:
         holes += [(center, plate.bolts.diameter) for center in plate.bolts.places]
     wires = [wire([Arc((x + right, y), diameter / 2, 0.0, pi, -1.0)]) for (x, y), diameter in holes]
     return extruded(border, wires, -thickness, 0.0)
-
-
-def write_plates_step(plates: Sequence[JawPlate], path: str | Path, thickness: float | None = None) -> None:
-    """Writes jaw plates as a STEP assembly.
-
-    Raises
-    ------
-    InputError
-        As :func:`plates_step`, and when the file cannot be written.
-    """
-    write_bytes(path, plates_step(plates, thickness))
 
 
 def coloured(text: bytes, colours: Sequence[Colour]) -> bytes:

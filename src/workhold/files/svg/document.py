@@ -80,11 +80,8 @@ class Document:
         tag = local_name(element)
         if element.get("id"):
             return f"{tag} '{short(element.get('id', ''))}'"
-        return (
-            "the root <svg>"
-            if element is self.root
-            else f"{tag} number {self.places[element][0]} (without id)"
-        )
+        number, _ = self.places[element]
+        return "the root <svg>" if element is self.root else f"{tag} number {number} (without id)"
 
     def linked(self, link: str) -> Element | None:
         """The element a link such as ``#id`` points to; None when it is not in the file."""
@@ -97,10 +94,6 @@ class Document:
             element = self.parents[element]
             found.append(element)
         return found[::-1]
-
-    def line(self, element: Element) -> int:
-        """The line an element begins on."""
-        return self.places[element][1]
 
     def drawn(self, element: Element) -> bool:
         """Whether an element is of SVG's namespace, as the root is, and not of an editor's own."""
@@ -149,10 +142,7 @@ def read_document(content: bytes) -> Document:
 def parsed(content: bytes, lines: dict[Element, int]) -> Element:
     """The root element; the line of each element goes into ``lines``.
 
-    Raises
-    ------
-    InputError
-        For XML that is broken, too deep, or asks for what is not in the file.
+    Raises InputError for XML that is broken, too deep, or asks for what is not in the file.
     """
     parser = expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
@@ -253,7 +243,8 @@ class Styles:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.matched: dict[Element, list[tuple[tuple[Any, ...], Block]]] = {}
-        styles = [e for e in document.root.iter() if local_name(e) == "style" and read_as_css(e)]
+        styles = [element for element in document.root.iter() if local_name(element) == "style"]
+        styles = [one for one in styles if one.get("type", "").strip().lower() in ("", "text/css")]
         if styles:
             self.match(styles)
 
@@ -263,7 +254,7 @@ class Styles:
 
         matcher = cssselect2.Matcher()
         for style in styles:
-            place = f"the style sheet on line {self.document.line(style)}"
+            place = f"the style sheet on line {self.document.places[style][1]}"
             refuse_media(style.get("media", ""), place)
             for selectors, declarations in rules("".join(style.itertext()), place):
                 for selector in selectors:
@@ -293,19 +284,8 @@ class Styles:
         return found
 
 
-def read_as_css(style: Element) -> bool:
-    """Whether a <style> holds CSS."""
-    return style.get("type", "").strip().lower() in ("", "text/css")
-
-
 def refuse_media(media: str, place: str) -> None:
-    """Refuses styles for some screens or printers only.
-
-    Raises
-    ------
-    InputError
-        Naming the condition.
-    """
+    """Refuses styles for some screens or printers only; raises InputError, naming the condition."""
     if " ".join(media.lower().split()) not in SCREENS:
         raise InputError(
             f"{place} is for '{short(media)}' only, which is not read: write the styles without it."
@@ -315,10 +295,7 @@ def refuse_media(media: str, place: str) -> None:
 def rules(text: str, place: str) -> list[tuple[Any, tuple[Block, Block]]]:
     """The rules of a style sheet: compiled selectors, and declarations (plain, important).
 
-    Raises
-    ------
-    InputError
-        For rules that are not read and could change an outline.
+    Raises InputError for rules that are not read and could change an outline.
     """
     import cssselect2
     import tinycss2
@@ -333,9 +310,7 @@ def rules(text: str, place: str) -> list[tuple[Any, tuple[Block, Block]]]:
                 if inner:
                     refuse_media(condition, f"@media of {place}")
                 found += inner
-            elif keyword in HARMLESS_RULES:
-                continue
-            elif (
+            elif keyword not in HARMLESS_RULES and (
                 keyword == "import" or rule.content is None or rules(tinycss2.serialize(rule.content), place)
             ):
                 raise InputError(
@@ -358,10 +333,7 @@ def rules(text: str, place: str) -> list[tuple[Any, tuple[Block, Block]]]:
 def declared(content: Any, place: str) -> tuple[Block, Block]:
     """The known properties of a block of declarations: plain ones, and important ones.
 
-    Raises
-    ------
-    InputError
-        For rules within the block.
+    Raises InputError for rules within the block.
     """
     import tinycss2
 
@@ -374,12 +346,6 @@ def declared(content: Any, place: str) -> tuple[Block, Block]:
             continue
         name = item.lower_name.removeprefix("-webkit-")
         if name in KNOWN:
-            (important if item.important else plain).append((name, serialized(item.value)))
+            text = tinycss2.serialize([token for token in item.value if token.type != "comment"])
+            (important if item.important else plain).append((name, text.strip()))
     return plain, important
-
-
-def serialized(tokens: Any) -> str:
-    """A value as text, without comments."""
-    import tinycss2
-
-    return str(tinycss2.serialize([token for token in tokens if token.type != "comment"])).strip()

@@ -49,7 +49,9 @@ def read_svg(
     known = page(root, box, unit, usual_unit)
     placement, remarks = known or (Placement(d=-1.0), [])
     walk = SvgWalk(document, styles, fit)
-    viewport = (box[2], box[3]) if box is not None else (pixels(root, "width"), pixels(root, "height"))
+    sides = [root.given(name) for name in ("width", "height")]
+    width, height = (None if side is None else absolute(side.text) for side in sides)
+    viewport = (width, height) if box is None else (box[2], box[3])
     try:
         walk.visit(document.root, ElementNesting(placement, viewport))
     except InputError:
@@ -72,10 +74,7 @@ def page(
 
     None when the size of a user unit is not known.
 
-    Raises
-    ------
-    InputError
-        When the size of a user unit differs between x and y.
+    Raises InputError when the size of a user unit differs between x and y.
     """
     given = [root.given(name) for name in ("width", "height")]
     sized = any(side is not None and physical(side.text) for side in given)
@@ -93,18 +92,10 @@ def page(
         scale = asked
     if scale is None:
         return None
-    left, low = 0.0, 0.0
-    if box is not None:
-        left, low = box[0], box[1] + box[3]
-    elif height is not None:
-        low = height / scale if unit is None else 0.0
+    left, low = (0.0, 0.0) if box is None else (box[0], box[1] + box[3])
+    if box is None and height is not None and unit is None:
+        low = height / scale
     return Placement(scale, 0.0, 0.0, -scale, -scale * left, scale * low), remarks
-
-
-def pixels(root: ShapeElement, name: str) -> float | None:
-    """A side of the page in CSS pixels; None when the file does not say."""
-    given = root.given(name)
-    return None if given is None else absolute(given.text)
 
 
 def file_scale(
@@ -112,10 +103,7 @@ def file_scale(
 ) -> float | None:
     """Millimetres per user unit by the file's own physical size in mm; None when it has none.
 
-    Raises
-    ------
-    InputError
-        When x and y would be scaled unequally.
+    Raises InputError when x and y would be scaled unequally.
     """
     if width is None and height is None:
         return None

@@ -10,9 +10,9 @@ shape : what one SVG element draws, as a chain in its own user units (y down).
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import asin, cos, hypot, isfinite, pi, sin, tan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from attrs import field, frozen
@@ -25,7 +25,7 @@ from workhold.files.svg.viewport import NUMBER, ShapeElement, numbers
 from workhold.geometry.rational import Pieces, ellipse_pieces, polynomial_pieces
 from workhold.geometry.segment import Point
 
-__all__ = ["SHAPES", "Shape", "near", "path"]
+__all__ = ["SHAPES", "Shape"]
 
 COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
 SEPARATOR = r"\s*(?:,\s*(?=[-+.\d]))?"
@@ -62,10 +62,7 @@ def near(p: Point, q: Point) -> bool:
 def path(figure: ShapeElement) -> Iterator[Shape]:
     """A <path>; each subpath is a chain.
 
-    Raises
-    ------
-    InputError
-        For path data that cannot be read.
+    Raises InputError for path data that cannot be read.
     """
     from svgelements import Path
 
@@ -76,46 +73,45 @@ def path(figure: ShapeElement) -> Iterator[Shape]:
         raise InputError(
             f"{label} has path data that cannot be read ('{short(data)}'): correct it."
         ) from error
-    points: list[Point] = []
-    bulges: list[float] = []
-    labels: list[str] = []
-    curved: dict[int, Pieces] = {}
+    start: Point = (0.0, 0.0)
+    steps: list[PathStep] = []
     for number, segment in enumerate(segments):
         kind = type(segment).__name__
         if kind == "Move":
-            if bulges:
-                yield Shape(tuple(points), tuple(bulges), tuple(labels), curved)
-            points, bulges, labels, curved = [xy(segment.end, label)], [], [], {}
+            if steps:
+                yield subpath(start, steps)
+            start, steps = xy(segment.end, label), []
             continue
-        name = f"{label} segment {number}"
-        curve = curve_of(segment, kind, name)
-        if curve is not None:
-            curved[len(bulges)] = curve
-            points.append(xy(segment.end, name))
-            bulges.append(0.0)
-            labels.append(name)
-            continue
-        for end, bulge in path_segment(segment, kind, name):
-            # Closing a path that is back at its start adds nothing.
-            if not (kind == "Close" and near(end, points[-1])):
-                points.append(end)
-                bulges.append(bulge)
-                labels.append(name)
-        if kind == "Close":
-            if bulges:
-                yield Shape(tuple(points), tuple(bulges), tuple(labels), curved)
-            points, bulges, labels, curved = [points[-1]], [], [], {}
-    if bulges:
-        yield Shape(tuple(points), tuple(bulges), tuple(labels), curved)
+        last = steps[-1].end if steps else start
+        found = steps_of(segment, kind, f"{label} segment {number}")
+        # Closing a path that is back at its start adds nothing.
+        steps += [step for step in found if not (kind == "Close" and near(step.end, last))]
+        if kind == "Close" and steps:
+            yield subpath(start, steps)
+            start, steps = steps[-1].end, []
+    if steps:
+        yield subpath(start, steps)
+
+
+class PathStep(NamedTuple):
+    """A segment of a path: its last point, bulge and label, and the curve that it is, if it is one."""
+
+    end: Point
+    bulge: float
+    label: str
+    curve: Pieces | None = None
+
+
+def subpath(start: Point, steps: Sequence[PathStep]) -> Shape:
+    """The shape of the steps from a point."""
+    ends, bulges, labels, curves = zip(*steps, strict=True)
+    return Shape((start, *ends), bulges, labels, {k: c for k, c in enumerate(curves) if c is not None})
 
 
 def path_data(figure: ShapeElement) -> str:
     """The path data, as attribute or as CSS property; empty when there is none.
 
-    Raises
-    ------
-    InputError
-        For a property that is not ``path("...")``.
+    Raises InputError for a property that is not ``path("...")``.
     """
     given = figure.given("d")
     if given is None or given.text in ("", "none"):
@@ -132,10 +128,7 @@ def path_data(figure: ShapeElement) -> str:
 def plain_commands(data: str) -> Iterator[str]:
     """Commands of path data, with letter and arguments (SVG 2, 9.3.9); arcs without radius are lines (9.5.1).
 
-    Raises
-    ------
-    ValueError
-        For path data that is not of SVG's grammar.
+    Raises ValueError for path data that is not of SVG's grammar.
     """
     position, first = 0, True
     while position < len(data.rstrip()):
@@ -160,54 +153,37 @@ def plain_commands(data: str) -> Iterator[str]:
             again = count > 0 and ARGUMENT.match(data, position) is not None
 
 
-def path_segment(segment: Any, kind: str, label: str) -> list[tuple[Point, float]]:
-    """End points and bulges of one path command that is no curve.
+def steps_of(segment: Any, kind: str, label: str) -> list[PathStep]:
+    """What one path command draws: the arc of a circle as one or two arcs, and anything else as one segment.
 
-    Raises
-    ------
-    InputError
-        For numbers that are missing or not finite.
+    Raises InputError for numbers that are missing or not finite.
     """
+    end = xy(segment.end, label)
     if kind in ("Line", "Close"):
-        return [(xy(segment.end, label), 0.0)]
-    start, end = xy(segment.start, label), xy(segment.end, label)
+        return [PathStep(end, 0.0, label)]
+    start = xy(segment.start, label)
+    if kind != "Arc":
+        between = [segment.control] if kind == "QuadraticBezier" else [segment.control1, segment.control2]
+        curve = polynomial_pieces([start, *(xy(point, label) for point in between), end])
+        return [PathStep(end, 0.0, label, curve)]
     if end == start:
         return []  # SVG 2, 9.5.1
-    radius = float(segment.rx)
+    radius, other = float(segment.rx), float(segment.ry)
+    if abs(radius - other) > CIRCULAR * max(radius, other):
+        cx, cy = xy(segment.center, label)
+        major, minor = ((x - cx, y - cy) for x, y in (xy(segment.prx, label), xy(segment.pry, label)))
+        curve = ellipse_pieces((cx, cy), major, minor, float(segment.get_start_t()), float(segment.sweep))
+        curve[0, 0], curve[-1, -1] = (*start, 1.0), (*end, 1.0)
+        return [PathStep(end, 0.0, label, curve)]
     sweep = arc_sweep(start, end, radius, float(segment.sweep))
     bulges = arc_bulges(sweep)
     if len(bulges) == 1:
-        return [(end, bulges[0])]
+        return [PathStep(end, bulges[0], label)]
     cx, cy = xy(segment.center, label)
     c, s = cos(sweep / 2), sin(sweep / 2)
     dx, dy = start[0] - cx, start[1] - cy
-    return [((cx + c * dx - s * dy, cy + s * dx + c * dy), bulges[0]), (end, bulges[1])]
-
-
-def curve_of(segment: Any, kind: str, label: str) -> Pieces | None:
-    """A Bézier curve or the arc of an ellipse; None for a line and the arc of a circle.
-
-    Raises
-    ------
-    InputError
-        For numbers that are missing or not finite.
-    """
-    if kind in ("Line", "Close"):
-        return None
-    start, end = xy(segment.start, label), xy(segment.end, label)
-    if kind == "Arc":
-        radius, other = float(segment.rx), float(segment.ry)
-        if end == start or abs(radius - other) <= CIRCULAR * max(radius, other):
-            return None
-        center = xy(segment.center, label)
-        major, minor = (
-            (x - center[0], y - center[1]) for x, y in (xy(segment.prx, label), xy(segment.pry, label))
-        )
-        pieces = ellipse_pieces(center, major, minor, float(segment.get_start_t()), float(segment.sweep))
-        pieces[0, 0], pieces[-1, -1] = (*start, 1.0), (*end, 1.0)
-        return pieces
-    between = [segment.control] if kind == "QuadraticBezier" else [segment.control1, segment.control2]
-    return polynomial_pieces([start, *(xy(point, label) for point in between), end])
+    middle = (cx + c * dx - s * dy, cy + s * dx + c * dy)
+    return [PathStep(middle, bulges[0], label), PathStep(end, bulges[1], label)]
 
 
 def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
@@ -223,13 +199,7 @@ def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
 
 
 def xy(point: Any, label: str) -> Point:
-    """A point of svgelements.
-
-    Raises
-    ------
-    InputError
-        When it is missing or not finite.
-    """
+    """A point of svgelements; raises InputError when it is missing or not finite."""
     if point is None or not (isfinite(point.x) and isfinite(point.y)):
         raise InputError(f"{label} has path data with a number missing or not finite: correct it.")
     return float(point.x), float(point.y)
@@ -242,23 +212,27 @@ def line(figure: ShapeElement) -> Iterator[Shape]:
 
 
 def circle(figure: ShapeElement) -> Iterator[Shape]:
-    """A <circle>, as two halves."""
+    """A <circle>."""
     x, y, r = (figure.length(a) for a in ("cx", "cy", "r"))
-    if r > 0:
-        yield Shape(((x + r, y), (x - r, y), (x + r, y)), (1.0, 1.0), (figure.label, figure.label))
+    return oval(figure.label, (x, y), r, r)
 
 
 def ellipse(figure: ShapeElement) -> Iterator[Shape]:
-    """An <ellipse>, a circle where its radii are equal; one that is not given is the other (SVG 2, 10.4)."""
+    """An <ellipse>; a radius that is not given is the other (SVG 2, 10.4)."""
     x, y = (figure.length(a) for a in ("cx", "cy"))
-    rx, ry = radii(figure)
+    return oval(figure.label, (x, y), *radii(figure))
+
+
+def oval(label: str, center: Point, rx: float, ry: float) -> Iterator[Shape]:
+    """An ellipse, or a circle as two halves where the radii are equal; nothing where one of them is 0."""
+    x, y = center
     if not (rx > 0 and ry > 0):
         return
     if abs(rx - ry) > CIRCULAR * max(rx, ry):
-        whole = ellipse_pieces((x, y), (rx, 0.0), (0.0, ry), 0.0, 2 * pi)
-        yield Shape(((x + rx, y), (x + rx, y)), (0.0,), (figure.label,), {0: whole})
-        return
-    yield Shape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (figure.label, figure.label))
+        whole = ellipse_pieces(center, (rx, 0.0), (0.0, ry), 0.0, 2 * pi)
+        yield Shape(((x + rx, y), (x + rx, y)), (0.0,), (label,), {0: whole})
+    else:
+        yield Shape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (label, label))
 
 
 def radii(figure: ShapeElement) -> tuple[float, float]:
@@ -309,13 +283,7 @@ def rect(figure: ShapeElement) -> Iterator[Shape]:
 
 
 def polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
-    """A <polyline> or <polygon>.
-
-    Raises
-    ------
-    InputError
-        For an odd number of coordinates.
-    """
+    """A <polyline> or <polygon>; raises InputError for an odd number of coordinates."""
     values = numbers(figure.element.get("points", ""), f"{figure.label}: points")
     if len(values) % 2:
         raise InputError(f"{figure.label} has an odd number of coordinates: correct its points.")

@@ -17,7 +17,9 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, cleaned
+from workhold.files.outline.joining import closed_loop
 from workhold.files.svg.document import Declared, Styles, href, local_name, short
+from workhold.files.svg.viewport import LENGTH, ShapeElement
 from workhold.geometry.loop import LoopShape, encloses, loop_segments, refuse_meeting_loops, signed_area
 
 __all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effects"]
@@ -25,7 +27,6 @@ __all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effe
 Value = TypeVar("Value")
 Declarations = dict[str, list[Declared]]
 
-NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(%|[a-z]*)$")
 HEX = re.compile(r"#(?:[0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})$")
 URL = re.compile(r"""url\(\s*(?:"([^"]*)"|'([^']*)'|([^"')\s]*))\s*\)\s*(.*)$""", re.DOTALL | re.IGNORECASE)
 DISPLAYS = re.compile(
@@ -144,7 +145,7 @@ def computed(declarations: Declarations, around: Style, styles: Styles, label: s
     )
 
 
-def refuse_effects(declarations: Declarations, label: str) -> None:
+def refuse_effects(figure: ShapeElement) -> None:
     """Refuses masks, filters and other effects that cut, move or hide what is drawn.
 
     Raises
@@ -153,26 +154,24 @@ def refuse_effects(declarations: Declarations, label: str) -> None:
         Naming element and property.
     """
     for name, harmless in EFFECTS.items():
-        if name in declarations:
-            text = declarations[name][0].text
-            if text.lower() != harmless and (
-                name == "all" or text.lower() not in ("normal", "initial", "unset", "inherit")
-            ):
-                raise InputError(
-                    f"{label} has the {name} '{short(text)}', which is not read: remove it, or draw its "
-                    "effect."
-                )
+        text = figure.declarations[name][0].text if name in figure.declarations else harmless
+        usual = () if name == "all" else ("normal", "initial", "unset", "inherit")
+        if text.lower() not in (harmless, *usual):
+            raise InputError(
+                f"{figure.label} has the {name} '{short(text)}', which is not read: remove it, or draw its "
+                "effect."
+            )
 
 
 def positive(text: str) -> bool | None:
     """Whether an opacity is above 0; None when it is none."""
-    match = NUMBER.match(text)
+    match = LENGTH.match(text)
     return None if match is None or match.group(2) not in ("", "%") else float(match.group(1)) > 0
 
 
 def width(text: str) -> bool | None:
     """Whether a stroke's width is above 0; None when it is none."""
-    match = NUMBER.match(text)
+    match = LENGTH.match(text)
     return None if match is None or float(match.group(1)) < 0 else float(match.group(1)) > 0
 
 
@@ -243,12 +242,8 @@ def boundaries(chains: Sequence[Chain]) -> list[Chain]:
     """
     clean = [cleaned([chain]).chains for chain in chains]
     known = [k for k, found in enumerate(clean) if found and len(found[0].bulges) > 1]
-    shapes, turns = [], []
-    for k in known:
-        (chain,) = clean[k]
-        vertices = np.column_stack([chain.points[:-1], chain.bulges])
-        shapes.append(LoopShape.of(loop_segments(vertices)))
-        turns.append(int(np.sign(signed_area(shapes[-1].segments))))
+    shapes = [LoopShape.of(loop_segments(closed_loop(clean[k][0]).vertices)) for k in known]
+    turns = [int(np.sign(signed_area(shape.segments))) for shape in shapes]
     boxes = np.array([shape.box for shape in shapes]).reshape(-1, 4)
     over = set()
     for at, (k, shape) in enumerate(zip(known, shapes, strict=True)):

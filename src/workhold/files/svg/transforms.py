@@ -7,14 +7,13 @@ from math import cos, degrees, isfinite, radians, sin, tan
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Placement
-from workhold.files.svg.document import Declared, short
-from workhold.files.svg.viewport import ANGLES, NUMBER, absolute, numbers
+from workhold.files.svg.document import short
+from workhold.files.svg.viewport import ANGLES, LENGTH, ShapeElement, absolute, numbers
 
 __all__ = ["transform_of"]
 
 FUNCTION = re.compile(r"\s*,?\s*(\w+)\s*\(([^()]*)\)")
 CSS_FUNCTION = re.compile(r"\s*(\w+)\(([^()]*)\)")
-QUANTITY = re.compile(rf"({NUMBER})([a-z%]*)$", re.IGNORECASE)
 PROPERTIES = ("transform", "translate", "rotate", "scale")
 SIDES = {"left": (0, 0.0), "right": (0, 1.0), "top": (1, 0.0), "bottom": (1, 1.0)}
 # Functions of the attribute, and how many arguments they have.
@@ -28,26 +27,17 @@ ATTRIBUTE = {
 }
 
 
-def transform_of(
-    declarations: dict[str, list[Declared]], viewport: tuple[float | None, float | None], label: str
-) -> Placement:
+def transform_of(figure: ShapeElement) -> Placement:
     """The map of an element's transform properties.
-
-    Parameters
-    ----------
-    declarations : the element's declared values.
-    viewport : width and height that percentages of the origin are of, in user units; None where not known.
-    label : what messages call the element.
 
     Raises
     ------
     InputError
         For transforms that are not SVG's, or not in the plane, naming the element.
     """
+    declarations, label = figure.declarations, figure.label
     given = {name: declarations[name][0] for name in PROPERTIES if name in declarations}
-    given = {
-        name: value for name, value in given.items() if value.text not in ("", "none", "initial", "unset")
-    }
+    given = {name: one for name, one in given.items() if one.text not in ("", "none", "initial", "unset")}
     if not given:
         return Placement()
     box = declarations.get("transform-box")
@@ -55,7 +45,7 @@ def transform_of(
         raise InputError(
             f"{label} has the transform-box '{short(box[0].text)}', which is not read: use view-box."
         )
-    x, y = origin(declarations, viewport, label)
+    x, y = origin(figure)
     placement = Placement(e=x, f=y)
     for name in ("translate", "rotate", "scale"):
         if name in given:
@@ -67,22 +57,14 @@ def transform_of(
     return placement.after(Placement(e=-x, f=-y))
 
 
-def origin(
-    declarations: dict[str, list[Declared]], viewport: tuple[float | None, float | None], label: str
-) -> tuple[float, float]:
-    """The point that stays in place, in user units.
-
-    Raises
-    ------
-    InputError
-        For places that are not read.
-    """
-    if "transform-origin" not in declarations:
+def origin(figure: ShapeElement) -> tuple[float, float]:
+    """The point that stays in place, in user units; raises InputError for places that are not read."""
+    if "transform-origin" not in figure.declarations:
         return 0.0, 0.0
-    given = declarations["transform-origin"][0]
+    given = figure.declarations["transform-origin"][0]
     text = given.text
     error = InputError(
-        f"{label} has the transform-origin '{short(text)}', which is not read: write two lengths."
+        f"{figure.label} has the transform-origin '{short(text)}', which is not read: write two lengths."
     )
     words = text.lower().split()
     if words in (["initial"], ["unset"]):
@@ -98,9 +80,9 @@ def origin(
         if SIDES.get(word, (axis, 0))[0] != axis:
             raise error
         share = SIDES[word][1] if word in SIDES else 0.5 if word == "center" else None
-        if share is None and word.endswith("%") and QUANTITY.match(word):
+        if share is None and word.endswith("%") and LENGTH.match(word):
             share = float(word[:-1]) / 100
-        side = viewport[axis]
+        side = figure.viewport[axis]
         plain = absolute(word, unitless=not given.css)
         value = plain if share is None else None if side is None else share * side
         if value is None:
@@ -110,13 +92,7 @@ def origin(
 
 
 def functions(text: str, css: bool, label: str) -> Placement:
-    """The map of a list of transform functions.
-
-    Raises
-    ------
-    InputError
-        For functions that are not read.
-    """
+    """The map of a list of transform functions; raises InputError for functions that are not read."""
     text = text.strip()
     placement = Placement()
     position = 0
@@ -141,14 +117,14 @@ def css_values(name: str, text: str) -> list[float] | None:
     """The arguments of a CSS transform function in user units and degrees; None when one is not valid."""
     values: list[float] = []
     for word in text.split(","):
-        match = QUANTITY.match(word.strip())
+        match = LENGTH.match(word)
         if match is None or not isfinite(float(match.group(1))):
             return None
         number, unit = float(match.group(1)), match.group(2).lower()
         if number == 0 and not unit:
             value: float | None = 0.0
         elif name.startswith("translate"):
-            value = absolute(word.strip(), unitless=False)
+            value = absolute(word, unitless=False)
         elif name.startswith(("rotate", "skew")):
             value = number * degrees(ANGLES[unit]) if unit in ANGLES else None
         elif name.startswith("scale") and unit == "%":

@@ -27,6 +27,7 @@ from workhold.geometry.segment import Point
 
 __all__ = [
     "ANGLES",
+    "LENGTH",
     "NUMBER",
     "ShapeElement",
     "ViewBox",
@@ -109,14 +110,12 @@ class ShapeElement:
     label : what messages call it.
     declarations : its declared values.
     viewport : what percentages are of.
-    closed : whether only its fill is seen, which closes open subpaths.
     """
 
     element: Element
     label: str
     declarations: dict[str, list[Declared]]
     viewport: Viewport
-    closed: bool = False
 
     def given(self, name: str) -> Declared | None:
         """The value of a geometry property or attribute; None when there is none."""
@@ -163,6 +162,7 @@ ON_EDGE = 1e-6
 
 ViewBox = tuple[float, float, float, float]
 ALIGNMENT = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
+ASPECT = re.compile(r"x(Min|Mid|Max)Y(Min|Mid|Max)(?: (meet|slice))?$")
 
 
 def viewbox_of(text: str | None, label: str) -> ViewBox | None:
@@ -195,18 +195,14 @@ def fitted(box: ViewBox, width: float, height: float, aspect: str, label: str) -
     sx, sy = width / box[2], height / box[3]
     if words[0] == "none":
         return Placement(a=sx, d=sy, e=-sx * box[0], f=-sy * box[1])
-    align, way = words[0], words[1] if len(words) > 1 else "meet"
-    if len(words) > 2 or way not in ("meet", "slice") or align[:1] + align[4:5] != "xY" or len(align) != 8:
+    match = ASPECT.match(" ".join(words))
+    if match is None:
         raise InputError(
             f"{label} has the preserveAspectRatio '{short(aspect)}', which cannot be read: correct it."
         )
-    scale = max(sx, sy) if way == "slice" else min(sx, sy)
-    shares = ALIGNMENT.get(align[1:4]), ALIGNMENT.get(align[5:8])
-    if shares[0] is None or shares[1] is None:
-        raise InputError(
-            f"{label} has the preserveAspectRatio '{short(aspect)}', which cannot be read: correct it."
-        )
-    left, top = shares[0] * (width - scale * box[2]), shares[1] * (height - scale * box[3])
+    scale = max(sx, sy) if match[3] == "slice" else min(sx, sy)
+    left = ALIGNMENT[match[1]] * (width - scale * box[2])
+    top = ALIGNMENT[match[2]] * (height - scale * box[3])
     return Placement(a=scale, d=scale, e=left - scale * box[0], f=top - scale * box[1])
 
 
@@ -258,12 +254,9 @@ def reach(chain: Chain, direction: Point) -> float:
     for k, bulge in enumerate(chain.bulges):
         if bulge:
             (u, v), (x, y) = chain.points[k], chain.points[k + 1]
-            # Centre and radius of an arc of bulge b over a chord: half the chord times (1 - b²) / 2b and (1 +
-            # b²) / 2b.
-            off, radius = (
-                (1 - bulge * bulge) / (4 * bulge),
-                hypot(x - u, y - v) * (1 + bulge * bulge) / abs(4 * bulge),
-            )
+            # Centre and radius of an arc of bulge b: half the chord times (1 - b²) / 2b and (1 + b²) / 2b.
+            off = (1 - bulge * bulge) / (4 * bulge)
+            radius = hypot(x - u, y - v) * (1 + bulge * bulge) / abs(4 * bulge)
             top = ((u + x) / 2 - off * (y - v) + nx * radius, (v + y) / 2 + off * (x - u) + ny * radius)
             # A counter-clockwise arc is what lies right of its chord.
             if bulge * ((x - u) * (top[1] - v) - (y - v) * (top[0] - u)) < 0:

@@ -13,7 +13,7 @@ from workhold.files.outline.chain import Chain, Placement, counted
 from workhold.files.outline.curves import CurveReader
 from workhold.files.svg.document import DEEPEST, Declared, Document, Styles, href, local_name, short
 from workhold.files.svg.shapes import SHAPES
-from workhold.files.svg.style import INITIAL, Style, computed, link_of, refuse_effects
+from workhold.files.svg.style import INITIAL, Style, boundaries, computed, link_of, refuse_effects
 from workhold.files.svg.transforms import transform_of
 from workhold.files.svg.viewport import ShapeElement, Viewport, Window, convex, fitted, viewbox_of
 
@@ -21,20 +21,8 @@ __all__ = ["ElementNesting", "SvgWalk"]
 
 MOST_ELEMENTS = 1_000_000
 CONTAINERS = {"g", "a", "switch"}
-SILENT = {
-    "defs",
-    "symbol",
-    "style",
-    "title",
-    "desc",
-    "metadata",
-    "clipPath",
-    "mask",
-    "marker",
-    "pattern",
-    "filter",
-}
-SILENT |= {"linearGradient", "radialGradient", "view", "namedview"}
+SILENT = {"defs", "symbol", "style", "title", "desc", "metadata", "clipPath", "mask", "marker", "pattern"}
+SILENT |= {"filter", "linearGradient", "radialGradient", "view", "namedview"}
 FEATURES = "http://www.w3.org/TR/SVG11/feature#"
 MARKED = ("path", "line", "polyline", "polygon")
 
@@ -91,18 +79,17 @@ class SvgWalk:
         tag = local_name(element)
         if tag in SILENT:
             return
-        label = self.document.name(element) + nest.suffix
-        declarations = self.styles.of(element)
-        style = computed(declarations, nest.style, self.styles, label)
+        figure = self.figure(element, nest)
+        label = figure.label
+        style = computed(figure.declarations, nest.style, self.styles, label)
         if not (style.displayed and suits(element, label)):
             self.hidden += 1
             return
-        refuse_effects(declarations, label)
-        placement = nest.placement.after(transform_of(declarations, nest.viewport, label))
-        figure = ShapeElement(element, label, declarations, nest.viewport, closed=not style.stroked)
+        refuse_effects(figure)
+        placement = nest.placement.after(transform_of(figure))
         if tag == "use":
             placement = placement.after(Placement(e=figure.length("x"), f=figure.length("y")))
-        inner = self.clipped(element, evolve(nest, placement=placement, style=style), declarations, label)
+        inner = self.clipped(figure, evolve(nest, placement=placement, style=style))
         if element is self.document.root:
             if placement != nest.placement:
                 raise InputError(
@@ -121,6 +108,11 @@ class SvgWalk:
             self.visit_shape(figure, inner)
         else:
             self.ignored[tag] += style.shown
+
+    def figure(self, element: Element, nest: ElementNesting) -> ShapeElement:
+        """An element with its values and what messages call it."""
+        label = self.document.name(element) + nest.suffix
+        return ShapeElement(element, label, self.styles.of(element), nest.viewport)
 
     def visit_children(self, parent: Element, nest: ElementNesting) -> None:
         """Visits the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
@@ -155,10 +147,8 @@ class SvgWalk:
             self.ignored["marker"] += 1
         if nest.placement.flat:
             raise InputError(f"{label} has a transform that crushes it to a line: correct it.")
-        found = list(self.placed(figure, nest.placement))
-        if figure.closed and not style.even_odd and len(found) > 1:
-            from workhold.files.svg.style import boundaries
-
+        found = list(self.placed(figure, nest))
+        if not style.stroked and not style.even_odd and len(found) > 1:
             bounding = boundaries(found)
             self.painted_over += len(found) - len(bounding)
             found = bounding
@@ -174,14 +164,14 @@ class SvgWalk:
                 )
         self.chains += found
 
-    def placed(self, figure: ShapeElement, placement: Placement) -> Iterator[Chain]:
+    def placed(self, figure: ShapeElement, nest: ElementNesting) -> Iterator[Chain]:
         """The chains of a shape in mm; of a shape without stroke, what bounds its fill."""
         for shape in SHAPES[local_name(figure.element)](figure):
-            if figure.closed:
+            if not nest.style.stroked:
                 if len(shape.bulges) == 1 and not shape.bulges[0] and not shape.curved:
                     continue  # a line has nothing to fill
                 shape = shape.closed()
-            chain = self.curves.chain(shape.points, shape.bulges, shape.labels, shape.curved, placement)
+            chain = self.curves.chain(shape.points, shape.bulges, shape.labels, shape.curved, nest.placement)
             if chain is not None:
                 yield chain
 
@@ -214,19 +204,17 @@ class SvgWalk:
         InputError
             For a transform, size or reference point of a symbol, which programs draw differently.
         """
-        label = self.document.name(target) + nest.suffix
-        declarations = self.styles.of(target)
-        style = computed(declarations, nest.style, self.styles, label)
+        own = self.figure(target, nest)
+        label = own.label
+        style = computed(own.declarations, nest.style, self.styles, label)
         if not (style.displayed and suits(target, label)):
             raise InputError(
                 f"{label} is switched off itself, which programs take differently: switch off the use."
             )
-        refuse_effects(declarations, label)
-        inner = self.clipped(target, evolve(nest, style=style), declarations, label)
-        own = ShapeElement(target, label, declarations, nest.viewport)
-        sized = {name for name in ("width", "height") if use.given(name) is not None}
+        refuse_effects(own)
+        inner = self.clipped(own, evolve(nest, style=style))
         if local_name(target) == "symbol":
-            names = {"x", "y", "refX", "refY"} | ({"width", "height"} - sized)
+            names = ["x", "y", "refX", "refY", *(n for n in ("width", "height") if use.given(n) is None)]
             if any(own.given(name) is not None for name in names):
                 raise InputError(
                     f"{label} has a place or size, which programs draw differently: give them to the use."
@@ -246,7 +234,7 @@ class SvgWalk:
             For a transform, which programs draw differently, and for sizes that are not known.
         """
         element, label = figure.element, figure.label
-        if transform_of(figure.declarations, figure.viewport, label) != Placement():
+        if transform_of(figure) != Placement():
             raise InputError(f"{label} has a transform, which programs draw differently: put it on a group.")
         box = viewbox_of(element.get("viewBox"), label)
         sides: list[float | None] = []
@@ -272,9 +260,7 @@ class SvgWalk:
             width, height = box[2], box[3]
         self.visit_children(element, evolve(nest, placement=view, viewport=(width, height)))
 
-    def clipped(
-        self, element: Element, nest: ElementNesting, declarations: dict[str, list[Declared]], label: str
-    ) -> ElementNesting:
+    def clipped(self, figure: ShapeElement, nest: ElementNesting) -> ElementNesting:
         """The nest with the window of an element's ``clip-path``.
 
         Raises
@@ -282,6 +268,7 @@ class SvgWalk:
         InputError
             For clip paths other than one convex polygon.
         """
+        declarations, label, element = figure.declarations, figure.label, figure.element
         text = declarations["clip-path"][0].text if "clip-path" in declarations else "none"
         if text.lower() in ("none", "initial", "unset", ""):
             return nest
@@ -314,18 +301,13 @@ class SvgWalk:
             style = computed(values, style, self.styles, label)
             if "clip-path" in values or not (style.displayed and style.shown) or not suits(part, label):
                 raise error
-            refuse_effects(values, label)
-            placement = placement.after(transform_of(values, nest.viewport, self.document.name(part)))
-        if (
-            len(shapes) != 1
-            or local_name(shapes[0]) not in ("rect", "polygon", "path")
-            or not self.document.drawn(shapes[0])
-        ):
+            own = ShapeElement(part, self.document.name(part), values, nest.viewport)
+            refuse_effects(evolve(own, label=label))
+            placement = placement.after(transform_of(own))
+        if len(shapes) != 1 or not self.document.drawn(shapes[0]):
             raise error
-        figure = ShapeElement(
-            shapes[0], self.document.name(shapes[0]), self.styles.of(shapes[0]), nest.viewport, closed=True
-        )
-        outlines = list(SHAPES[local_name(shapes[0])](figure))
+        tag = local_name(shapes[0])
+        outlines = list(SHAPES[tag](own)) if tag in ("rect", "polygon", "path") else []
         if len(outlines) != 1 or any(outlines[0].bulges) or not convex(outlines[0].closed().points):
             raise error
         window = Window(tuple(map(placement, outlines[0].closed().points)), f"the clip-path of {label}")
@@ -354,10 +336,7 @@ class SvgWalk:
 def suits(element: Element, label: str) -> bool:
     """Whether an element's conditions hold (SVG 2, 5.9).
 
-    Raises
-    ------
-    InputError
-        For conditions that programs judge differently.
+    Raises InputError for conditions that programs judge differently.
     """
     if element.get("requiredExtensions") is not None:
         return False
