@@ -17,7 +17,7 @@ from workhold.fixels.fields import MIN_GAP, PEG_RADIUS, PITCH
 from workhold.fixels.making import made_from_table, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Change, Symmetry, Toolkit, Wording
+from workhold.fixels.toolkit import Arrangement, Change, Toolkit, Wording
 from workhold.units import Unit
 
 
@@ -25,18 +25,17 @@ from workhold.units import Unit
 class Press(Toolkit):
     """A press whose bed is a plate with three pegs, and whose ram carries one: they hold what lies between."""
 
-    kind: ClassVar[str] = "press"
-    table: ClassVar[FieldTable] = FieldTable(
+    kind = "press"
+    table = FieldTable(
         "press",
         "A press with pegs on its bed and its ram",
         (PITCH, PEG_RADIUS, MIN_GAP.shown(PageLabel("Smallest gap", "pitch"))),
     )
-    noun: ClassVar[str] = "press"
-    locked: ClassVar[str] = "a press, its ram"
-    arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("press", (3, 1)),)
-    clamping: ClassVar[int] = 1
-    symmetries: ClassVar[tuple[Symmetry, ...]] = ()
-    wording: ClassVar[Wording] = Wording(
+    noun = "press"
+    locked = "a press, its ram"
+    law = "vise"
+    arrangements = (Arrangement("press", (3, 1)),)
+    wording = Wording(
         two="two pegs of the bed",
         four="three pegs of the bed and one of the ram",
         inside="in this press",
@@ -45,14 +44,14 @@ class Press(Toolkit):
         backwards="the ram is lifted",
         holes="holes that the press does not have",
     )
-    setup_words: ClassVar[SetupWords] = SetupWords(
+    setup_words = SetupWords(
         standing="Pegs",
         located_by="Pegs of the bed",
         put="Put {peg}s in {holes}.",
         against="",
         touching="four pegs",
     )
-    page: ClassVar[PageWords] = PageWords("Press", "Close press", {"pitch": [15.0, 15.0], "peg_radius": 2.0})
+    page = PageWords("Press", "Close press", {"pitch": [15.0, 15.0], "peg_radius": 2.0})
 
     pitch: tuple[float, float]
     peg_radius: float
@@ -72,11 +71,6 @@ class Press(Toolkit):
         bed = Carrier("bed", *size, noun="jaw")
         travel = Travel(0.0, self.min_gap, None)
         return bed, Carrier("ram", *size, offset=(self.pitch[0], 0.0), travel=travel, noun="jaw")
-
-    @property
-    def law(self) -> str:
-        """That of jaws."""
-        return "vise"
 
     @property
     def gap(self) -> float:

@@ -155,7 +155,7 @@ def test_directions_of_the_page_are_those_of_the_plate() -> None:
     one, two = ([choice.value for choice in field.choices] for field in fields if field.name == "directions")
     assert one == list(DIRECTIONS)
     every = Plate(pitch=20, peg_radius=3, clamps=2, directions=list(DIRECTIONS))
-    assert {tuple(pair) for pair in two} == set(every.distinct_pairs) and len(two) == 6
+    assert {tuple(pair) for pair in two} == set(every.pushes) and len(two) == 6
 
 
 def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer) -> None:
