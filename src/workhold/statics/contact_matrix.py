@@ -236,9 +236,10 @@ class Touched:
             distances[on_wall & ~np.isnan(distances)] = np.inf
         if each == PEGS:
             return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
-        reactions = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)
-        inverses += pair_inverses(points, normals, reactions, self.length)
-        return ContactMatrices(points, normals, ends, edges, inverses, reactions)
+        closing = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)
+        inverses[:, :LOCATORS, :LOCATORS] += locators_inverse(wrenches(points, normals, self.length))
+        inverses[:, 3] += working_forces(closing)
+        return ContactMatrices(points, normals, ends, edges, inverses, closing)
 
     def locators(self, points: Array, faces: NDArray[np.int64]) -> ContactMatrices:
         """Contacts of the first carrier's pegs alone, with the inverses of the locators' wrenches; nothing closes.
@@ -311,12 +312,4 @@ def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) 
     out = np.zeros((len(points), 5, 2))
     out[:, :LOCATORS] = taken / push[:, None]
     out[:, LOCATORS, 0], out[:, LOCATORS + 1, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]
-    return out
-
-
-def pair_inverses(points: Array, normals: Array, reactions: Array, length: float) -> Array:
-    """Stand-ins for the inverses (N, 4, 5) with two clamps; see :class:`ContactMatrices`."""
-    out = np.zeros((len(points), 4, 5))
-    out[:, :LOCATORS, :LOCATORS] = locators_inverse(wrenches(points, normals, length))
-    out[:, 3] = working_forces(reactions)
     return out

@@ -17,7 +17,7 @@ from attrs import define, field, frozen
 from starlette.requests import Request
 
 from workhold.web.guard import ServerLimits
-from workhold.web.jobs import Jobs, ServerJob
+from workhold.web.jobs import Jobs
 from workhold.web.pool import Pool, PoolTask, StoppedError
 
 __all__ = ["ServerState", "address_of", "at_desk", "at_desk_while_heard", "state_of"]
@@ -114,10 +114,6 @@ class ServerState:
             with suppress(asyncio.CancelledError):
                 await sweeper
             await asyncio.gather(self.searchers.close(), self.desks.close())
-
-    def job(self, name: str) -> ServerJob | None:
-        """A job by its name."""
-        return self.jobs.get(name)
 
 
 def state_of(request: Request) -> ServerState:

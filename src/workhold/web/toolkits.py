@@ -16,12 +16,13 @@ from typing import Any
 from attrs import asdict, frozen
 
 from workhold.drawing.panel import arrangement_words
+from workhold.files.result.writer import tolerance_entry, toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit
 from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import Choice, ToolkitField
 
-__all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind"]
+__all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind", "toolkit_answer"]
 
 
 # How the page reads a form of field where it has no form of its own for it; choices are taken by "one" or
@@ -88,11 +89,11 @@ class Described:
     @property
     def roles(self) -> dict[str, str]:
         """The role of the carriers whose heights a field says, by the name of the field."""
-        rows = (row for row in table_of(kind_of(self.name)[0]).fields if row.form == "heights")
         any_heights = (1.0, 2.0)
         return {
             row.name: role
-            for row in rows
+            for row in table_of(kind_of(self.name)[0]).fields
+            if row.form == "heights"
             for role in toolkit_of(self.name, {**self.start, row.name: any_heights}).heights
         }
 
@@ -119,14 +120,13 @@ class Described:
 
 def hardware_answer() -> list[dict[str, Any]]:
     """Describes what every kind of toolkit may have for three dimensions, with the fields of each."""
-    tables = {name: kind.table for name, kind in HARDWARE.items()}
     return [
         {
             "name": name,
-            "title": table.summary,
-            "fields": [asdict(one) for row in table.fields for one in page_fields(row, name)],
+            "title": kind.table.summary,
+            "fields": [asdict(one) for row in kind.table.fields for one in page_fields(row, name)],
         }
-        for name, table in tables.items()
+        for name, kind in HARDWARE.items()
     ]
 
 
@@ -146,3 +146,18 @@ def page_kind(loaded: LoadedToolkit) -> str:
         if kind_of(one.name)[0] == loaded.kind and one.said.items() <= loaded.fields.items()
     ]
     return max(fits, key=lambda one: len(one.said)).name
+
+
+def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
+    """Describes a preset; its kind is one of those that the page has fields for."""
+    given = toolkit_fields(loaded.toolkit)
+    return {
+        "name": loaded.name,
+        "kind": page_kind(loaded),
+        "title": loaded.title,
+        "source": loaded.source,
+        "unit": loaded.unit.name,
+        "assumed": list(loaded.assumed),
+        "fields": {key: value for key, value in given.items() if key in loaded.fields},
+        "tolerance": tolerance_entry(loaded.tolerance),
+    }
