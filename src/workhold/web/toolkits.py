@@ -5,7 +5,6 @@ The page draws its fields from this alone, which comes from the data of the kind
 Glossary
 --------
 said : fields that a kind's name says by itself, such as the one column of a gripper.
-start : fields to begin with, in mm, where nobody has given any.
 """
 
 from __future__ import annotations
@@ -19,6 +18,7 @@ from workhold.drawing.panel import arrangement_words
 from workhold.files.result.writer import tolerance_entry, toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit
 from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
+from workhold.fixels.setup_words import PageWords
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import Choice, ToolkitField
 
@@ -65,15 +65,11 @@ class Described:
     Parameters
     ----------
     name : of the kind, or an alias of ``fixels.kinds``.
-    title : in a few words, to choose it by.
-    closes : what the button says that shows how it closes.
-    start : see the glossary.
+    words : what the page calls it, and the fields to begin with.
     """
 
     name: str
-    title: str
-    closes: str
-    start: Mapping[str, Any]
+    words: PageWords
 
     @property
     def said(self) -> Mapping[str, Any]:
@@ -94,23 +90,23 @@ class Described:
             row.name: role
             for row in table_of(kind_of(self.name)[0]).fields
             if row.form == "heights"
-            for role in toolkit_of(self.name, {**self.start, row.name: any_heights}).heights
+            for role in toolkit_of(self.name, {**self.words.start, row.name: any_heights}).heights
         }
 
     def answer(self) -> dict[str, Any]:
         """Describes the kind for the page."""
-        toolkit = toolkit_of(self.name, self.start)
+        toolkit = toolkit_of(self.name, self.words.start)
         types = {one.name: arrangement_words(one, toolkit) for one in toolkit.arrangements}
         return {
             "name": self.name,
             "kind": toolkit.kind,
-            "title": self.title,
+            "title": self.words.title,
             "noun": self.name if self.said else toolkit.noun,
             "mover": toolkit.moving.noun,
             "locked": toolkit.locked,
-            "closes": self.closes,
+            "closes": self.words.closes,
             "said": dict(self.said),
-            "start": dict(self.start),
+            "start": dict(self.words.start),
             "types": [{"name": name, "words": words} for name, words in types.items()],
             "fields": [asdict(one) for one in self.fields],
             "hardware": hardware_answer(),
@@ -130,7 +126,7 @@ def hardware_answer() -> list[dict[str, Any]]:
     ]
 
 
-DESCRIBED = tuple(Described(name, words.title, words.closes, words.start) for name, words in PAGES.items())
+DESCRIBED = tuple(Described(name, words) for name, words in PAGES.items())
 
 
 def kinds_answer() -> list[dict[str, Any]]:
