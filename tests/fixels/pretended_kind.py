@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
 from typing import ClassVar
 
 from workhold.fixels import kinds
 from workhold.fixels.carrier import Carrier, Travel
 from workhold.fixels.fields import MIN_GAP, PEG_RADIUS, PITCH
-from workhold.fixels.making import made_from_table, settle
+from workhold.fixels.making import lattice_carrier, made_from_table, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Change, Toolkit, Wording
-from workhold.units import Unit
+from workhold.fixels.toolkit import Arrangement, Toolkit, Wording
 
 
 @made_from_table
@@ -67,19 +65,13 @@ class Press(Toolkit):
     @property
     def carriers(self) -> tuple[Carrier, ...]:
         """The bed, and the ram beside it, which slides along x."""
-        size = self.pitch, self.columns, self.rows, self.peg_radius, self.peg_radius
-        bed = Carrier("bed", *size, noun="jaw")
-        travel = Travel(0.0, self.min_gap, None)
-        return bed, Carrier("ram", *size, offset=(self.pitch[0], 0.0), travel=travel, noun="jaw")
+        beside = {"offset": (self.pitch[0], 0.0), "travel": Travel(0.0, self.min_gap, None)}
+        return lattice_carrier(self, "bed", noun="jaw"), lattice_carrier(self, "ram", noun="jaw", **beside)
 
     @property
     def gap(self) -> float:
         """The smallest gap in mm."""
         return self.min_gap
-
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """None."""
-        yield from ()
 
 
 def become_known() -> None:

@@ -2,7 +2,7 @@
  * Two set-ups one after the other: the part turned over, held by faces that the first side leaves, and a switch between both.
  */
 import { ApiError, send } from "./api.js";
-import { byId, make, show } from "./dom.js";
+import { byId, field, make, show } from "./dom.js";
 import { snapshot } from "./link.js";
 import { isNever } from "./part-drawing.js";
 import { fileRead, readOver, resumeFile, usePart } from "./part-panel.js";
@@ -79,7 +79,7 @@ function write() {
       click: () => toggleCut(number), pointerenter: () => partDrawing.point(number), pointerleave: () => partDrawing.point(null),
     }, String(number))));
   const file = fileRead();
-  /** @type {HTMLInputElement} */ (byId("turn-height")).placeholder = file?.how.peg_height ? fieldLength(file.how.peg_height) : "the part’s";
+  field("turn-height").placeholder = file?.how.peg_height ? fieldLength(file.how.peg_height) : "the part’s";
   byId("second-side").textContent = `Second side: ${axisWords(turnedOver(solid.axis))} up`;
   byId("second-side").toggleAttribute("disabled", !file || turning || searching());
   byId("turn-words").textContent = turning ? "The part is being turned over …" : file
@@ -107,7 +107,7 @@ export function sameFaces(part, other, numbers) {
 
 /** How far pegs reach on the second side, in mm; as on the first where nobody says. */
 function pegHeight(file) {
-  const value = readLength(/** @type {HTMLInputElement} */ (byId("turn-height")).value);
+  const value = readLength(field("turn-height").value);
   return value !== null && value > 0 ? value : file.how.peg_height;
 }
 
