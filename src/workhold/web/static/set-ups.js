@@ -12,8 +12,7 @@ import { searching, start, takeUp } from "./search.js";
 import { partDrawing } from "./stage-panel.js";
 import { axisWords, turnedOver } from "./standing-question.js";
 import { change, on, state } from "./state.js";
-import { sideSwitch, turnCard } from "./turn-card.js";
-import { fieldLength, readLength } from "./units.js";
+import { fieldLength, readLength, unitWord } from "./units.js";
 
 /** @typedef {import("./link.js").Kept} Kept */
 /** @typedef {{shown: number, kept: (Kept|null)[]}} Sides which side is on show, and what restores each that is not */
@@ -174,4 +173,22 @@ export function fileOf(number) {
 export function firstSideQuery(number) {
   const first = number ? setUps().find((one) => one.number === 0) : undefined;
   return first ? { first_side: JSON.stringify({ job: first.job, rank: first.rank, cut: first.known.cut ?? first.known.avoid }) } : {};
+}
+
+/** The card that offers the second side of a part. */
+function turnCard() {
+  return make("section.card.turn.wide", { id: "turn-card", "aria-labelledby": "turn-title", hidden: true },
+    make("h2", { id: "turn-title" }, "Then the second side"),
+    make("p.small", { id: "turn-words" }),
+    make("div.chips", { id: "turn-faces" }),
+    make("div.row-of-buttons", {},
+      make("button.strong", { id: "second-side", type: "button" }, "Second side"), " ",
+      make("label.inline", {}, "Peg height there ", make("span.unit", {}, unitWord()), make("input.short", { id: "turn-height", inputmode: "decimal", autocomplete: "off" }))),
+    make("div.trouble-box", { id: "turn-trouble", role: "alert", hidden: true }));
+}
+
+/** A button for each side. @param {string[]} words what the sides are called */
+function sideSwitch(words) {
+  return make("div.segmented", { id: "sides", role: "group", "aria-label": "Side of the part", hidden: true },
+    ...words.map((word, number) => make("button", { id: `side-${number}`, type: "button", "aria-pressed": "false" }, word)));
 }
