@@ -224,12 +224,14 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
     "pitch": pair,
     "span": partial(
         two_lengths,
-        wrong="travel {value} is not two lengths: give the least and the most that the clamp stretches, in mm.",
+        wrong="travel {value} is not two lengths: give the least and the most that the clamp stretches, "
+        "in mm.",
     ),
     "flat": flat_of,
     "heights": partial(
         two_lengths,
-        wrong="heights {value} are not two: give the lower and the upper end of what touches the part, in mm.",
+        wrong="heights {value} are not two: give the lower and the upper end of what touches the part, "
+        "in mm.",
     ),
     "directions": direction_names,
 }

@@ -141,8 +141,7 @@ def rows_answer(
 def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     """Describes what is shown of each carrier, then of each wall and each clamp.
 
-    ``origin`` is the hole in column 0 and row 0, and ``pegs`` are the numbers of the pegs. ``plate`` are the
-    corners of what carries them: a plate, a wall, or the room of a clamp. ``used_columns``
+    ``origin`` is the hole in column 0 and row 0, and ``pegs`` are the numbers of the pegs. ``used_columns``
     and ``used_rows`` are those of the pegs and of clamps. ``measured`` are the upper or right ends of the
     axes between which the travel is measured. A clamp has no lattice; its body is under ``clamp``.
     """
@@ -157,7 +156,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
             "pitch": each.carrier.pitch,
             "columns": [each.columns[0], each.columns[-1]],
             "rows": [each.rows[0], each.rows[-1]],
-            "plate": corners(each.plate),
+            **body_answer(each.plate),
             "hole_radius": each.hole_radius,
             "names_at": each.names_at,
             "pegs": [next(numbers) for _ in each.pegs],
@@ -176,7 +175,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     walls = [
         {
             **lattice_of_none(each.carrier),
-            "plate": corners(each.bar),
+            **body_answer(each.bar),
             "pegs": [next(numbers) for _ in each.ends],
             "peg_radius": 0.0,
             "clamping": None,
@@ -188,7 +187,7 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
     clamps = [
         {
             **lattice_of_none(each.carrier),
-            "plate": corners(each.room),
+            **body_answer(each.room),
             "pegs": [next(numbers)],
             "peg_radius": each.carrier.peg_radius,
             "clamping": each.clamping,
@@ -205,6 +204,11 @@ def carriers_answer(seen: Shown) -> list[dict[str, Any]]:
         for each, axes in zip(seen.clamps, of_clamps, strict=True)
     ]
     return lattices + walls + clamps
+
+
+def body_answer(body: Box) -> dict[str, list[float]]:
+    """Describes the corners of what carries the pegs: a plate, a wall, or the room of a clamp."""
+    return {"plate": corners(body)}
 
 
 def corners(box: Box) -> list[float]:
