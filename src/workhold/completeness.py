@@ -81,7 +81,9 @@ def completed(
 ) -> Verification:
     """A verification with the faults that a new search of the listing's query finds.
 
-    When the search is cancelled, the verification is returned unchanged.Parameters
+    When the search is cancelled, the verification is returned unchanged.
+
+    Parameters
     ----------
     watching : ``progress`` and ``cancel``, see :func:`workhold.answer`.
     """

@@ -18,6 +18,7 @@ CUT = " ... "
 
 def plain(text: str) -> str:
     """Text without letters that steer a terminal, turn the direction of writing, or break a line or string.
+
     Examples
     --------
     >>> plain("a\\x1b]0;b\\u202ec\\td")

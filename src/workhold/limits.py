@@ -104,7 +104,9 @@ MOST_THREADS = 1_000
 def refuse_little_space(needed: int, what: str, remedy: str) -> None:
     """Refuses work that needs more address space than this process may have.
 
-    Libraries would end the process without a message.Parameters
+    Libraries would end the process without a message.
+
+    Parameters
     ----------
     needed : bytes.
 

@@ -8,35 +8,32 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
 from typing import ClassVar
 
 from workhold.fixels import kinds
 from workhold.fixels.carrier import Carrier, Travel
 from workhold.fixels.fields import MIN_GAP, PEG_RADIUS, PITCH
-from workhold.fixels.making import made_from_table, settle
+from workhold.fixels.making import lattice_carrier, made_from_table, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Change, Symmetry, Toolkit, Wording
-from workhold.units import Unit
+from workhold.fixels.toolkit import Arrangement, Toolkit, Wording
 
 
 @made_from_table
 class Press(Toolkit):
     """A press whose bed is a plate with three pegs, and whose ram carries one: they hold what lies between."""
 
-    kind: ClassVar[str] = "press"
-    table: ClassVar[FieldTable] = FieldTable(
+    kind = "press"
+    table = FieldTable(
         "press",
         "A press with pegs on its bed and its ram",
         (PITCH, PEG_RADIUS, MIN_GAP.shown(PageLabel("Smallest gap", "pitch"))),
     )
-    noun: ClassVar[str] = "press"
-    locked: ClassVar[str] = "a press, its ram"
-    arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("press", (3, 1)),)
-    clamping: ClassVar[int] = 1
-    symmetries: ClassVar[tuple[Symmetry, ...]] = ()
-    wording: ClassVar[Wording] = Wording(
+    noun = "press"
+    locked = "a press, its ram"
+    law = "vise"
+    arrangements = (Arrangement("press", (3, 1)),)
+    wording = Wording(
         two="two pegs of the bed",
         four="three pegs of the bed and one of the ram",
         inside="in this press",
@@ -45,14 +42,14 @@ class Press(Toolkit):
         backwards="the ram is lifted",
         holes="holes that the press does not have",
     )
-    setup_words: ClassVar[SetupWords] = SetupWords(
+    setup_words = SetupWords(
         standing="Pegs",
         located_by="Pegs of the bed",
         put="Put {peg}s in {holes}.",
         against="",
         touching="four pegs",
     )
-    page: ClassVar[PageWords] = PageWords("Press", "Close press", {"pitch": [15.0, 15.0], "peg_radius": 2.0})
+    page = PageWords("Press", "Close press", {"pitch": [15.0, 15.0], "peg_radius": 2.0})
 
     pitch: tuple[float, float]
     peg_radius: float
@@ -68,24 +65,13 @@ class Press(Toolkit):
     @property
     def carriers(self) -> tuple[Carrier, ...]:
         """The bed, and the ram beside it, which slides along x."""
-        size = self.pitch, self.columns, self.rows, self.peg_radius, self.peg_radius
-        bed = Carrier("bed", *size, noun="jaw")
-        travel = Travel(0.0, self.min_gap, None)
-        return bed, Carrier("ram", *size, offset=(self.pitch[0], 0.0), travel=travel, noun="jaw")
-
-    @property
-    def law(self) -> str:
-        """That of jaws."""
-        return "vise"
+        beside = {"offset": (self.pitch[0], 0.0), "travel": Travel(0.0, self.min_gap, None)}
+        return lattice_carrier(self, "bed", noun="jaw"), lattice_carrier(self, "ram", noun="jaw", **beside)
 
     @property
     def gap(self) -> float:
         """The smallest gap in mm."""
         return self.min_gap
-
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """None."""
-        yield from ()
 
 
 def become_known() -> None:

@@ -1,4 +1,4 @@
-"""Constructors are made from the table of fields: defaults, bounds and limits are those of each row."""
+"""Constructors are made from the table of fields: defaults, bounds and limits are those of each row. Kinds have names."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from toolkit_values import given
+from workhold import Plate, Vise
 from workhold.errors import InputError
 from workhold.fixels.kinds import KINDS, TABLES, toolkit_of
 from workhold.fixels.table import ToolkitField
@@ -129,3 +130,29 @@ def test_a_flat_is_as_wide_as_its_peg_lets_it_be_and_given_by_name() -> None:
         KINDS["vise"](10, 2, 5, flat=5.5)
     with pytest.raises(TypeError):
         KINDS["vise"](10, 2, 5, None, 10, None, 0, 5, (), 3)
+
+
+def test_aliases_are_kinds_with_fields_of_their_own() -> None:
+    """A gripper is a vise of one column, and a plate needs no columns."""
+    assert toolkit_of("gripper", {"pitch": 10, "peg_radius": 3}) == Vise(pitch=10, columns=1, peg_radius=3)
+    assert toolkit_of("plate", {"pitch": 10, "peg_radius": 3}) == Plate(pitch=10, peg_radius=3)
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields", "words"),
+    [
+        ("plate", {"pitch": 10, "peg_radius": 3, "min_gap": 6}, "has no min gap"),
+        ("vise", {"pitch": 10, "peg_radius": 3, "columns": 1, "travel": (1, 2)}, "has no travel"),
+        ("vise", {"pitch": 10, "peg_radius": 3}, "the vise's columns is not given"),
+        (
+            "edge of nowhere",
+            {},
+            "is not known: choose among vise, opening-vise, translating-clamp, edge, flat-jaw, gripper, plate",
+        ),
+    ],
+)
+def test_what_a_kind_does_not_have_is_refused_in_one_sentence(
+    kind: str, fields: dict[str, object], words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        toolkit_of(kind, fields)

@@ -514,7 +514,7 @@ def test_listings_and_rankings_of_two_clamps_are_refused_where_there_is_one() ->
 
 def test_flat_directions_are_all_pairs_and_the_usual_ones_depend_on_turns() -> None:
     names = Plate(20, 3, clamps=2, directions=["-x", "+x", "-y", "+y"])
-    assert len(names.distinct_pairs) == 6 and len(names.directions) == 10
+    assert len(names.pushes) == 6 and len(names.directions) == 10
     assert Plate(20, 3, clamps=2).directions == (("-x", "-y"),)
     assert Plate((20, 16), 3, clamps=2).directions == (("-x", "-y"), ("-x", "+y"))
     assert Plate(20, 3, clamps=2, directions=[("-y", "-x")]).directions == (("-x", "-y"),)

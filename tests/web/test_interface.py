@@ -1,4 +1,7 @@
-"""The interface as its description tells it: versions, the shapes of answers, and examples that are tried."""
+"""The interface as its description tells it: versions, the shapes of answers, and examples that are tried.
+
+Whatever is asked, the server answers with what is wrong and never with a mistake of its own.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from pydantic import ValidationError
-from running_server import SQUARE, RunningServer, request
+from running_server import PATIENCE, SQUARE, RunningServer, request
 
 from workhold.web.app import create_app
 from workhold.web.description import (
@@ -205,3 +211,43 @@ def test_a_file_may_be_as_large_at_each_version(server: RunningServer) -> None:
         for path in ("parts", "parts/survey"):
             assert server.client.post(f"{base}/{path}", content=large).status_code != 413
         assert server.client.post(f"{base}/parts/check", content=large).status_code == 413
+
+
+TRIED = {
+    f"{operation.ok().method} {operation.ok().path}".upper(): operation.ok()
+    for operation in schemathesis.openapi.from_dict(create_app().openapi()).get_all_operations()
+}
+
+
+@pytest.fixture(scope="module")
+def job(server: RunningServer) -> str:
+    """The name of a job that is done."""
+    return server.done(request()).rpartition("/")[2]
+
+
+@pytest.mark.parametrize("name", TRIED)
+def test_no_request_brings_out_a_mistake(server: RunningServer, job: str, name: str) -> None:
+    operation = TRIED[name]
+
+    @given(data=st.data(), exists=st.booleans())
+    @settings(
+        max_examples=12,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    def answers(data: Any, exists: bool) -> None:
+        case = data.draw(operation.as_strategy())
+        if exists and "name" in case.path_parameters and operation.method.upper() != "DELETE":
+            case.path_parameters["name"] = job
+        answer = case.call(base_url=str(server.client.base_url), timeout=PATIENCE)
+        assert answer.status_code < 500, answer.text
+        if answer.status_code >= 400:
+            assert answer.json()["error"].endswith("."), answer.text
+
+    answers()
+
+
+def test_every_operation_is_asked() -> None:
+    assert len(TRIED) >= 19

@@ -46,8 +46,8 @@ def test_every_field_of_a_kind_is_on_the_page(one: Described) -> None:
     for _, group in groupby(sorted(one.fields, key=lambda field: field.name), key=lambda field: field.name):
         alike = list(group)
         assert len({json.dumps(dict(field.when)) for field in alike}) == len(alike)
-    assert all(field.name in one.start for field in one.fields if field.hint is None and not field.when)
-    assert asked({"kind": one.name, **one.start}) == toolkit_of(one.name, one.start)
+    assert all(field.name in one.words.start for field in one.fields if field.hint is None and not field.when)
+    assert asked({"kind": one.name, **one.words.start}) == toolkit_of(one.name, one.words.start)
 
 
 @pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
@@ -56,7 +56,7 @@ def test_every_choice_can_be_asked_for(one: Described) -> None:
     for field in one.fields:
         for choice in field.choices:
             value = [choice.value] if field.form == "several" else choice.value
-            toolkit = asked({"kind": one.name, **one.start, **field.when, field.name: value})
+            toolkit = asked({"kind": one.name, **one.words.start, **field.when, field.name: value})
             assert json.loads(json.dumps(getattr(toolkit, field.name))) == json.loads(json.dumps(value))
 
 
@@ -79,7 +79,7 @@ def test_the_role_of_every_field_of_heights_is_told(one: Described) -> None:
     """So that the page asks for the outlines of the carriers that it gives heights."""
     named = {name: [2.0 + k, 9.0] for k, name in enumerate(one.roles)}
     assert set(named) == {field.name for field in one.fields if field.name.endswith("_heights")} and named
-    made = asked({"kind": one.name, **one.start, **named})
+    made = asked({"kind": one.name, **one.words.start, **named})
     assert {one.roles[name]: tuple(ends) for name, ends in named.items()} == made.heights
 
 
@@ -155,7 +155,7 @@ def test_directions_of_the_page_are_those_of_the_plate() -> None:
     one, two = ([choice.value for choice in field.choices] for field in fields if field.name == "directions")
     assert one == list(DIRECTIONS)
     every = Plate(pitch=20, peg_radius=3, clamps=2, directions=list(DIRECTIONS))
-    assert {tuple(pair) for pair in two} == set(every.distinct_pairs) and len(two) == 6
+    assert {tuple(pair) for pair in two} == set(every.pushes) and len(two) == 6
 
 
 def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer) -> None:

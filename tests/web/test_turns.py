@@ -191,7 +191,7 @@ def test_a_proxy_is_believed_only_when_it_is_trusted(shared: RunningServer, othe
     """The trusted proxy's word tells one client from another; what anybody else says of itself counts for nothing."""
     for client, said, counted in ((shared.client, "10.1.2.3", "10.1.2.3"), (other, "10.1.2.4", OTHER)):
         answer = client.post("/api/jobs", json=request(), headers={"X-Forwarded-For": said})
-        job = shared.state.job(answer.json()["job"])
+        job = shared.state.jobs.get(answer.json()["job"])
         assert job is not None and job.address == counted
         shared.outcome(answer.json()["url"])
 

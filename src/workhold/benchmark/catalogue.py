@@ -36,14 +36,13 @@ from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "COMMON",
     "FIGURE_KEYS",
     "FORMAT",
     "SetEntry",
     "SetText",
     "data_bytes",
-    "data_names",
     "manifest",
-    "parts_of",
     "query_of",
     "set_named",
     "set_text",
@@ -53,6 +52,8 @@ __all__ = [
 
 HOME = "benchmark"
 MANIFEST = "manifest.json"
+# Files that belong to every copy of the benchmark, beside the workpieces.
+COMMON = (MANIFEST, "check.py", "set.schema.json", "entry.schema.json")
 FORMAT = "workhold-benchmark/1"
 # The figures that the model defines and that the points of contact alone decide.
 FIGURE_KEYS = ("closure_margin", "clamp_amplification", "wrench_radius", "location_error", "clamp_freedom")
@@ -97,11 +98,6 @@ def data_bytes(name: str) -> bytes:
     return (files("workhold") / "data" / HOME).joinpath(*name.split("/")).read_bytes()
 
 
-def data_names() -> tuple[str, ...]:
-    """The names of the files that belong to every copy of the benchmark, beside the workpieces."""
-    return (MANIFEST, "check.py", "set.schema.json", "entry.schema.json")
-
-
 @cache
 def manifest() -> Mapping[str, Any]:
     """The manifest as it is written."""
@@ -126,11 +122,6 @@ def sets() -> tuple[SetEntry, ...]:
     )
 
 
-def parts_of(chosen: Sequence[SetEntry]) -> tuple[str, ...]:
-    """The names of the workpieces of some sets, each once."""
-    return tuple(dict.fromkeys(one.part for one in chosen))
-
-
 def set_named(name: str) -> SetEntry:
     """The set of a name.
 
@@ -147,21 +138,6 @@ def set_named(name: str) -> SetEntry:
     raise InputError(f"no set of the benchmark has the name {name[:80]!r}: {remedy}")
 
 
-def workpiece_of(part: str) -> Workpiece:
-    """A workpiece of the benchmark.
-
-    Raises
-    ------
-    InputError
-        When its file is not the one that the manifest knows.
-    """
-    content = data_bytes(f"parts/{part}.json")
-    if sha256(content).hexdigest() != manifest()["workpieces"][part]["sha256"]:
-        raise InputError(f"the benchmark's workpiece {part} has been changed: install workhold anew.")
-    entries = json.loads(content)
-    return Workpiece.from_loops(entries["name"], entries["loops"])
-
-
 def query_of(entry: SetEntry) -> Query:
     """What is asked to make the list of a set.
 
@@ -170,9 +146,12 @@ def query_of(entry: SetEntry) -> Query:
     InputError
         When the workpiece's file is not the one that the manifest knows.
     """
-    given = dict(entry.toolkit)
+    content = data_bytes(f"parts/{entry.part}.json")
+    if sha256(content).hexdigest() != manifest()["workpieces"][entry.part]["sha256"]:
+        raise InputError(f"the benchmark's workpiece {entry.part} has been changed: install workhold anew.")
+    part, given = json.loads(content), dict(entry.toolkit)
     toolkit = toolkit_of(given.pop("kind"), given)
-    return Query(workpiece_of(entry.part), toolkit, listing=entry.listing)
+    return Query(Workpiece.from_loops(part["name"], part["loops"]), toolkit, listing=entry.listing)
 
 
 def set_text(name: str, result: Result) -> SetText:

@@ -11,11 +11,10 @@ from typing import Any
 from attrs import frozen
 
 from workhold.benchmark.catalogue import (
+    COMMON,
     SetEntry,
     data_bytes,
-    data_names,
     file_text,
-    parts_of,
     query_of,
     set_named,
     set_text,
@@ -85,8 +84,7 @@ def made_sets(
     progress : called with the share of the sets that are done and the fixtures in them.
     cancel : when set, no further set is made.
     """
-    total, fixtures = sum(one.size + 200 for one in chosen), 0
-    done = 0
+    total, fixtures, done = sum(one.size + 200 for one in chosen), 0, 0
     for entry in chosen:
         made = made_list(entry, threads, cancel)
         if made is None:
@@ -109,7 +107,7 @@ def made_sets(
 def write_common(chosen: Sequence[SetEntry], folder: Path) -> None:
     """Writes manifest, checker, schemas and the workpieces of some sets into a folder."""
     (folder / "parts").mkdir(parents=True, exist_ok=True)
-    for name in (*data_names(), *(f"parts/{part}.json" for part in parts_of(chosen))):
+    for name in (*COMMON, *(f"parts/{part}.json" for part in {one.part for one in chosen})):
         write_bytes(folder / name, data_bytes(name))
 
 

@@ -206,15 +206,9 @@ class Places:
     @places.default
     def all_places(self) -> list[Array]:
         """The places of all fixtures."""
-        low, high = (np.array(corner) for corner in (self.box[:2], self.box[2:]))
-        scale = float(np.hypot(*(high - low)) / 2)
-        return [place_of(one, scale) for one in self.entered]
-
-    @property
-    def box(self) -> Array:
-        """The bounding box of the vertices of the part."""
         points = np.concatenate([loop[:, :2] for loop in self.part.loops])
-        return np.concatenate([points.min(0), points.max(0)])
+        scale = float(np.hypot(*np.ptp(points, axis=0)) / 2)
+        return [place_of(one, scale) for one in self.entered]
 
     def images(self, place: Array) -> list[Array]:
         """A place under all rotations of the part onto itself, the place itself first."""
@@ -292,12 +286,11 @@ def compared(complete: Places, theirs: Places, tolerance: float, symmetric: bool
             repeated.append(number)
         hits |= known
         met.add(own)
-    missed = tuple(number for number in range(len(complete.places)) if number not in hits)
     return Comparison(
         listed=len(complete.places),
         theirs=len(theirs.places),
         found=tuple(sorted(hits)),
-        missed=missed,
+        missed=tuple(number for number in range(len(complete.places)) if number not in hits),
         extra=tuple(extra),
         repeated=tuple(repeated),
     )

@@ -9,57 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import ClassVar
+from typing import Any
 
+from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.fields import (
-    ALL_PAIRS,
-    CLAMP_HEIGHTS,
-    CLAMP_RADIUS,
-    CLAMPS,
-    DIRECTION,
-    FLAT,
-    LOCATOR_HEIGHTS,
-    ON_A_PLATE,
-    ONE_CLAMP,
-    PEG_RADIUS,
-    PITCH,
-    TRAVEL,
-    TWO_CLAMPS,
-    WALL_HEIGHTS,
-    WALL_OFFSET,
-    WAYS,
-)
 from workhold.fixels.making import finer, made_from_table, wall_carrier
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Carrier, Change, Wording
+from workhold.fixels.toolkit import Carrier, Change, Wording
 from workhold.units import Unit
 
 __all__ = ["Fence"]
-
-
-FIELDS = FieldTable(
-    "fence",
-    "A fence with a locator and a clamp",
-    (
-        *ON_A_PLATE,
-        WALL_OFFSET,
-        CLAMP_RADIUS,
-        TRAVEL,
-        CLAMPS,
-        DIRECTION.shown(
-            PageLabel("The clamp pushes", "any way", several=True, choices=WAYS, when=ONE_CLAMP),
-            PageLabel("The clamps push", "down and aside", several=True, choices=ALL_PAIRS, when=TWO_CLAMPS),
-        ),
-        FLAT,
-        LOCATOR_HEIGHTS,
-        CLAMP_HEIGHTS,
-        WALL_HEIGHTS.shown(PageLabel("Heights of the fence", "as all pegs"), figure="heights of the fence"),
-    ),
-)
 
 
 @made_from_table
@@ -91,10 +53,41 @@ class Fence(Plate):
     ('-x', '+x', '-y', '+y')
     """
 
-    kind: ClassVar[str] = "edge"
-    table: ClassVar[FieldTable] = FIELDS
-    noun: ClassVar[str] = "fence"
-    wording: ClassVar[Wording] = Wording(
+    kind = "edge"
+    table = FieldTable(
+        "fence",
+        "A fence with a locator and a clamp",
+        (
+            *fields.ON_A_PLATE,
+            fields.WALL_OFFSET,
+            fields.CLAMP_RADIUS,
+            fields.TRAVEL,
+            fields.CLAMPS,
+            fields.DIRECTION.shown(
+                PageLabel(
+                    "The clamp pushes", "any way", several=True, choices=fields.WAYS, when=fields.ONE_CLAMP
+                ),
+                PageLabel(
+                    "The clamps push",
+                    "down and aside",
+                    several=True,
+                    choices=fields.ALL_PAIRS,
+                    when=fields.TWO_CLAMPS,
+                ),
+            ),
+            fields.FLAT,
+            fields.LOCATOR_HEIGHTS,
+            fields.CLAMP_HEIGHTS,
+            fields.WALL_HEIGHTS.shown(
+                PageLabel("Heights of the fence", "as all pegs"), figure="heights of the fence"
+            ),
+        ),
+    )
+    noun = "fence"
+    law = "fence"
+    names = ("edge", "edge2")
+    locating = (1, 2)
+    wording = Wording(
         two="fence and locator",
         four="fence, locator and clamp",
         inside="on this fence",
@@ -119,7 +112,7 @@ class Fence(Plate):
             "against fence and locator.",
         ),
     )
-    setup_words: ClassVar[SetupWords] = SetupWords(
+    setup_words = SetupWords(
         standing="Fence and locator",
         located_by="Fence and locator",
         put=(
@@ -130,55 +123,29 @@ class Fence(Plate):
         touching="flush",
         resting="flush on the fence",
     )
-
-    page: ClassVar[PageWords] = PageWords(
+    page = PageWords(
         "Fence with a stop, one clamp or two",
         "Close clamp",
-        {PITCH.name: [20.0, 20.0], PEG_RADIUS.name: 3.0, WALL_OFFSET.name: 10.0, CLAMPS.name: 1},
+        {
+            fields.PITCH.name: [20.0, 20.0],
+            fields.PEG_RADIUS.name: 3.0,
+            fields.WALL_OFFSET.name: 10.0,
+            fields.CLAMPS.name: 1,
+        },
     )
 
     wall_offset: float
     wall_heights: Heights | None
 
     @property
-    def usual_directions(self) -> tuple[str, ...]:
-        """All four."""
-        return tuple(DIRECTIONS)
+    def usual_directions(self) -> tuple[Any, ...]:
+        """All directions; of two clamps one down onto the fence, the other along it."""
+        return (("-x", "-y"), ("+x", "-y")) if self.is_paired else tuple(DIRECTIONS)
 
     @property
-    def usual_pairs(self) -> tuple[tuple[str, str], ...]:
-        """One clamp down onto the fence, the other along it."""
-        return ("-x", "-y"), ("+x", "-y")
-
-    @property
-    def distinct_directions(self) -> tuple[str, ...]:
-        """All directions: the fence turns with the plate."""
-        if self.is_paired:
-            return tuple(name for name in DIRECTIONS if any(name in pair for pair in self.directions))
-        return self.directions
-
-    @property
-    def distinct_pairs(self) -> tuple[tuple[str, str], ...]:
-        """All pairs of directions."""
-        return self.directions
-
-    @property
-    def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """A locator, the two ends of the fence's contact and a clamp, or two, once for each direction."""
-        names = self.distinct_directions
-        if not self.is_paired:
-            return tuple(
-                Arrangement("edge", (1, 2, *(int(other == name) for other in names)), name) for name in names
-            )
-        return tuple(
-            Arrangement("edge2", (1, 2, *(pair.count(name) for name in names)), " ".join(pair))
-            for pair in self.directions
-        )
-
-    @property
-    def law(self) -> str:
-        """The law of a fence, for any number of clamps."""
-        return "fence"
+    def pushes(self) -> tuple[tuple[str, ...], ...]:
+        """The directions of the clamps of one fixture; all differ, because the fence turns with the plate."""
+        return self.asked_pushes
 
     @property
     def datum(self) -> Datum:
@@ -194,9 +161,11 @@ class Fence(Plate):
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp in all directions, and half the pitch."""
         if not self.is_paired:
-            yield Change("with a second clamp", {CLAMPS.name: 2, DIRECTION.name: None})
+            yield Change("with a second clamp", {fields.CLAMPS.name: 2, fields.DIRECTION.name: None})
         if not self.is_paired and len(self.directions) < len(DIRECTIONS):
-            yield Change("with the clamp in any of the four directions", {DIRECTION.name: tuple(DIRECTIONS)})
+            yield Change(
+                "with the clamp in any of the four directions", {fields.DIRECTION.name: tuple(DIRECTIONS)}
+            )
         yield from finer(self)
 
     @cached_property

@@ -57,7 +57,6 @@ ALL_PAIRS = tuple(Choice([*two], pair_words(*two)) for two in combinations_with_
 PITCH = ToolkitField(
     "pitch",
     "pitch",
-    "X[,Y]",
     "Distance between neighbouring holes, one for both directions or X,Y.",
     (PageLabel("Pitch", is_usual=True),),
     default=REQUIRED,
@@ -67,7 +66,6 @@ PITCH = ToolkitField(
 COLUMNS = ToolkitField(
     "columns",
     "count",
-    "N",
     "Columns of holes on each jaw, or on the plate: as many as needed if not given.",
     (PageLabel("Columns a jaw", is_usual=True),),
     default=REQUIRED,
@@ -78,7 +76,6 @@ COLUMNS = ToolkitField(
 PEG_RADIUS = ToolkitField(
     "peg_radius",
     "length",
-    "LENGTH",
     "Radius of the pegs where they touch the part.",
     (PageLabel("Peg radius", is_usual=True),),
     default=REQUIRED,
@@ -89,7 +86,6 @@ PEG_RADIUS = ToolkitField(
 BODY_RADIUS = ToolkitField(
     "body_radius",
     "length",
-    "LENGTH",
     "Radius of the pegs' thickest part, such as a shoulder below the part; the peg radius if not given.",
     (PageLabel("Shoulder radius", "peg radius"),),
     figure="radius of the pegs' bodies",
@@ -103,7 +99,6 @@ BODY_RADIUS = ToolkitField(
 FLAT = ToolkitField(
     "flat",
     "flat",
-    "DISTANCE[,WIDTH/2]",
     (
         "Pegs with a flat so far from their centre, turned so that it lies on straight faces, and half its "
         "width."
@@ -115,7 +110,6 @@ FLAT = ToolkitField(
 ROWS = ToolkitField(
     "rows",
     "count",
-    "N",
     "Rows of holes; as many as needed if not given.",
     (PageLabel("Rows a jaw", "as needed"),),
     lifted=Lifted("rows of holes", "holes", "with as many rows as needed"),
@@ -124,7 +118,6 @@ ROWS = ToolkitField(
 BLOCKED = ToolkitField(
     "blocked",
     "holes",
-    "HOLES",
     "Holes that no peg can stand in: L-B3,R-A1; L-B is a whole column. May be repeated.",
     (PageLabel("Blocked holes", "L-B3, R-A"),),
     default=(),
@@ -138,7 +131,6 @@ BLOCKED = ToolkitField(
 MIN_GAP = ToolkitField(
     "min_gap",
     "length",
-    "LENGTH",
     "Smallest distance along x from a left peg's centre to a right peg's; the x pitch if not given.",
     (PageLabel("Smallest gap", "pitch x"),),
     figure="smallest gap between left and right pegs",
@@ -150,7 +142,6 @@ MIN_GAP = ToolkitField(
 MAX_OPENING = ToolkitField(
     "max_opening",
     "length",
-    "LENGTH",
     "Largest distance from the left jaw's last column to the right jaw's first; no limit if not given.",
     (PageLabel("Largest opening", "no limit"),),
     figure="largest opening",
@@ -163,7 +154,6 @@ MAX_OPENING = ToolkitField(
 ROW_OFFSET = ToolkitField(
     "row_offset",
     "length",
-    "LENGTH",
     "Height of the right jaw's rows above the left jaw's.",
     (PageLabel("Row offset", "0"),),
     figure="right rows above left rows",
@@ -174,7 +164,6 @@ ROW_OFFSET = ToolkitField(
 CLAMPS = ToolkitField(
     "clamps",
     "count",
-    "1|2",
     "2: two clamps that are needed together, as for a plain rectangle square to the plate; 1 if not given.",
     (PageLabel("Clamps", "1", is_usual=True, choices=(Choice(1, "one"), Choice(2, "two, needed together"))),),
     default=1,
@@ -184,11 +173,11 @@ CLAMPS = ToolkitField(
     belongs_to="clamp beside its jaws",
     most=2,
     section=CLAMPS_SECTION,
+    metavar="1|2",
 )
 CLAMP_RADIUS = ToolkitField(
     "clamp_radius",
     "length",
-    "LENGTH",
     "Radius of the clamp's round tip; the peg radius if not given.",
     (PageLabel("Clamp tip radius", "as a locator"),),
     figure="radius of the clamp's tip",
@@ -201,7 +190,6 @@ CLAMP_RADIUS = ToolkitField(
 TRAVEL = ToolkitField(
     "travel",
     "span",
-    "LEAST,MOST",
     "Least and most from the hole that the clamp is bolted in to its tip; any, with nothing asked of its "
     "body, if not given.",
     (PageLabel("Stroke", "any"),),
@@ -216,7 +204,6 @@ TRAVEL = ToolkitField(
 DIRECTION = ToolkitField(
     "directions",
     "directions",
-    "LIST",
     "In which the clamp may push: among -x, +x, -y, +y, such as {option}=-x,-y; all that a turn of the "
     "plate does not make of another one, if not given. Of two clamps pairs, such as {option}=-x:-y,-x:+y, or "
     "single ones for all pairs of them.",
@@ -233,7 +220,6 @@ DIRECTION = ToolkitField(
 WALL_OFFSET = ToolkitField(
     "wall_offset",
     "length",
-    "LENGTH",
     "Of a fence: distance from its wall to the first row of holes' centres; must be given.",
     (PageLabel("Fence to row 1", is_usual=True),),
     figure="from the fence to the first row of holes",
@@ -260,7 +246,6 @@ def heights_of(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
     return ToolkitField(
         f"{carrier}_heights",
         "heights",
-        "LOW,HIGH",
         f"Between which {whose} can touch, above the plane on which the part lies; as all pegs do, up to the "
         "peg height, if not given.",
         (PageLabel(f"Heights of {whose}", "as all pegs"),),

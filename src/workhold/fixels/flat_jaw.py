@@ -7,51 +7,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 from math import pi
-from typing import ClassVar
 
+from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
-from workhold.fixels.fields import (
-    FLAT,
-    JAW_HEIGHTS,
-    MAX_OPENING,
-    MIN_GAP,
-    ON_A_PLATE,
-    PEG_RADIUS,
-    PITCH,
-    WALL_HEIGHTS,
-)
 from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle, wall_carrier
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
+from workhold.fixels.toolkit import Arrangement, Carrier, Change, Toolkit, Travel, Wording
 from workhold.units import Unit
 
 __all__ = ["FlatJaw"]
-
-
-FIELDS = FieldTable(
-    "flat-jaw vise",
-    "A vise with one flat jaw, and pegs on the other",
-    (
-        *ON_A_PLATE[:3],
-        PEG_RADIUS,
-        MIN_GAP.shown(
-            PageLabel("Smallest opening", "peg radius"),
-            follows=PEG_RADIUS.name,
-            figure="smallest opening",
-            at_least=PEG_RADIUS.name,
-            below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would "
-            "stand in the flat jaw; give the least distance from the flat jaw to that row, in mm.",
-        ),
-        MAX_OPENING,
-        FLAT,
-        JAW_HEIGHTS,
-        WALL_HEIGHTS.shown(
-            PageLabel("Heights of the flat jaw", "as all pegs"), figure="heights of the flat jaw"
-        ),
-    ),
-)
 
 
 @made_from_table
@@ -85,14 +51,34 @@ class FlatJaw(Toolkit):
     3.0
     """
 
-    kind: ClassVar[str] = "flat-jaw"
-    table: ClassVar[FieldTable] = FIELDS
-    noun: ClassVar[str] = "flat-jaw vise"
-    locked: ClassVar[str] = "a screw vise, its jaw"
-    arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("flat", (2, 2)),)
-    clamping: ClassVar[int] = 1
-    symmetries: ClassVar[tuple[Symmetry, ...]] = ()
-    wording: ClassVar[Wording] = Wording(
+    kind = "flat-jaw"
+    table = FieldTable(
+        "flat-jaw vise",
+        "A vise with one flat jaw, and pegs on the other",
+        (
+            *fields.ON_A_PLATE[:3],
+            fields.PEG_RADIUS,
+            fields.MIN_GAP.shown(
+                PageLabel("Smallest opening", "peg radius"),
+                follows=fields.PEG_RADIUS.name,
+                figure="smallest opening",
+                at_least=fields.PEG_RADIUS.name,
+                below="min gap {value:g} is less than the peg radius {least:g}: a peg in the first row would "
+                "stand in the flat jaw; give the least distance from the flat jaw to that row, in mm.",
+            ),
+            fields.MAX_OPENING,
+            fields.FLAT,
+            fields.JAW_HEIGHTS,
+            fields.WALL_HEIGHTS.shown(
+                PageLabel("Heights of the flat jaw", "as all pegs"), figure="heights of the flat jaw"
+            ),
+        ),
+    )
+    noun = "flat-jaw vise"
+    locked = "a screw vise, its jaw"
+    law = "fence"
+    arrangements = (Arrangement("flat", (2, 2)),)
+    wording = Wording(
         two="two pegs",
         four="flat jaw and two pegs",
         inside="in this vise",
@@ -115,8 +101,7 @@ class FlatJaw(Toolkit):
             "Two pegs can touch the part at the same time, but no such pair presses it against the flat jaw.",
         ),
     )
-
-    setup_words: ClassVar[SetupWords] = SetupWords(
+    setup_words = SetupWords(
         standing="Pegs",
         located_by="The flat jaw",
         put="Put {peg}s in {holes} of the plate on the jaw that moves.",
@@ -124,9 +109,8 @@ class FlatJaw(Toolkit):
         touching="flush",
         resting="flush against the flat jaw",
     )
-
-    page: ClassVar[PageWords] = PageWords(
-        "Vise with one flat jaw", "Close vise", {PITCH.name: [10.0, 10.0], PEG_RADIUS.name: 3.0}
+    page = PageWords(
+        "Vise with one flat jaw", "Close vise", {fields.PITCH.name: [10.0, 10.0], fields.PEG_RADIUS.name: 3.0}
     )
 
     pitch: tuple[float, float]
@@ -148,11 +132,6 @@ class FlatJaw(Toolkit):
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
         jaw = lattice_carrier(self, "jaw", travel=travel, noun="jaw", heights=self.jaw_heights)
         return wall_carrier(self, "flat jaw"), jaw
-
-    @property
-    def law(self) -> str:
-        """The law of a wall."""
-        return "fence"
 
     @property
     def datum(self) -> Datum:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from itertools import product
+from itertools import combinations_with_replacement
 from math import inf, isfinite, isnan, nan
 from typing import Any, TypeVar
 
@@ -124,15 +124,11 @@ def made_from_table(kind: Kind) -> Kind:
     """
     rows = {row.name: row for row in kind.table.fields}
     names = [name for name, form in kind.__annotations__.items() if not str(form).startswith("ClassVar")]
-    these = {name: attribute_of(rows[name], inherits=kind.__base__ is not Toolkit) for name in names}
-    if kind.__base__ is Toolkit:
-        these |= {name: hardware_attribute(name) for name in HARDWARE}
+    inherits = kind.__base__ is not Toolkit
+    these = {name: attribute_of(rows[name], inherits=inherits) for name in names}
+    for name in () if inherits else HARDWARE:
+        these[name] = field(default=None, converter=partial(hardware_of, name), kw_only=True)
     return frozen(these=these)(kind)
-
-
-def hardware_attribute(name: str) -> Any:
-    """Returns the attribute of supports or of a clamp on top, which every kind may have."""
-    return field(default=None, converter=partial(hardware_of, name), kw_only=True)
 
 
 def attribute_of(row: ToolkitField, *, inherits: bool) -> Any:
@@ -160,39 +156,23 @@ def all_holes(holes: Iterable[Holes | str], *, carriers: tuple[str, ...], noun: 
     return tuple(holes_named(one, carriers, noun) if isinstance(one, str) else one for one in holes)
 
 
-def least_and_most(value: Iterable[float] | None) -> tuple[float, float] | None:
-    """Returns the least and the most that a clamp stretches, or None.
+def two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[float, float] | None:
+    """Returns two lengths, or None.
+
+    Parameters
+    ----------
+    wrong : what is said of anything else, for which "{value}" stands.
 
     Raises
     ------
     InputError
-        For anything but two lengths.
+        For anything else.
     """
     if value is None:
         return None
     numbers = tuple(value) if isinstance(value, Iterable) else (value,)
     if len(numbers) != 2:
-        raise InputError(
-            f"travel {value} is not two lengths: give the least and the most that the clamp stretches, in mm."
-        )
-    return real(numbers[0]), real(numbers[1])
-
-
-def low_and_high(value: Iterable[float] | None) -> tuple[float, float] | None:
-    """Returns the lower and the upper of two heights, or None.
-
-    Raises
-    ------
-    InputError
-        For anything but two heights.
-    """
-    if value is None:
-        return None
-    numbers = tuple(value) if isinstance(value, Iterable) else (value,)
-    if len(numbers) != 2:
-        raise InputError(
-            f"heights {value} are not two: give the lower and the upper end of what touches the part, in mm."
-        )
+        raise InputError(wrong.format(value=value))
     return real(numbers[0]), real(numbers[1])
 
 
@@ -221,10 +201,8 @@ def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
             )
         for name in two:
             refuse_direction(name)
-    every = product(DIRECTIONS, repeat=2)
-    return tuple(
-        one for one in every if one in {tuple(sorted(two, key=list(DIRECTIONS).index)) for two in pairs}
-    )
+    asked = [set(two) for two in pairs]
+    return tuple(two for two in combinations_with_replacement(DIRECTIONS, 2) if set(two) in asked)
 
 
 def refuse_direction(name: Any) -> None:
@@ -244,9 +222,17 @@ def refuse_direction(name: Any) -> None:
 CONVERTERS: dict[str, Callable[[Any], Any]] = {
     "count": whole,
     "pitch": pair,
-    "span": least_and_most,
+    "span": partial(
+        two_lengths,
+        wrong="travel {value} is not two lengths: give the least and the most that the clamp stretches, "
+        "in mm.",
+    ),
     "flat": flat_of,
-    "heights": low_and_high,
+    "heights": partial(
+        two_lengths,
+        wrong="heights {value} are not two: give the lower and the upper end of what touches the part, "
+        "in mm.",
+    ),
     "directions": direction_names,
 }
 
@@ -351,12 +337,14 @@ def lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
 
     Parameters
     ----------
-    toolkit : whose pitch, counts of holes, peg radius and flat the carrier has.
+    toolkit : whose pitch, counts of holes, peg radius, flat and blocked holes the carrier has.
     name : of the carrier.
     others : what else it has, or has instead.
     """
     size = toolkit.pitch, toolkit.columns, toolkit.rows, toolkit.peg_radius, toolkit.peg_radius
-    return evolve(Carrier(name, *size, flat=toolkit.flat), **others)
+    rows = (row for row in toolkit.table.fields if row.form == "holes")
+    blocked = tuple(one for row in rows for one in getattr(toolkit, row.name) if one.carrier == name)
+    return evolve(Carrier(name, *size, flat=toolkit.flat, blocked=blocked), **others)
 
 
 def wall_carrier(toolkit: Any, noun: str) -> Carrier:

@@ -12,43 +12,22 @@ from itertools import combinations_with_replacement
 from math import inf
 from typing import Any, ClassVar
 
-from attrs import evolve
-
 from workhold.errors import InputError
+from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.fields import (
-    CLAMP_HEIGHTS,
-    CLAMP_RADIUS,
-    CLAMPS,
-    DIRECTION,
-    FLAT,
-    LOCATOR_HEIGHTS,
-    ON_A_PLATE,
-    PEG_RADIUS,
-    PITCH,
-    TRAVEL,
-)
 from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
-from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
+from workhold.fixels.toolkit import Arrangement, Carrier, Change, Toolkit, Travel, Wording
 from workhold.units import Unit
 
 __all__ = ["Plate"]
 
 
-def turned_half(name: str) -> str:
-    """What half a turn makes of a direction."""
-    return f"{'-' if name[0] == '+' else '+'}{name[1]}"
-
-
-FIELDS = FieldTable(
-    "plate",
-    "A plate with locators and a clamp",
-    (*ON_A_PLATE, CLAMP_RADIUS, TRAVEL, CLAMPS, DIRECTION, FLAT, LOCATOR_HEIGHTS, CLAMP_HEIGHTS),
-)
+# What half a turn of the plate makes of a direction.
+TURNED = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
 @made_from_table
@@ -86,13 +65,27 @@ class Plate(Toolkit):
     (('-x', '-y'),)
     """
 
-    kind: ClassVar[str] = "translating-clamp"
-    table: ClassVar[FieldTable] = FIELDS
-    noun: ClassVar[str] = "plate"
-    locked: ClassVar[str] = "a screw clamp,"
-    clamping: ClassVar[int] = 1
-    symmetries: ClassVar[tuple[Symmetry, ...]] = ()
-    wording: ClassVar[Wording] = Wording(
+    kind = "translating-clamp"
+    table = FieldTable(
+        "plate",
+        "A plate with locators and a clamp",
+        (
+            *fields.ON_A_PLATE,
+            fields.CLAMP_RADIUS,
+            fields.TRAVEL,
+            fields.CLAMPS,
+            fields.DIRECTION,
+            fields.FLAT,
+            fields.LOCATOR_HEIGHTS,
+            fields.CLAMP_HEIGHTS,
+        ),
+    )
+    noun = "plate"
+    locked = "a screw clamp,"
+    # What fixtures with one clamp and with two are called, and the contacts that hold the part beside them.
+    names = ("clamp", "clamp2")
+    locating: ClassVar[tuple[int, ...]] = (3,)
+    wording = Wording(
         two="two locators",
         four="three locators and a clamp",
         inside="on this plate",
@@ -104,18 +97,17 @@ class Plate(Toolkit):
         backwards="the clamp pulls, not when it pushes",
         holes="holes that the plate does not have",
     )
-    setup_words: ClassVar[SetupWords] = SetupWords(
+    setup_words = SetupWords(
         standing="Locators",
         located_by="Three locators",
         put="Put {peg}s in {holes} of the {plate}.",
         against="against all {count} {peg}s",
         touching="four pegs",
     )
-
-    page: ClassVar[PageWords] = PageWords(
+    page = PageWords(
         "Plate with one clamp or two",
         "Close clamp",
-        {PITCH.name: [20.0, 20.0], PEG_RADIUS.name: 3.0, CLAMPS.name: 1},
+        {fields.PITCH.name: [20.0, 20.0], fields.PEG_RADIUS.name: 3.0, fields.CLAMPS.name: 1},
     )
 
     pitch: tuple[float, float]
@@ -132,20 +124,14 @@ class Plate(Toolkit):
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun=self.noun, peg="locator")
-        object.__setattr__(self, "directions", self.resolved_directions())
+        object.__setattr__(self, "directions", self.asked_directions())
 
     @property
     def is_paired(self) -> bool:
         """Whether two clamps are needed together."""
         return self.clamps == 2
 
-    @property
-    def is_square(self) -> bool:
-        """Whether a quarter turn of the plate leaves it as it is."""
-        holes = lattice_carrier(self, "plate")
-        return holes.pitch[0] == holes.pitch[1] and holes.columns == holes.rows
-
-    def resolved_directions(self) -> tuple[Any, ...]:
+    def asked_directions(self) -> tuple[Any, ...]:
         """The directions, or pairs of them, that are meant.
 
         Raises
@@ -153,58 +139,49 @@ class Plate(Toolkit):
         InputError
             For pairs where there is one clamp.
         """
-        names = self.directions
-        if not self.is_paired:
-            if any(not isinstance(name, str) for name in names):
-                raise InputError(
-                    "the directions are pairs, but there is one clamp: give two clamps, or no pairs."
-                )
-            return names or self.usual_directions
-        if not names:
-            return self.usual_pairs
-        return tuple(combinations_with_replacement(names, 2)) if isinstance(names[0], str) else names
+        are_names = all(isinstance(one, str) for one in self.directions)
+        if not self.is_paired and not are_names:
+            raise InputError(
+                "the directions are pairs, but there is one clamp: give two clamps, or no pairs."
+            )
+        if self.is_paired and are_names and self.directions:
+            return tuple(combinations_with_replacement(self.directions, 2))
+        return self.directions or self.usual_directions
 
     @property
-    def usual_directions(self) -> tuple[str, ...]:
-        """All directions that differ by more than a turn of the plate."""
-        return ("-x",) if self.is_square else ("-x", "-y")
+    def usual_directions(self) -> tuple[Any, ...]:
+        """All directions, or pairs square to each other, that differ by more than a turn of the plate."""
+        holes = lattice_carrier(self, "plate")
+        is_square = holes.pitch[0] == holes.pitch[1] and holes.columns == holes.rows
+        every = (("-x", "-y"), ("-x", "+y")) if self.is_paired else ("-x", "-y")
+        return every[:1] if is_square else every
 
     @property
-    def usual_pairs(self) -> tuple[tuple[str, str], ...]:
-        """Two clamps square to each other, in all ways that differ by more than a turn of the plate."""
-        return (("-x", "-y"),) if self.is_square else (("-x", "-y"), ("-x", "+y"))
+    def pushes(self) -> tuple[tuple[str, ...], ...]:
+        """The directions of the clamps of one fixture, without those that half a turn makes of others."""
+        kept: list[tuple[str, ...]] = []
+        for push in self.asked_pushes:
+            if not any(sorted(TURNED[name] for name in push) == sorted(other) for other in kept):
+                kept.append(push)
+        return tuple(kept)
 
     @property
-    def distinct_directions(self) -> tuple[str, ...]:
-        """The clamps' directions, without those that half a turn of the plate makes of another one."""
-        if self.is_paired:
-            return tuple(name for name in DIRECTIONS if any(name in pair for pair in self.distinct_pairs))
-        return tuple(
-            name for name in self.directions if not (name[0] == "+" and f"-{name[1]}" in self.directions)
-        )
+    def asked_pushes(self) -> tuple[tuple[str, ...], ...]:
+        """The directions of the clamps of one fixture, for each direction or pair of them."""
+        return self.directions if self.is_paired else tuple((name,) for name in self.directions)
 
     @property
-    def distinct_pairs(self) -> tuple[tuple[str, str], ...]:
-        """The pairs of directions without those that half a turn of the plate makes of another one."""
-        out: list[tuple[str, str]] = []
-        for one, other in self.directions:
-            if {(turned_half(one), turned_half(other)), (turned_half(other), turned_half(one))}.isdisjoint(
-                out
-            ):
-                out.append((one, other))
-        return tuple(out)
+    def clamp_directions(self) -> tuple[str, ...]:
+        """The directions in which some clamp pushes."""
+        return tuple(name for name in DIRECTIONS if any(name in push for push in self.pushes))
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """Three locators and a clamp for each direction, or two clamps for each pair of directions."""
-        names = self.distinct_directions
-        if not self.is_paired:
-            return tuple(
-                Arrangement("clamp", (3, *(int(other == name) for other in names)), name) for name in names
-            )
+        """What locates the part and the clamps beside it, once for each way in which they push."""
+        name, every = self.names[self.is_paired], self.clamp_directions
         return tuple(
-            Arrangement("clamp2", (3, *(pair.count(name) for name in names)), " ".join(pair))
-            for pair in self.distinct_pairs
+            Arrangement(name, (*self.locating, *map(push.count, every)), " ".join(push))
+            for push in self.pushes
         )
 
     @cached_property
@@ -218,54 +195,57 @@ class Plate(Toolkit):
             self, "plate", offset=offset, noun="plate", peg="locator", heights=self.locator_heights
         )
         least, most = (-inf, None) if self.travel is None else (-self.travel[1], -self.travel[0])
-        clamp = lattice_carrier(
-            self,
-            "clamp",
-            peg_radius=self.clamp_radius,
-            body_radius=self.clamp_radius,
-            offset=offset,
-            noun="clamp",
-            peg="clamp",
-            on="plate",
-            flat=None,
-            heights=self.clamp_heights,
+        clamps = (
+            lattice_carrier(
+                self,
+                f"clamp {name}",
+                peg_radius=self.clamp_radius,
+                body_radius=self.clamp_radius,
+                offset=offset,
+                travel=Travel(DIRECTIONS[name], least, most),
+                noun="clamp",
+                peg="clamp",
+                on="plate",
+                flat=None,
+                heights=self.clamp_heights,
+            )
+            for name in self.clamp_directions
         )
-        return (
-            plate,
-            *(
-                evolve(clamp, name=f"clamp {name}", travel=Travel(DIRECTIONS[name], least, most))
-                for name in self.distinct_directions
-            ),
-        )
+        return plate, *clamps
 
     @property
     def ways(self) -> tuple[Plate, ...]:
         """The plate with one clamp in one direction each time."""
         return tuple(
-            self.changed({CLAMPS.name: 1, DIRECTION.name: (name,)}) for name in self.distinct_directions
+            self.changed({fields.CLAMPS.name: 1, fields.DIRECTION.name: (name,)})
+            for name in self.clamp_directions
         )
 
     @property
-    def law(self) -> str:
+    def law(self) -> str:  # type: ignore[override]
         """The law of one clamp, or of two."""
         return "two clamps" if self.is_paired else "plate"
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
         """The plate takes its own place, and each clamp that of the one that pushes the other way."""
-        names = [carrier.name for carrier in self.carriers]
-        ahead = [f"clamp {turned_half(carrier.direction)}" for carrier in self.carriers[1:]]
-        return (0, *(names.index(name) if name in names else -1 for name in ahead))
+        names = self.clamp_directions
+        ahead = [TURNED[name] for name in names]
+        return (0, *(1 + names.index(name) if name in names else -1 for name in ahead))
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """The clamp along rows and columns, and half the pitch."""
         if self.is_paired:
-            yield Change("with one clamp", {CLAMPS.name: 1, DIRECTION.name: None})
-            if len(self.distinct_pairs) == 1:
+            yield Change("with one clamp", {fields.CLAMPS.name: 1, fields.DIRECTION.name: None})
+            if len(self.pushes) == 1:
                 pairs = ("-x", "-y"), ("-x", "+y")
-                yield Change("with the clamps along rows and columns either way", {DIRECTION.name: pairs})
+                yield Change(
+                    "with the clamps along rows and columns either way", {fields.DIRECTION.name: pairs}
+                )
         if not self.is_paired:
-            yield Change("with a second clamp", {CLAMPS.name: 2, DIRECTION.name: None})
-            if len(self.distinct_directions) == 1:
-                yield Change("with the clamp along the columns as well", {DIRECTION.name: ("-x", "-y")})
+            yield Change("with a second clamp", {fields.CLAMPS.name: 2, fields.DIRECTION.name: None})
+            if len(self.pushes) == 1:
+                yield Change(
+                    "with the clamp along the columns as well", {fields.DIRECTION.name: ("-x", "-y")}
+                )
         yield from finer(self)

@@ -27,9 +27,9 @@ Rings = tuple[tuple[float, ...], ...]
 USUAL = "usual"
 
 
-def length_row(name: str, least: Any, figure: str, label: PageLabel) -> ToolkitField:
+def length_row(name: str, least: Any, figure: str, label: str) -> ToolkitField:
     """A row of a length that may be left out."""
-    return ToolkitField(name, "length", "LENGTH", figure, (label,), least=least, figure=figure)
+    return ToolkitField(name, "length", figure, (PageLabel(label, USUAL),), least=least, figure=figure)
 
 
 def rings(values: Iterable[Iterable[Any]] | None) -> Rings | None:
@@ -41,30 +41,22 @@ PADS = FieldTable(
     SUPPORTS,
     "Supports under the part",
     (
-        length_row("pad_radius", "0", "radius of the supports' pads", PageLabel("Pad radius", USUAL)),
-        length_row(
-            "pad_margin", "0", "from a pad to the border of the face below", PageLabel("Pad to border", USUAL)
-        ),
-        length_row("height", "above 0", "height of the supports", PageLabel("Height", USUAL)),
+        length_row("pad_radius", "0", "radius of the supports' pads", "Pad radius"),
+        length_row("pad_margin", "0", "from a pad to the border of the face below", "Pad to border"),
+        length_row("height", "above 0", "height of the supports", "Height"),
     ),
 )
 CLAMP = FieldTable(
     TOP_CLAMP,
     "A clamp on top",
     (
+        length_row("tip_radius", "above 0", "radius of the tip of the clamp on top", "Tip radius"),
         length_row(
-            "tip_radius", "above 0", "radius of the tip of the clamp on top", PageLabel("Tip radius", USUAL)
-        ),
-        length_row(
-            "inside",
-            "above 0",
-            "from the clamp on top to the supports' triangle",
-            PageLabel("Tip within the triangle", USUAL),
+            "inside", "above 0", "from the clamp on top to the supports' triangle", "Tip within the triangle"
         ),
         ToolkitField(
             "reach",
             "rings",
-            "X,Y,LEAST,MOST",
             "where the tip of the clamp on top can stand",
             (PageLabel("Reaches about x, y from least to most", "anywhere"),),
         ),

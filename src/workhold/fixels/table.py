@@ -31,6 +31,18 @@ __all__ = [
 # flat's distance with or without half its width; the heights between which something touches; names of holes;
 # directions or pairs of them; rings about points.
 Form = Literal["count", "length", "pitch", "span", "flat", "heights", "holes", "directions", "rings"]
+# What stands for a value of a form in the help of the command.
+METAVARS: Mapping[Form, str] = {
+    "count": "N",
+    "length": "LENGTH",
+    "pitch": "X[,Y]",
+    "span": "LEAST,MOST",
+    "flat": "DISTANCE[,WIDTH/2]",
+    "heights": "LOW,HIGH",
+    "holes": "HOLES",
+    "directions": "LIST",
+    "rings": "X,Y,LEAST,MOST",
+}
 # Forms of which files say nothing where there is none.
 SILENT: frozenset[Form] = frozenset({"flat", "heights"})
 # Sections of the command's help.
@@ -94,7 +106,7 @@ class ToolkitField:
     ----------
     name : the key in files and requests, and the constructor's argument.
     form : what its values look like; see ``Form``.
-    metavar, help : of the command line's option, for which "{option}" stands in the help.
+    help : of the command line's option, for which "{option}" stands in it.
     labels : what the page shows of it, more than once where that depends on another field.
     default : in requests and in result files; ``REQUIRED`` where it must be given.
     entry : what to write in a toolkit's file; empty where the form says enough.
@@ -115,11 +127,11 @@ class ToolkitField:
         called.
     section : of the command's help.
     word : its name as an option, where that is not the field's own.
+    metavar : what stands for its value in the help, where that does not follow from the form.
     """
 
     name: str
     form: Form
-    metavar: str
     help: str
     labels: tuple[PageLabel, ...]
     default: Any = field(default=None, kw_only=True)
@@ -140,6 +152,11 @@ class ToolkitField:
     carrier_noun: str = field(default="", kw_only=True)
     section: str = field(default=TOOLKIT_SECTION, kw_only=True)
     word: str = field(default="", kw_only=True)
+    metavar: str = field(kw_only=True)
+
+    @metavar.default
+    def usual_metavar(self) -> str:
+        return METAVARS[self.form]
 
     @property
     def option(self) -> str:

@@ -103,6 +103,7 @@ class Toolkit:
     table : its fields.
     noun : what it is called, such as "vise".
     locked : what it is with a screw that locks what moves, in words that "locked" follows.
+    law : the name of the law by which the time of a search grows, see ``batch.durations``.
     arrangements : what may stand on its carriers.
     clamping : 1 when the moving carrier clamps as its travel gets less (a vise that closes), -1 when it
         clamps as its travel gets more.
@@ -129,8 +130,9 @@ class Toolkit:
     noun: ClassVar[str]
     locked: ClassVar[str]
     arrangements: ClassVar[tuple[Arrangement, ...]]
-    clamping: ClassVar[int]
-    symmetries: ClassVar[tuple[Symmetry, ...]]
+    law: ClassVar[str]
+    clamping: ClassVar[int] = 1
+    symmetries: ClassVar[tuple[Symmetry, ...]] = ()
     wording: ClassVar[Wording]
     setup_words: ClassVar[SetupWords]
     page: ClassVar[PageWords]
@@ -144,11 +146,6 @@ class Toolkit:
     def ways(self) -> tuple[Toolkit, ...]:
         """The toolkit with one of its moving carriers each; their arrangements, in order, are its own."""
         return (self,)
-
-    @property
-    def law(self) -> str:
-        """The name of the law by which the time of a search grows, see ``batch.durations``."""
-        raise NotImplementedError
 
     @property
     def datum(self) -> Datum:
@@ -244,7 +241,7 @@ class Toolkit:
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """Changes to try where it holds nothing, besides lifting its limits; their words use ``unit``."""
-        raise NotImplementedError
+        yield from ()
 
     @classmethod
     def preset(cls, name: str, **changes: Any) -> Self:

@@ -4,25 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import ClassVar
 
 from attrs import evolve
 
+from workhold.fixels import fields
 from workhold.fixels.carrier import Heights, Holes
-from workhold.fixels.fields import (
-    BLOCKED,
-    BODY_RADIUS,
-    COLUMNS,
-    FLAT,
-    LEFT_HEIGHTS,
-    MAX_OPENING,
-    MIN_GAP,
-    PEG_RADIUS,
-    PITCH,
-    RIGHT_HEIGHTS,
-    ROW_OFFSET,
-    ROWS,
-)
 from workhold.fixels.making import lattice_carrier, made_from_table, settle
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
@@ -31,44 +17,6 @@ from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Tool
 from workhold.units import Unit
 
 __all__ = ["OpeningVise", "Vise"]
-
-
-# The jaws, the one that stands still first, and what each is called.
-JAWS, NOUN = ("left", "right"), "jaw"
-WORDING = Wording(
-    two="two pegs of one jaw",
-    four="four pegs of the two jaws",
-    inside="in this vise",
-    within="the jaws as asked: with the rows, opening, angles, shoulders and blocked holes given",
-    rules="keeps the smallest gap, closes and clamps",
-    backwards="the jaws are pressed apart, not when they close",
-    holes="holes that the jaws do not have, or too near for the bodies",
-)
-SETUP = SetupWords(
-    standing="Pegs",
-    put="Put {peg}s in {holes}.",
-    touching="four pegs",
-)
-
-
-FIELDS = FieldTable(
-    "vise",
-    "A vise",
-    (
-        PITCH,
-        COLUMNS,
-        PEG_RADIUS,
-        ROWS,
-        ROW_OFFSET,
-        MIN_GAP,
-        MAX_OPENING,
-        BODY_RADIUS,
-        BLOCKED,
-        FLAT,
-        LEFT_HEIGHTS,
-        RIGHT_HEIGHTS,
-    ),
-)
 
 
 @made_from_table
@@ -105,19 +53,43 @@ class Vise(Toolkit):
     10.0
     """
 
-    kind: ClassVar[str] = "vise"
-    table: ClassVar[FieldTable] = FIELDS
-    noun: ClassVar[str] = "vise"
-    locked: ClassVar[str] = "a screw vise, its jaw"
-    arrangements: ClassVar[tuple[Arrangement, ...]] = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
-    clamping: ClassVar[int] = 1
-    wording: ClassVar[Wording] = WORDING
-    setup_words: ClassVar[SetupWords] = SETUP
-
-    page: ClassVar[PageWords] = PageWords(
+    kind = "vise"
+    table = FieldTable(
+        "vise",
+        "A vise",
+        (
+            fields.PITCH,
+            fields.COLUMNS,
+            fields.PEG_RADIUS,
+            fields.ROWS,
+            fields.ROW_OFFSET,
+            fields.MIN_GAP,
+            fields.MAX_OPENING,
+            fields.BODY_RADIUS,
+            fields.BLOCKED,
+            fields.FLAT,
+            fields.LEFT_HEIGHTS,
+            fields.RIGHT_HEIGHTS,
+        ),
+    )
+    noun = "vise"
+    locked = "a screw vise, its jaw"
+    law = "vise"
+    arrangements = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
+    wording = Wording(
+        two="two pegs of one jaw",
+        four="four pegs of the two jaws",
+        inside="in this vise",
+        within="the jaws as asked: with the rows, opening, angles, shoulders and blocked holes given",
+        rules="keeps the smallest gap, closes and clamps",
+        backwards="the jaws are pressed apart, not when they close",
+        holes="holes that the jaws do not have, or too near for the bodies",
+    )
+    setup_words = SetupWords(standing="Pegs", put="Put {peg}s in {holes}.", touching="four pegs")
+    page = PageWords(
         "Vise, pegs on both jaws",
         "Close vise",
-        {PITCH.name: [10.0, 10.0], COLUMNS.name: 2, PEG_RADIUS.name: 3.0},
+        {fields.PITCH.name: [10.0, 10.0], fields.COLUMNS.name: 2, fields.PEG_RADIUS.name: 3.0},
     )
 
     pitch: tuple[float, float]
@@ -134,43 +106,27 @@ class Vise(Toolkit):
     right_heights: Heights | None
 
     def __attrs_post_init__(self) -> None:
-        settle(self, noun=NOUN, peg="peg")
+        settle(self, noun="jaw", peg="peg")
 
     @property
     def symmetries(self) -> tuple[Symmetry, ...]:  # type: ignore[override]
         """Half a turn, which swaps the jaws; none where their pegs have different heights."""
         return (Symmetry(1, (1, 0)),) if self.left_heights == self.right_heights else ()
 
-    @property
-    def carriers(self) -> tuple[Carrier, Carrier]:
-        """The jaws, which are made once."""
-        return self.jaws
-
     @cached_property
-    def jaws(self) -> tuple[Carrier, Carrier]:
+    def carriers(self) -> tuple[Carrier, ...]:
         """The left jaw, and the right jaw, whose travel is the jaw separation."""
-        left = lattice_carrier(
+        both = {"body_radius": self.body_radius, "noun": "jaw"}
+        left = lattice_carrier(self, "left", **both, heights=self.left_heights)
+        right = lattice_carrier(
             self,
-            JAWS[0],
-            body_radius=self.body_radius,
-            blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[0]),
-            noun=NOUN,
-            heights=self.left_heights,
-        )
-        right = evolve(
-            left,
-            name=JAWS[1],
+            "right",
+            **both,
             offset=((self.columns - 1) * left.pitch[0], self.row_offset),
-            blocked=tuple(holes for holes in self.blocked if holes.carrier == JAWS[1]),
             travel=Travel(0.0, self.min_gap, self.max_opening),
             heights=self.right_heights,
         )
         return left, right
-
-    @property
-    def law(self) -> str:
-        """The law of two jaws."""
-        return "vise"
 
     @property
     def gap(self) -> float:
@@ -179,22 +135,23 @@ class Vise(Toolkit):
 
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """A smaller gap, a column more, rows offset and half the pitch."""
-
-        def words(length: float) -> str:
-            return f"{unit.figure(length)} {unit.abbreviation}"
-
         jaw, _ = self.carriers
         narrow, offset = 2 * jaw.peg_radius, jaw.pitch[1] / 2
+        words = [f"{unit.figure(length)} {unit.abbreviation}" for length in (narrow, offset)]
         if self.min_gap > narrow > 0:
-            yield Change(f"with a smallest gap of {words(narrow)}", {MIN_GAP.name: narrow})
-        yield Change("with one more column on each jaw", {COLUMNS.name: self.columns + 1})
+            yield Change(f"with a smallest gap of {words[0]}", {fields.MIN_GAP.name: narrow})
+        yield Change("with one more column on each jaw", {fields.COLUMNS.name: self.columns + 1})
         if self.row_offset == 0.0:
-            yield Change(f"with the right jaw's rows offset by {words(offset)}", {ROW_OFFSET.name: offset})
+            yield Change(f"with the right jaw's rows offset by {words[1]}", {fields.ROW_OFFSET.name: offset})
         if min(jaw.pitch) >= 4 * jaw.peg_radius:
             half = (jaw.pitch[0] / 2, jaw.pitch[1] / 2)
             yield Change(
                 "with half the pitch",
-                {PITCH.name: half, MIN_GAP.name: min(self.min_gap, half[0]), BLOCKED.name: ()},
+                {
+                    fields.PITCH.name: half,
+                    fields.MIN_GAP.name: min(self.min_gap, half[0]),
+                    fields.BLOCKED.name: (),
+                },
             )
 
 
@@ -205,7 +162,7 @@ class OpeningVise(Vise):
     Parameters, errors and all rules are those of :class:`Vise`; only the sign of clamping differs.
     """
 
-    kind: ClassVar[str] = "opening-vise"
-    clamping: ClassVar[int] = -1
-    wording: ClassVar[Wording] = evolve(WORDING, backwards="the jaws close, not when they are pressed apart")
-    page: ClassVar[PageWords] = PageWords("Vise that holds by opening", "Open vise", Vise.page.start)
+    kind = "opening-vise"
+    clamping = -1
+    wording = evolve(Vise.wording, backwards="the jaws close, not when they are pressed apart")
+    page = PageWords("Vise that holds by opening", "Open vise", Vise.page.start)

@@ -203,9 +203,6 @@ class Touched:
         carriers : (N, P) numbers of the pegs' carriers.
         faces : (N, P) numbers of the faces touched.
         """
-        count, each = pegs.shape[:2]
-        points, normals, ends, edges = (np.empty((count, each, *shape)) for shape in ((2,), (2,), (), ()))
-        inverses = np.zeros((count, 4, each))
         on = np.asarray(carriers, np.int64)
         on_wall = self.lies_flush.take(on)
         edge = len(self.starts) - 1 - len(self.flush.theta) + self.flush.number(pose[:, 0])
@@ -213,13 +210,39 @@ class Touched:
         moves = self.moving.take(on)
         # Each fixture has an axis of its own where a toolkit has several carriers that move.
         mover = largest(on * (moves > 0.0))
+        known = self.contacts(pegs, pose, moves, -self.directions[mover], touched)
+        points, normals, ends, edges, inverses = known
+        # What lies flush on a wall ends nowhere that matters.
+        for distances in (ends, edges):
+            distances[on_wall & ~np.isnan(distances)] = np.inf
+        if pegs.shape[1] == PEGS:
+            return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
+        closing = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)
+        inverses[:, :LOCATORS, :LOCATORS] += locators_inverse(wrenches(points, normals, self.length))
+        inverses[:, 3] += working_forces(closing)
+        return ContactMatrices(points, normals, ends, edges, inverses, closing)
+
+    def contacts(
+        self, pegs: Array, pose: Array, moves: Array, against: Array, touched: NDArray[np.int64]
+    ) -> tuple[Array, Array, Array, Array, Array]:
+        """Points, normals, ends, edges and inverses of N fixtures, see :class:`ContactMatrices`.
+
+        Parameters
+        ----------
+        moves : (N, P) 1 for pegs that move, 0 for others.
+        against : (N, 2) unit vector against which they clamp, in the toolkit's frame.
+        touched : (N, P) numbers in ``starts``.
+        """
+        count, each = pegs.shape[:2]
+        points, normals, ends, edges = (np.empty((count, each, *shape)) for shape in ((2,), (2,), (), ()))
+        inverses = np.zeros((count, 4, each))
         # A kernel is compiled anew for arrays that are read-only or laid out otherwise.
         contact_matrices_of(
             np.require(pegs, np.float64, ["C", "W"]),
             np.require(pose, np.float64, ["C", "W"]),
             moves,
-            -self.directions[mover],
-            touched,
+            against,
+            np.require(touched, np.int64, ["C", "W"]),
             self.features,
             self.starts,
             self.center,
@@ -231,14 +254,7 @@ class Touched:
             inverses,
             np.empty((each, 4)),
         )
-        # What lies flush on a wall ends nowhere that matters.
-        for distances in (ends, edges):
-            distances[on_wall & ~np.isnan(distances)] = np.inf
-        if each == PEGS:
-            return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
-        reactions = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)
-        inverses += pair_inverses(points, normals, reactions, self.length)
-        return ContactMatrices(points, normals, ends, edges, inverses, reactions)
+        return points, normals, ends, edges, inverses
 
     def locators(self, points: Array, faces: NDArray[np.int64]) -> ContactMatrices:
         """Contacts of the first carrier's pegs alone, with the inverses of the locators' wrenches; nothing closes.
@@ -249,25 +265,8 @@ class Touched:
         faces : (N, 3) numbers of the faces touched.
         """
         count, each = points.shape[:2]
-        normals, ends, edges = (np.empty((count, each, *shape)) for shape in ((2,), (), ()))
-        inverses = np.zeros((count, 4, each))
-        contact_matrices_of(
-            points + self.center,
-            np.zeros((count, 3)),
-            np.zeros((count, each)),
-            np.zeros((count, 2)),
-            np.require(faces, np.int64, ["C", "W"]),
-            self.features,
-            self.starts,
-            self.center,
-            self.length,
-            np.empty_like(points),
-            normals,
-            ends,
-            edges,
-            inverses,
-            np.empty((each, 4)),
-        )
+        still = np.zeros((count, 3)), np.zeros((count, each)), np.zeros((count, 2))
+        _, normals, ends, edges, inverses = self.contacts(points + self.center, *still, faces)
         inverses[:, :LOCATORS] = locators_inverse(wrenches(points, normals, self.length))
         return ContactMatrices(points, normals, ends, edges, inverses, np.zeros((count, each, 0)))
 
@@ -311,12 +310,4 @@ def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) 
     out = np.zeros((len(points), 5, 2))
     out[:, :LOCATORS] = taken / push[:, None]
     out[:, LOCATORS, 0], out[:, LOCATORS + 1, 1] = 1.0 / push[:, 0], 1.0 / push[:, 1]
-    return out
-
-
-def pair_inverses(points: Array, normals: Array, reactions: Array, length: float) -> Array:
-    """Stand-ins for the inverses (N, 4, 5) with two clamps; see :class:`ContactMatrices`."""
-    out = np.zeros((len(points), 4, 5))
-    out[:, :LOCATORS, :LOCATORS] = locators_inverse(wrenches(points, normals, length))
-    out[:, 3] = working_forces(reactions)
     return out

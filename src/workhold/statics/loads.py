@@ -37,7 +37,7 @@ from itertools import combinations, permutations
 from math import atan2, cos, degrees, hypot, inf, isfinite, radians, sin
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import FLAT, NO_FORCE, OUTSIDE
@@ -113,24 +113,19 @@ def jaw_words(stiffness: float, toolkit: Toolkit) -> str:
     return f"{toolkit.locked} {state}"
 
 
-def shared_forces(forces: Array, closing: Array, stiffness: float) -> Array:
-    """Peg forces per unit of g_x, g_y, moment and jaw force behind a jaw of a stiffness.
+def shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
+    """Peg forces (..., P, 3) per unit of g_x, g_y and moment behind jaws of a stiffness.
 
     Parameters
     ----------
-    forces : (P, 4) the same for a jaw that keeps its force.
-    closing : (P, M) peg forces per unit of the force of each jaw or clamp, H.
-
-    Returns
-    -------
-    (P, 4) array, whose last column is h still: the jaw was closed before the load came.
+    free : (..., P, 3) the same for a jaw that keeps its force.
+    closing : (..., P, M) peg forces per unit of the force of each jaw or clamp, H.
     """
     if stiffness == 0:
-        return forces
-    out = forces.copy()
-    springs = np.eye(closing.shape[1]) / stiffness + closing.T @ closing
-    out[:, :3] -= closing @ np.linalg.solve(springs, closing.T @ forces[:, :3])
-    return out
+        return free
+    back = np.swapaxes(closing, -1, -2)
+    springs = np.eye(closing.shape[-1]) / stiffness + back @ closing
+    return np.asarray(free - closing @ np.linalg.solve(springs, back @ free))
 
 
 def jaw_forces_needed(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
@@ -315,7 +310,8 @@ def load_cases(
     contact_matrices = touched.of_fixture(fixture, toolkit)
     # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.contact.contact_matrix.
     forces = contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
-    forces = shared_forces(forces, contact_matrices.closing[0], stiffness)
+    # The jaw was closed before the load came, so its own column stays.
+    forces[:, :3] = shared_forces(forces[:, :3], contact_matrices.closing[0], stiffness)
     motions = None
     if friction is not None:
         on_part = contacts_on_part(fixture, workpiece, toolkit, touched, contact_matrices)
@@ -351,8 +347,8 @@ def largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[
     return (hypot(x, y) if direction == peak else value), direction % 360.0
 
 
-def largest_of(coefficients: Array, load: Load, center: tuple[float, float]) -> Worst:
-    """Where a load makes (g_x, g_y, moment) . coefficients largest, and that value; the peg is 0."""
+def largest_of(coefficients: Array, load: Load, center: tuple[float, float], peg: int = 0) -> Worst:
+    """Where a load makes (g_x, g_y, moment) . coefficients, the push on a peg, largest, and that value."""
     a, b, c = (float(value) for value in coefficients[:3])
     worst: Worst | None = None
     for x, y in load.points or (center,):
@@ -360,31 +356,25 @@ def largest_of(coefficients: Array, load: Load, center: tuple[float, float]) -> 
         value, direction = largest_value(a - dy * c, b + dx * c, load.directions)
         total = load.force * value + load.moment * c
         if worst is None or total > worst.value:
-            worst = Worst(total, 0, (x, y), direction)
+            worst = Worst(total, peg, (x, y), direction)
     assert worst is not None
     return worst
 
 
 def needed(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
     """Jaw force so that no peg lets go: the largest -f0_i / h_i over pegs, points and directions."""
-    pushes = (of_peg(-forces[i] / forces[i, 3], i, load, center) for i in range(len(forces)))
+    pushes = (largest_of(-row / row[3], load, center, peg) for peg, row in enumerate(forces))
     worst = max(pushes, key=lambda push: push.value)
-    return Worst(max(worst.value, 0.0), worst.peg, worst.point, worst.direction)
+    return evolve(worst, value=max(worst.value, 0.0))
 
 
 def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
     """Largest peg force with the least clamping (Brost & Goldberg 1996, ``kernels.contact.quality``)."""
     pairs = permutations(range(len(forces)), 2)
     return max(
-        (of_peg(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], j, load, center) for j, i in pairs),
+        (largest_of(forces[j] - forces[i] * forces[j, 3] / forces[i, 3], load, center, j) for j, i in pairs),
         key=lambda worst: worst.value,
     )
-
-
-def of_peg(coefficients: Array, peg: int, load: Load, center: tuple[float, float]) -> Worst:
-    """Largest push on a peg; see :func:`largest_of`."""
-    worst = largest_of(coefficients, load, center)
-    return Worst(worst.value, peg, worst.point, worst.direction)
 
 
 def with_friction(

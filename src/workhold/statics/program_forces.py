@@ -22,7 +22,7 @@ from workhold.model.program import Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, Touched
-from workhold.statics.loads import jaw_stiffness
+from workhold.statics.loads import jaw_stiffness, shared_forces
 from workhold.statics.path_pieces import path_forces
 from workhold.statics.program_clearance import element_name
 from workhold.units import Unit
@@ -157,7 +157,7 @@ def cutting_figures(matrices: ContactMatrices, touched: Touched, program: Progra
         rows = known[part]
         free = np.swapaxes(inverses[part, :3], 1, 2) / scale(touched)
         out[rows, 0] = path.worst(reactions(free, held[part])).value
-        locked = answers(free, matrices.closing[rows], inf)
+        locked = shared_forces(free, matrices.closing[rows], inf)
         out[rows, 1] = path.worst(-locked / held[part, :, None]).value
     return out
 
@@ -184,22 +184,6 @@ def reactions(free: Array, held: Array) -> Array:
     one, other = np.nonzero(~np.eye(count, dtype=bool))
     ratio = held[:, one] / held[:, other]
     found: Array = free[:, one] - ratio[..., None] * free[:, other]
-    return found
-
-
-def answers(free: Array, closing: Array, stiffness: float) -> Array:
-    """Peg forces (N, P, 3) per unit of load behind jaws of a stiffness, see ``statics.loads``.
-
-    Parameters
-    ----------
-    free : the same for a jaw that keeps its force.
-    closing : (N, P, M) peg forces per unit of the force of each jaw or clamp.
-    """
-    if stiffness == 0.0:
-        return free
-    back = np.swapaxes(closing, 1, 2)
-    springs = np.eye(closing.shape[2]) / stiffness + back @ closing
-    found: Array = free - closing @ np.linalg.solve(springs, back @ free)
     return found
 
 
@@ -230,7 +214,7 @@ def cutting_needs(
         rows = known[start : start + BLOCK]
         held = matrices.inverses[rows, 3]
         free = np.swapaxes(matrices.inverses[rows, :3], 1, 2) / scale(touched)
-        own = answers(free, matrices.closing[rows], jaw_stiffness(jaw))
+        own = shared_forces(free, matrices.closing[rows], jaw_stiffness(jaw))
         need = path.worst(-own / held[..., None])
         force = need.value if jaw_force is None else np.full(len(rows), float(jaw_force))
         # Each contact by itself, because each has its own share of the jaw force.

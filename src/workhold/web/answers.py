@@ -6,10 +6,12 @@ import re
 from collections.abc import Iterable, Sequence
 from itertools import count
 from math import hypot
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from attrs import asdict
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import outlines_entry, proof_entry, tolerance_entry, toolkit_fields
+from workhold.files.result.writer import outlines_entry, proof_entry
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.pegs import standoff
@@ -25,9 +27,6 @@ from workhold.model.shown import Shown, shown
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import finite, helps_data, solid_data
 
-if TYPE_CHECKING:
-    from workhold.files.toolkit_file import LoadedToolkit
-
 __all__ = [
     "arrangements_answer",
     "contact_answer",
@@ -38,7 +37,6 @@ __all__ = [
     "place_in",
     "proof_answer",
     "rows_answer",
-    "toolkit_answer",
 ]
 
 # Undecided candidates of a proof that are listed; the result file has them all.
@@ -124,36 +122,10 @@ def face_answer(number: int, segment: Segment) -> dict[str, Any]:
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
 
 
-def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
-    """Describes a preset; its kind is one of those that the page has fields for."""
-    from workhold.web.toolkits import page_kind
-
-    given = toolkit_fields(loaded.toolkit)
-    return {
-        "name": loaded.name,
-        "kind": page_kind(loaded),
-        "title": loaded.title,
-        "source": loaded.source,
-        "unit": loaded.unit.name,
-        "assumed": list(loaded.assumed),
-        "fields": {key: value for key, value in given.items() if key in loaded.fields},
-        "tolerance": tolerance_entry(loaded.tolerance),
-    }
-
-
 def figures_answer() -> list[dict[str, Any]]:
     """Describes the figures of quality."""
-    return [
-        {
-            "key": figure.key,
-            "words": figure.words,
-            "unit": figure.unit,
-            "more_is_better": figure.more_is_better,
-            "meaning": figure.meaning,
-            "decimals": figure.decimals,
-        }
-        for figure in FIGURES
-    ]
+    names = ("key", "words", "unit", "more_is_better", "meaning", "decimals")
+    return [{name: getattr(figure, name) for name in names} for figure in FIGURES]
 
 
 def rows_answer(
@@ -352,15 +324,7 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: 
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
-        "removals": [
-            {
-                "rule": removal.rule,
-                "before": removal.before,
-                "after": removal.after,
-                "removed": removal.removed,
-            }
-            for removal in explanation.removals
-        ],
+        "removals": [{**asdict(one), "removed": one.removed} for one in explanation.removals],
         "last_rule": explanation.last_rule,
         "nearest": None
         if nearest is None

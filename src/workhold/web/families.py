@@ -12,6 +12,7 @@ from pydantic import Field
 from workhold.errors import InputError
 from workhold.model.quality import asked_ranking
 from workhold.model.query import Query
+from workhold.presenting.data import finite
 from workhold.web.forms import HeldIn, ToleranceForm
 from workhold.web.request_forms import LARGEST, Form, Name, WorkpieceForm
 from workhold.web.worker import Order
@@ -86,8 +87,6 @@ class FamilyFound:
 
     def answer(self) -> dict[str, Any]:
         """Describes the family for the page."""
-        from math import isfinite
-
         family = self.family
         points = []
         for plan in self.plans:
@@ -95,12 +94,12 @@ class FamilyFound:
             points.append(
                 {
                     "setups": plan.point.setups,
-                    "loss": plan.point.loss if isfinite(plan.point.loss) else None,
+                    "loss": finite(plan.point.loss),
                     "at_least": plan.point.at_least,
                     "is_least": plan.point.is_least,
                     "pegs_moved": plan.moved,
                     "worst": worst.member.name,
-                    "figure": worst.figure if isfinite(worst.figure) else None,
+                    "figure": finite(worst.figure),
                 }
             )
         return {

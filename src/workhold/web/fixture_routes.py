@@ -5,7 +5,6 @@ from __future__ import annotations
 from datetime import date
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from attrs import evolve
 from fastapi import APIRouter, Path, Query, Request
 from starlette.exceptions import HTTPException
@@ -117,9 +116,8 @@ async def closing(
         raise InputError(
             "no closing can be played with two clamps: the part is put against its locators by hand."
         )
-    answer: dict[str, Any] | None = await at_desk_while_heard(
-        request, "closing", ClosingOrder(held, found, form)
-    )
+    order = ClosingOrder(held, found, form)
+    answer: dict[str, Any] | None = await at_desk_while_heard(request, "closing", order)
     return answer
 
 
@@ -132,7 +130,7 @@ async def fixture(request: Request, name: str, rank: Rank, revision: Revision = 
     """
     result = result_of_job(found_job(request, name), revision)
     index = ranked(result, rank)
-    row = rows_answer(result.table.take(np.array([index])), result.workpiece, result.toolkit, [rank])[0]
+    row = rows_answer(result.table.take(slice(index, index + 1)), result.workpiece, result.toolkit, [rank])[0]
     contacts = contact_answer(result[index], result.workpiece, result.toolkit)
     return {**row, **contacts, "passing": passing_answer(result, index)}
 
@@ -259,10 +257,12 @@ async def paper(
     }
     chosen = asked_of(ChosenSupportsForm, "supports", supports)
     before = before_of(request, asked_of(FirstSideForm, "first_side", first_side))
-    order = PaperOrder.of(
+    order = PaperOrder(
         kind,
-        result,
+        # Only a sheet names the other fixtures.
+        result if kind.startswith("sheet") else result.part(slice(rank - 1, rank)),
         rank,
+        len(result),
         paper,
         unit,
         day or date.today(),
@@ -279,4 +279,4 @@ async def paper(
     if kind != "picture.svg":
         what, ending = kind.split(".")
         headers["Content-Disposition"] = attachment(f"{result.workpiece.name}-{what}-{rank}", ending)
-    return Response(content, media_type=KINDS[kind], headers=headers)
+    return Response(content, media_type=KINDS[kind][0], headers=headers)

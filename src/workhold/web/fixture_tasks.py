@@ -54,16 +54,6 @@ __all__ = [
     "seating_answer",
 ]
 
-# What can be made: its content type.
-KINDS = {
-    "sheet.pdf": "application/pdf",
-    "sheet.svg": "image/svg+xml",
-    "setup.dxf": "image/vnd.dxf",
-    "setup.step": "model/step",
-    "picture.svg": "image/svg+xml",
-    "pins.csv": "text/csv; charset=utf-8",
-    "assembly.glb": "model/gltf-binary",
-}
 # What another set-up was asked for, and its fixture.
 Before = tuple[Query, Fixture]
 # What is made while a search goes on, too.
@@ -106,18 +96,15 @@ class PaperOrder:
     before: Before | None = None
     shape: PartShape | None = None
 
-    @classmethod
-    def of(cls, kind: str, result: Result, rank: int, *options: Any) -> PaperOrder:
-        """Makes an order that carries no more of a result than is needed."""
-        small = result
-        if not kind.startswith("sheet"):
-            small = result.part(slice(rank - 1, rank))
-        return cls(kind, small, rank, len(result), *options)
+    @property
+    def index(self) -> int:
+        """The place of the fixture in the result that is sent."""
+        return self.rank - 1 if len(self.result) == self.count else 0
 
     @property
     def fixture(self) -> Fixture:
         """The fixture."""
-        return self.result[self.rank - 1 if len(self.result) == self.count else 0]
+        return self.result[self.index]
 
     def chosen_supports(self) -> ChosenSupports | None:
         """Finds the supports asked for and chooses a set of them; None where none are asked for,
@@ -141,7 +128,7 @@ def has_step() -> bool:
 
 def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
     """Makes the bytes of what was ordered, and the hash of the result's file if it was needed."""
-    return MAKERS[payload.kind](payload)
+    return KINDS[payload.kind][1](payload)
 
 
 def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
@@ -207,8 +194,7 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
 
     result = order.result
     title = f"Fixture {order.rank} of {order.count}"
-    index = order.rank - 1 if len(result) == order.count else 0
-    path = planned_path(result, index)
+    path = planned_path(result, order.index)
     svg = draw_fixture(order.fixture, result.workpiece, result.toolkit, title=title, path=path)
     return svg.encode("utf-8"), None
 
@@ -224,14 +210,15 @@ def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
     return assembly.content(".glb"), None
 
 
-MAKERS: dict[str, Callable[[PaperOrder], tuple[bytes, str | None]]] = {
-    "sheet.pdf": sheet,
-    "sheet.svg": sheet,
-    "setup.dxf": set_up,
-    "setup.step": set_up,
-    "picture.svg": picture,
-    "pins.csv": set_up,
-    "assembly.glb": bodies,
+# What can be made: its content type, and what makes it.
+KINDS: dict[str, tuple[str, Callable[[PaperOrder], tuple[bytes, str | None]]]] = {
+    "sheet.pdf": ("application/pdf", sheet),
+    "sheet.svg": ("image/svg+xml", sheet),
+    "setup.dxf": ("image/vnd.dxf", set_up),
+    "setup.step": ("model/step", set_up),
+    "picture.svg": ("image/svg+xml", picture),
+    "pins.csv": ("text/csv; charset=utf-8", set_up),
+    "assembly.glb": ("model/gltf-binary", bodies),
 }
 
 

@@ -193,21 +193,21 @@ class SearchForm(Form):
         """
         loads = tuple(form.load() for form in self.loads)
         workpiece = self.workpiece.workpiece(most_segments)
-        passed = None if self.program is None else self.program.passed(workpiece.solid)
-        is_loaded = bool(loads) or (passed is not None and passed.program.forces is not None)
+        program, height = (None, None) if self.program is None else self.program.passed(workpiece.solid)
+        is_loaded = bool(loads) or (program is not None and program.forces is not None)
         return Query(
             workpiece,
             toolkit,
             self.types,
             self.contact_margin,
             self.restrictions.restrictions(),
-            asked_ranking(self.ranking, self.prefer, is_loaded, passed is not None),
+            asked_ranking(self.ranking, self.prefer, is_loaded, program is not None),
             None if self.tolerance is None else self.tolerance.tolerance(),
             loads,
             jaw_force=self.jaw_force,
             listing=None if toolkit.closes_at_once else self.listing,
-            program=None if passed is None else passed.program,
-            peg_height=None if passed is None else passed.peg_height,
+            program=program,
+            peg_height=height,
         )
 
 

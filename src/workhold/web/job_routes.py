@@ -44,7 +44,7 @@ def found_job(request: Request, name: str) -> ServerJob:
     HTTPException
         404 when there is none.
     """
-    job = state_of(request).job(name)
+    job = state_of(request).jobs.get(name)
     if job is None:
         raise HTTPException(404, "There is no such search (any more): search again.")
     return job

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Query, Request
 from starlette.exceptions import HTTPException
 
 from workhold.version import __version__
-from workhold.web.answers import figures_answer, toolkit_answer
+from workhold.web.answers import figures_answer
 from workhold.web.fixture_tasks import has_step
 from workhold.web.job_routes import found_job
 from workhold.web.part_tasks import ShapeOrder, Upload
@@ -21,6 +21,17 @@ __all__ = ["router"]
 
 router = APIRouter()
 LONGEST_NAME = 120
+# Limits that clients are given.
+LIMITS = (
+    "upload_bytes",
+    "request_bytes",
+    "segments",
+    "searches",
+    "jobs",
+    "seconds",
+    "fixtures",
+    "life_seconds",
+)
 
 
 @router.get("/about", summary="Version and limits")
@@ -29,16 +40,7 @@ async def about(request: Request) -> dict[str, Any]:
     limits = state_of(request).limits
     return {
         "version": __version__,
-        "limits": {
-            "upload_bytes": limits.upload_bytes,
-            "request_bytes": limits.request_bytes,
-            "segments": limits.segments,
-            "searches": limits.searches,
-            "jobs": limits.jobs,
-            "seconds": limits.seconds,
-            "fixtures": limits.fixtures,
-            "life_seconds": limits.life_seconds,
-        },
+        "limits": {name: getattr(limits, name) for name in LIMITS},
         "step": has_step(),
     }
 
@@ -213,6 +215,7 @@ async def toolkits() -> list[dict[str, Any]]:
 async def presets() -> list[dict[str, Any]]:
     """Toolkits that people own, by name; lengths in mm."""
     from workhold.files.toolkit_file import preset, preset_names
+    from workhold.web.toolkits import toolkit_answer
 
     return [toolkit_answer(one) for one in map(preset, preset_names())]
 

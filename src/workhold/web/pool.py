@@ -316,10 +316,8 @@ class Pool:
         if task.begun is not None:
             task.begun()
         await worker.send((number, task.name, task.seconds, task.payload))
-        end, error = (
-            clock() + task.seconds,
-            FailedError(f"This took longer than {task.seconds:g} s and was stopped."),
-        )
+        end = clock() + task.seconds
+        late = FailedError(f"This took longer than {task.seconds:g} s and was stopped.")
         while True:
             waits = [worker.inbox.get(), worker.gone.wait()] + ([] if is_asked else [task.stop.wait()])
             message = await first(*waits, timeout=max(end - clock(), 0.0))
@@ -328,7 +326,10 @@ class Pool:
                 if of != number:
                     continue
                 if kind != "report":
-                    finish(task, kind, value)
+                    if kind == "done":
+                        task.settle(value)
+                    else:
+                        task.settle(error=(InputError if kind == "refused" else FailedError)(value))
                     return
                 if task.report is not None and not task.stop.is_set():
                     task.report(value)
@@ -340,23 +341,13 @@ class Pool:
                 )
                 return
             elif is_asked or not task.stops_well:
-                task.settle(error=StoppedError() if task.stop.is_set() else error)
+                task.settle(error=StoppedError() if task.stop.is_set() else late)
                 worker.gone.set()
                 return
             else:
                 is_asked = True
                 end = clock() + (STOP_GRACE if task.stop.is_set() else TIME_GRACE)
                 await worker.send((number, CANCEL))
-
-
-def finish(task: PoolTask, kind: str, value: Any) -> None:
-    """Settles a task with the answer of its worker."""
-    if kind == "done":
-        task.settle(value)
-    elif kind == "refused":
-        task.settle(error=InputError(value))
-    else:
-        task.settle(error=FailedError(value))
 
 
 async def first(*waits: Any, timeout: float | None = None) -> Any:

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import numpy as np
-from attrs import evolve, frozen
+from attrs import asdict, evolve
 from pydantic import ConfigDict, Field
 
 from workhold.errors import InputError
 from workhold.model.program import Program
 from workhold.model.solid import SolidOutline
 from workhold.web.request_forms import LARGEST, Form, Name, Point
+from workhold.web.worker import Order
 
 if TYPE_CHECKING:
     from workhold.files.program.reader import ReadProgram
 
-__all__ = ["PassedProgram", "ProgramForm", "ProgramQuestion", "read_sent_program"]
+__all__ = ["ProgramForm", "ProgramQuestion", "read_sent_program"]
 
 # Characters; 100,000 lines have three million.
 MOST_TEXT, MOST_TABLE = 3_500_000, 400_000
@@ -64,8 +65,8 @@ class ProgramForm(Form):
     thickness: Thick | None = None
     peg_height: Thick | None = None
 
-    def passed(self, solid: SolidOutline | None) -> PassedProgram:
-        """The program as it was read, with the peg height.
+    def passed(self, solid: SolidOutline | None) -> tuple[Program, float | None]:
+        """The program that fixtures are to let pass, and up to which height in mm anything holds the part.
 
         Parameters
         ----------
@@ -85,23 +86,7 @@ class ProgramForm(Form):
                 "pegs: say how thick the part is, and how high pegs stand where that is less."
             )
         read = read_sent_program(self, thick)
-        return PassedProgram(evolve(read.program, name=self.name), high or thick, read)
-
-
-@frozen(eq=False)
-class PassedProgram:
-    """A program that fixtures are to let pass.
-
-    Parameters
-    ----------
-    program : it.
-    peg_height : up to which anything holds the part, in mm.
-    read : how it was read.
-    """
-
-    program: Program
-    peg_height: float | None
-    read: ReadProgram
+        return evolve(read.program, name=self.name), high or thick
 
 
 class ProgramQuestion(Form):
@@ -162,7 +147,7 @@ def named(sentence: str, names: Mapping[str, str]) -> str:
     return sentence
 
 
-def look_at_program(question: ProgramQuestion) -> dict[str, Any]:
+def look_at_program(question: ProgramQuestion, order: Order) -> dict[str, Any]:
     """Describes what was understood of a program: its tools, box, notes, and the paths to draw.
 
     Heights are above the part's lower side. The paths are SVG path data in tenths of mm, y downward. Each has
@@ -236,14 +221,4 @@ def passing_answer(result: Any, index: int) -> dict[str, Any] | None:
     from workhold.statics.program_clearance import passing_of
 
     near = passing_of(result, index)
-    if near is None or not np.isfinite(near.distance):
-        return None
-    return {
-        "distance": near.distance,
-        "line": near.line,
-        "tool": near.tool,
-        "element": near.element,
-        "contact": near.contact,
-        "path": [list(vertex) for vertex in near.path],
-        "radius": near.radius,
-    }
+    return None if near is None or not isfinite(near.distance) else asdict(near)

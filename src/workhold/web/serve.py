@@ -7,6 +7,7 @@ import signal
 import socket
 from collections import Counter
 from collections.abc import Callable, Collection
+from functools import partial
 from ipaddress import ip_address
 from types import FrameType
 from typing import Any
@@ -21,7 +22,6 @@ from workhold.web.origins import Origins
 
 __all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
 
-LOCAL = ("localhost", "127.0.0.1", "::1")
 # Seconds a client has to send the first lines of a request, and a response to end when the server stops.
 HEADER_SECONDS = 15.0
 STOP_SECONDS = 1
@@ -114,12 +114,12 @@ def run_server(
     host: str,
     port: int,
     limits: ServerLimits,
-    more_hosts: Collection[str] = (),
-    proxies: Collection[str] = (),
-    token: str | None = None,
-    listening: Callable[[str], None] | None = None,
-    prepare: Callable[[], None] | None = None,
-    origins: Collection[str] = (),
+    more_hosts: Collection[str],
+    proxies: Collection[str],
+    token: str | None,
+    listening: Callable[[str], None],
+    prepare: Callable[[], None],
+    origins: Collection[str],
 ) -> None:
     """Serves until interrupted.
 
@@ -143,16 +143,10 @@ def run_server(
     shown = f"http://{address_words(host)}:{listener.getsockname()[1]}/"
     if token is not None:
         shown += f"?token={token}"
-    hosts = hosts_of(host, more_hosts)
-
-    def heard() -> None:
-        if listening is not None:
-            listening(shown)
-
-    server = make_server(limits, hosts, heard, proxies, token, Origins(frozenset(origins)))
+    hosts, allowed = hosts_of(host, more_hosts), Origins(frozenset(origins))
+    server = make_server(limits, hosts, partial(listening, shown), proxies, token, allowed)
     try:
-        if prepare is not None:
-            prepare()
+        prepare()
         server.run(sockets=[listener])
         if server.stopped_by == signal.SIGTERM:
             raise SystemExit(TERMINATED)
@@ -242,7 +236,7 @@ def is_for_others(host: str) -> bool:
 def hosts_of(host: str, more: Collection[str]) -> Hosts:
     """Lists the names of a server that listens at a host."""
     everywhere = is_everywhere(host)
-    names = {*LOCAL, *(name.lower() for name in more)}
+    names = {*Hosts().names, *(name.lower() for name in more)}
     names.add(socket.gethostname().lower() if everywhere else host.lower())
     return Hosts(frozenset(names), any_address=everywhere)
 

@@ -6,7 +6,7 @@ The files are read once into a table; no name in a request is ever looked up any
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, suppress
 from hashlib import sha256
 from importlib.resources import files
@@ -17,7 +17,7 @@ from attrs import define, field, frozen
 from starlette.requests import Request
 
 from workhold.web.guard import ServerLimits
-from workhold.web.jobs import Jobs, ServerJob
+from workhold.web.jobs import Jobs
 from workhold.web.pool import Pool, PoolTask, StoppedError
 
 __all__ = ["ServerState", "address_of", "at_desk", "at_desk_while_heard", "state_of"]
@@ -26,12 +26,8 @@ TYPES = {
     "html": "text/html; charset=utf-8",
     "css": "text/css; charset=utf-8",
     "js": "text/javascript; charset=utf-8",
-    "mjs": "text/javascript; charset=utf-8",
     "svg": "image/svg+xml",
-    "png": "image/png",
-    "ico": "image/x-icon",
     "json": "application/json",
-    "webmanifest": "application/manifest+json",
     "txt": "text/plain; charset=utf-8",
 }
 
@@ -53,26 +49,19 @@ class StaticFile:
 
 
 def static_files() -> dict[str, StaticFile]:
-    """Reads the files of the page, by their paths below ``static``, such as ``js/list.js``."""
+    """Reads the files of the page, by their paths below ``static``, such as ``space/orbit.js``."""
     return dict(found(files("workhold.web") / "static", ""))
 
 
-def found(folder: Traversable, prefix: str) -> list[tuple[str, StaticFile]]:
+def found(folder: Traversable, prefix: str) -> Iterator[tuple[str, StaticFile]]:
     """Reads the files of a known type in a folder and those below it."""
-    out: list[tuple[str, StaticFile]] = []
-    if not folder.is_dir():
-        return out
-    for entry in sorted(folder.iterdir(), key=lambda entry: entry.name):
-        if entry.is_dir():
-            out += found(entry, f"{prefix}{entry.name}/")
-            continue
+    for entry in folder.iterdir():
         kind = TYPES.get(entry.name.rpartition(".")[2].lower())
-        if kind is not None:
+        if entry.is_dir():
+            yield from found(entry, f"{prefix}{entry.name}/")
+        elif kind is not None:
             content = entry.read_bytes()
-            out.append(
-                (prefix + entry.name, StaticFile(content, kind, f'"{sha256(content).hexdigest()[:20]}"'))
-            )
-    return out
+            yield prefix + entry.name, StaticFile(content, kind, f'"{sha256(content).hexdigest()[:20]}"')
 
 
 @define(eq=False)
@@ -114,10 +103,6 @@ class ServerState:
             with suppress(asyncio.CancelledError):
                 await sweeper
             await asyncio.gather(self.searchers.close(), self.desks.close())
-
-    def job(self, name: str) -> ServerJob | None:
-        """A job by its name."""
-        return self.jobs.get(name)
 
 
 def state_of(request: Request) -> ServerState:

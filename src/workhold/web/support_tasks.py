@@ -21,7 +21,6 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.requirements import zone_of
 from workhold.model.support_bodies import bodies_on_supports, supported_sizes
-from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import ChosenSupports, Supports, Triple, recounted
 from workhold.units import unit_named
 from workhold.web.request_forms import SupportsForm
@@ -64,28 +63,15 @@ def found_supports(asked: SupportsOrder) -> Supports:
     InputError
         For a thickness that nobody knows, pads too large for the holes, and a jaw force too small.
     """
-    from workhold.supports.listing import supports_of
-
-    form = asked.form
-    loads = None if form.loads is None else [load.load() for load in form.loads]
-    request = request_of(asked)
-    return supports_of(asked.fixture, asked.query, request, loads, form.jaw_force, form.best)
-
-
-def request_of(asked: SupportsOrder) -> SupportRequest:
-    """Makes the request for supports of a form, with what the part's solid knows.
-
-    Raises
-    ------
-    InputError
-        For a thickness that nobody knows.
-    """
     from workhold.supports.asking import asked_request
+    from workhold.supports.listing import supports_of
 
     form = asked.form
     own = {name: getattr(form, name) for name in OWN if getattr(form, name) is not None}
     zones = {name: [zone_of(loop) for loop in getattr(form, name)] for name in ("bottom_zones", "top_zones")}
-    return asked_request(asked.query, form.thickness, own | zones)
+    request = asked_request(asked.query, form.thickness, own | zones)
+    loads = None if form.loads is None else [load.load() for load in form.loads]
+    return supports_of(asked.fixture, asked.query, request, loads, form.jaw_force, form.best)
 
 
 def chosen_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
@@ -132,11 +118,8 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
     ``nearest`` is the point of the triangle's border that is nearest to the clamp. ``built`` has the holes of
     pegs and supports in plates that can take them all, as on the sheet, where these are others, else null.
     """
-    fixture, toolkit = found.fixture, found.query.toolkit
-    clamp = triple.clamp
+    fixture, clamp, loaded = found.fixture, triple.clamp, bool(found.loads)
     corners = np.array([(pad.x, pad.y) for pad in triple.supports])
-    names = [carrier.name for carrier in toolkit.carriers]
-    loaded = bool(found.loads)
     moves = triple.travel is not None and abs(triple.travel - fixture.jaw_separation) > 1e-6
 
     def placed(x: float, y: float) -> list[float]:
@@ -144,7 +127,7 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
 
     return {
         "holes": [pad.hole for pad in triple.supports],
-        "carriers": [names.index(pad.carrier) for pad in triple.supports],
+        "carriers": found.query.toolkit.carrier_numbers(pad.carrier for pad in triple.supports),
         "pads": [placed(pad.x, pad.y) for pad in triple.supports],
         "at": placed(*clamp.at),
         "clamped_height": found.request.clamped_height(clamp.at),

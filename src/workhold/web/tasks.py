@@ -21,7 +21,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
 from workhold.web.fixture_tasks import close, find_seating, make_paper
 from workhold.web.part_tasks import builtin_part, check_part, find_shape, read_part, survey_part
-from workhold.web.program_forms import ProgramQuestion, look_at_program
+from workhold.web.program_forms import look_at_program
 from workhold.web.support_tasks import find_supports
 from workhold.web.worker import Order, Tasks, worker_main
 
@@ -145,11 +145,6 @@ def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, A
     return lesson(form.workpiece(most_segments), order.cancel)
 
 
-def program(question: ProgramQuestion, order: Order) -> dict[str, Any]:
-    """Describes a program of the machine for the page."""
-    return look_at_program(question)
-
-
 def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) -> list[dict[str, Any]]:
     """Describes what loads do to a fixture."""
     from workhold.presenting.data import load_case_data
@@ -198,7 +193,7 @@ TASKS: Tasks = {
     "builtin_part": builtin_part,
     "read_part": read_part,
     "survey_part": survey_part,
-    "look_at_program": program,
+    "look_at_program": look_at_program,
     "loads": loads,
     "warnings": warnings,
     "resist": resist,

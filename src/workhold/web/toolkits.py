@@ -5,7 +5,6 @@ The page draws its fields from this alone, which comes from the data of the kind
 Glossary
 --------
 said : fields that a kind's name says by itself, such as the one column of a gripper.
-start : fields to begin with, in mm, where nobody has given any.
 """
 
 from __future__ import annotations
@@ -16,12 +15,14 @@ from typing import Any
 from attrs import asdict, frozen
 
 from workhold.drawing.panel import arrangement_words
+from workhold.files.result.writer import tolerance_entry, toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit
 from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
+from workhold.fixels.setup_words import PageWords
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import Choice, ToolkitField
 
-__all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind"]
+__all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind", "toolkit_answer"]
 
 
 # How the page reads a form of field where it has no form of its own for it; choices are taken by "one" or
@@ -64,15 +65,11 @@ class Described:
     Parameters
     ----------
     name : of the kind, or an alias of ``fixels.kinds``.
-    title : in a few words, to choose it by.
-    closes : what the button says that shows how it closes.
-    start : see the glossary.
+    words : what the page calls it, and the fields to begin with.
     """
 
     name: str
-    title: str
-    closes: str
-    start: Mapping[str, Any]
+    words: PageWords
 
     @property
     def said(self) -> Mapping[str, Any]:
@@ -88,28 +85,28 @@ class Described:
     @property
     def roles(self) -> dict[str, str]:
         """The role of the carriers whose heights a field says, by the name of the field."""
-        rows = (row for row in table_of(kind_of(self.name)[0]).fields if row.form == "heights")
         any_heights = (1.0, 2.0)
         return {
             row.name: role
-            for row in rows
-            for role in toolkit_of(self.name, {**self.start, row.name: any_heights}).heights
+            for row in table_of(kind_of(self.name)[0]).fields
+            if row.form == "heights"
+            for role in toolkit_of(self.name, {**self.words.start, row.name: any_heights}).heights
         }
 
     def answer(self) -> dict[str, Any]:
         """Describes the kind for the page."""
-        toolkit = toolkit_of(self.name, self.start)
+        toolkit = toolkit_of(self.name, self.words.start)
         types = {one.name: arrangement_words(one, toolkit) for one in toolkit.arrangements}
         return {
             "name": self.name,
             "kind": toolkit.kind,
-            "title": self.title,
+            "title": self.words.title,
             "noun": self.name if self.said else toolkit.noun,
             "mover": toolkit.moving.noun,
             "locked": toolkit.locked,
-            "closes": self.closes,
+            "closes": self.words.closes,
             "said": dict(self.said),
-            "start": dict(self.start),
+            "start": dict(self.words.start),
             "types": [{"name": name, "words": words} for name, words in types.items()],
             "fields": [asdict(one) for one in self.fields],
             "hardware": hardware_answer(),
@@ -119,18 +116,17 @@ class Described:
 
 def hardware_answer() -> list[dict[str, Any]]:
     """Describes what every kind of toolkit may have for three dimensions, with the fields of each."""
-    tables = {name: kind.table for name, kind in HARDWARE.items()}
     return [
         {
             "name": name,
-            "title": table.summary,
-            "fields": [asdict(one) for row in table.fields for one in page_fields(row, name)],
+            "title": kind.table.summary,
+            "fields": [asdict(one) for row in kind.table.fields for one in page_fields(row, name)],
         }
-        for name, table in tables.items()
+        for name, kind in HARDWARE.items()
     ]
 
 
-DESCRIBED = tuple(Described(name, words.title, words.closes, words.start) for name, words in PAGES.items())
+DESCRIBED = tuple(Described(name, words) for name, words in PAGES.items())
 
 
 def kinds_answer() -> list[dict[str, Any]]:
@@ -146,3 +142,18 @@ def page_kind(loaded: LoadedToolkit) -> str:
         if kind_of(one.name)[0] == loaded.kind and one.said.items() <= loaded.fields.items()
     ]
     return max(fits, key=lambda one: len(one.said)).name
+
+
+def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
+    """Describes a preset; its kind is one of those that the page has fields for."""
+    given = toolkit_fields(loaded.toolkit)
+    return {
+        "name": loaded.name,
+        "kind": page_kind(loaded),
+        "title": loaded.title,
+        "source": loaded.source,
+        "unit": loaded.unit.name,
+        "assumed": list(loaded.assumed),
+        "fields": {key: value for key, value in given.items() if key in loaded.fields},
+        "tolerance": tolerance_entry(loaded.tolerance),
+    }

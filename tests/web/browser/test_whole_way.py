@@ -1,12 +1,14 @@
-"""From a file to a setup sheet, as a visitor goes."""
+"""From a file to a setup sheet, as a visitor goes; also where a reverse proxy serves the page below a path of its own."""
 
 from __future__ import annotations
 
 import json
 import re
+from typing import Any
 
 import pytest
-from running_server import LONG
+from reverse_proxy import reverse_proxy
+from running_server import LONG, RunningServer
 from walking import EXAMPLES, SEARCH_PATIENCE, Walk
 
 
@@ -184,3 +186,21 @@ def test_a_phone_shows_one_section_at_a_time(walk: Walk) -> None:
             " && e.getBoundingClientRect().right > 391).map(e => e.id)"
         )
         assert wide == []
+
+
+def test_the_whole_way_works_below_a_path(server: RunningServer, browser: Any) -> None:
+    """A search begins, is watched and shown, and nothing is asked for outside the path."""
+    with reverse_proxy(str(server.client.base_url).rstrip("/"), "/shop/pegs") as address:
+        context = browser.new_context(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
+        walk, failed = Walk(context.new_page(), server), []
+        walk.page.on("response", lambda answer: failed.append(answer.url) if answer.status >= 400 else None)
+        walk.open(f"{address}/")
+        walk.take("widget", None)
+        walk.page.click("#search")
+        walk.seen("#list .row:not(.coming)", SEARCH_PATIENCE)
+        walk.page.wait_for_selector('body[data-search="done"]', timeout=SEARCH_PATIENCE)
+        sheet = walk.page.get_attribute("#take-sheet", "href")
+        context.close()
+    assert walk.troubles == [] and failed == []
+    assert sheet is not None and not sheet.startswith("/")
+    assert all(asked.startswith((f"{address}/", "data:", "blob:")) for asked in walk.asked)

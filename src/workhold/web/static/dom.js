@@ -15,6 +15,12 @@ export function byId(id) {
   return element;
 }
 
+/** A field to type in or to tick, by its id. @param {string} id */
+export const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
+
+/** A list to choose from, by its id. @param {string} id */
+export const choice = (id) => /** @type {HTMLSelectElement} */ (byId(id));
+
 /**
  * Give an element its attributes: functions become listeners, true and false set and remove, null is left out.
  * @param {Element} element

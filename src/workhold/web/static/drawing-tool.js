@@ -2,7 +2,7 @@
  * Drawing a part with the mouse or the keys: lines and arcs on a grid, lengths and radii typed, edges that would cross refused.
  */
 import { ApiError, send } from "./api.js";
-import { byId, draw, show } from "./dom.js";
+import { byId, choice, draw, show } from "./dom.js";
 import { outlinePath, segmentOf, segmentPath } from "./geometry.js";
 import { bulgeOfRadius, bulgeThrough, Refusal, Sketch } from "./sketch.js";
 import { length, readLength, scale } from "./units.js";
@@ -71,7 +71,7 @@ export class DrawingTool {
 
   /** The distance of the grid in mm; 0 for none. */
   get grid() {
-    return Number(/** @type {HTMLSelectElement} */ (byId("draw-grid")).value) * scale();
+    return Number(choice("draw-grid").value) * scale();
   }
 
   /** @param {"line"|"arc"} kind */

@@ -3,7 +3,7 @@
  * is picked.
  */
 import { ApiError, ask, send, surveyPart } from "./api.js";
-import { byId, make, show } from "./dom.js";
+import { byId, field, make, show } from "./dom.js";
 import { outlinesOf } from "./own-outlines.js";
 import { state, workpieceForm } from "./state.js";
 import { countText } from "./units.js";
@@ -19,7 +19,7 @@ let latest = 0;
 
 /** Set the dialog up. */
 export function familiesDialog() {
-  const files = /** @type {HTMLInputElement} */ (byId("family-files"));
+  const files = field("family-files");
   byId("families").addEventListener("click", () => openFamily([]));
   files.addEventListener("change", () => {
     openFamily([...(files.files ?? [])]);

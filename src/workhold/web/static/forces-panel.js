@@ -2,7 +2,7 @@
  * A force dragged onto the part: each peg's reaction at once, as bars and arrows, and which fixture resists it best.
  */
 import { ApiError, send } from "./api.js";
-import { byId, make, quiet, show } from "./dom.js";
+import { byId, field, make, quiet, show } from "./dom.js";
 import { tellForces } from "./details-panel.js";
 import { centerOf, reactions } from "./forces.js";
 import { inside } from "./geometry.js";
@@ -20,9 +20,6 @@ const STEP = 5;
 /** What the jaw is, and how many times as stiff as a contact. */
 const KINDS = ["force-kind", "force-ratio"];
 const FIELDS = ["force-x", "force-y", "force-size", "force-direction", "force-moment", "force-jaw"];
-
-/** @returns {HTMLInputElement} */
-const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
 
 /** How many newtons a millimetre of the arrow is. */
 function perMillimetre() {

@@ -3,7 +3,7 @@
  */
 import { ask } from "./api.js";
 import { detailsPanel } from "./details-panel.js";
-import { byId, quiet, show } from "./dom.js";
+import { byId, choice, quiet, show } from "./dom.js";
 import { familiesDialog } from "./families-dialog.js";
 import { forcesPanel } from "./forces-panel.js";
 import { listenToKeys } from "./keys.js";
@@ -31,7 +31,7 @@ const GRIDS = { mm: [1, 2, 5, 10, 20], inch: [0.0625, 0.125, 0.25, 0.5, 1] };
 
 /** Offer grids in the unit shown. */
 function writeGrids() {
-  const select = /** @type {HTMLSelectElement} */ (byId("draw-grid"));
+  const select = choice("draw-grid");
   select.replaceChildren(...GRIDS[state.unit].map((step) => new Option(`${step} ${unitWord()}`, String(step))), new Option("none", "0"));
   select.selectedIndex = 2;
 }

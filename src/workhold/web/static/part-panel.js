@@ -2,7 +2,7 @@
  * Step 1: a part from a file, from those built in, or drawn by hand.
  */
 import { ApiError, ask, send, surveyPart } from "./api.js";
-import { byId, make, show } from "./dom.js";
+import { byId, choice, field, make, show } from "./dom.js";
 import { openFamily, takesDrop } from "./families-dialog.js";
 import { previewOf } from "./file-preview.js";
 import { askQuestions, noQuestions, showQuestions } from "./file-questions.js";
@@ -29,16 +29,13 @@ let reading = 0;
 /** @type {import("./part-drawing.js").PartDrawing} */
 let drawing;
 
-/** @returns {HTMLSelectElement} */
-const choice = (id) => /** @type {HTMLSelectElement} */ (byId(id));
-
 /**
  * Set the panel up.
  * @param {{drawing: import("./part-drawing.js").PartDrawing, onDraw: () => void}} page
  */
 export function partPanel({ drawing: board, onDraw }) {
   drawing = board;
-  const file = /** @type {HTMLInputElement} */ (byId("file"));
+  const file = field("file");
   file.addEventListener("change", () => {
     if (file.files?.length) openFile(file.files[0]);
     file.value = "";

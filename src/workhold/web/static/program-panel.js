@@ -2,7 +2,7 @@
  * The machine's program beside the part: a file and its table of tools, what was understood of them, and what its tools come near to.
  */
 import { ApiError, ask, send } from "./api.js";
-import { byId, make, quiet, show } from "./dom.js";
+import { byId, field, make, quiet, show } from "./dom.js";
 import { colourOf } from "./program-drawing.js";
 import { fixtureDrawing, partDrawing } from "./stage-panel.js";
 import { change, on, programRequest, state } from "./state.js";
@@ -20,15 +20,12 @@ const MANY = 4;
 
 let latest = 0;
 
-/** @returns {HTMLInputElement} */
-const input = (id) => /** @type {HTMLInputElement} */ (byId(id));
-
 /** Set the panel up. */
 export function programPanel() {
   for (const [id, take] of [["program-file", openProgram], ["tools-file", openProgram]]) {
-    input(id).addEventListener("change", () => {
-      take([...(input(id).files ?? [])]);
-      input(id).value = "";
+    field(id).addEventListener("change", () => {
+      take([...(field(id).files ?? [])]);
+      field(id).value = "";
     });
   }
   byId("program-none").addEventListener("click", () => change({ program: null, programRead: null }));
@@ -81,10 +78,10 @@ function say(words) {
 function takeFields() {
   if (!state.program) return;
   const size = (id) => {
-    const value = readLength(input(id).value);
+    const value = readLength(field(id).value);
     return value === null || !Number.isFinite(value) ? null : value;
   };
-  const at = input("program-z").value;
+  const at = field("program-z").value;
   const height = size("program-z-height");
   show(byId("program-z-label"), at === "height");
   const program = {
@@ -94,8 +91,8 @@ function takeFields() {
     zero: [size("program-x") ?? 0, size("program-y") ?? 0],
     z_zero: at === "height" ? height ?? 0 : at,
     clearance: size("program-clearance") ?? 1,
-    rapid: input("program-rapid").value,
-    unit: input("program-unit").value || null,
+    rapid: field("program-rapid").value,
+    unit: field("program-unit").value || null,
   };
   const { thickness } = program;
   const sheet = thickness && !state.sheet.thickness ? { sheet: { ...state.sheet, thickness } } : {};
@@ -111,17 +108,17 @@ function writeFields() {
   byId("program-name").textContent = program ? `${program.name}${program.tools ? ` with ${program.tools.name}` : ""}` : "";
   for (const id of ["program-thickness", "program-pegs"]) show(/** @type {Element} */ (byId(id).parentElement), !part?.solid);
   if (!program) return;
-  input("program-thickness").value = fieldLength(program.thickness);
-  input("program-pegs").value = fieldLength(program.peg_height);
-  input("program-x").value = program.zero[0] ? fieldLength(program.zero[0]) : "";
-  input("program-y").value = program.zero[1] ? fieldLength(program.zero[1]) : "";
+  field("program-thickness").value = fieldLength(program.thickness);
+  field("program-pegs").value = fieldLength(program.peg_height);
+  field("program-x").value = program.zero[0] ? fieldLength(program.zero[0]) : "";
+  field("program-y").value = program.zero[1] ? fieldLength(program.zero[1]) : "";
   const height = typeof program.z_zero === "number";
-  input("program-z").value = height ? "height" : program.z_zero;
-  input("program-z-height").value = height ? fieldLength(program.z_zero) : "";
+  field("program-z").value = height ? "height" : program.z_zero;
+  field("program-z-height").value = height ? fieldLength(program.z_zero) : "";
   show(byId("program-z-label"), height);
-  input("program-clearance").value = program.clearance === 1 ? "" : fieldLength(program.clearance);
-  input("program-rapid").value = program.rapid;
-  input("program-unit").value = program.unit ?? "";
+  field("program-clearance").value = program.clearance === 1 ? "" : fieldLength(program.clearance);
+  field("program-rapid").value = program.rapid;
+  field("program-unit").value = program.unit ?? "";
 }
 
 /** Have the program read as it stands now. */

@@ -1,7 +1,7 @@
 /**
  * The fixtures: how many there are so far, filters, the list, and what is said when there are none.
  */
-import { byId, make, show } from "./dom.js";
+import { byId, choice, field, make, show } from "./dom.js";
 import { FixtureList } from "./fixture-list.js";
 import { Rows } from "./rows.js";
 import { cancel, searching, start } from "./search.js";
@@ -27,12 +27,6 @@ let wanted = null;
 /** Whether a fixture was chosen by the user, and not just the first one. */
 let chosenByUser = false;
 
-/** @returns {HTMLSelectElement} */
-const choice = (id) => /** @type {HTMLSelectElement} */ (byId(id));
-
-/** @returns {HTMLInputElement} */
-const box = (id) => /** @type {HTMLInputElement} */ (byId(id));
-
 /** @param {any[]} figures */
 export function resultsPanel(figures) {
   const known = figures.map((figure) => ({ ...figure, short: SHORT[figure.key] ?? figure.words }));
@@ -54,7 +48,7 @@ export function resultsPanel(figures) {
   choice("filter-type").addEventListener("change", () => setList({ type: choice("filter-type").value }));
   choice("filter-face").addEventListener("change", () => setList({ face: choice("filter-face").value }));
   byId("filter-angle").addEventListener("change", readAngle);
-  for (const key of ["each", "unfit"]) byId(key).addEventListener("change", () => setList({ [key]: box(key).checked }));
+  for (const key of ["each", "unfit"]) byId(key).addEventListener("change", () => setList({ [key]: field(key).checked }));
   choice("prefer").addEventListener("change", () => {
     change({ prefer: choice("prefer").value || null, ranking: null });
     start();
@@ -95,7 +89,7 @@ function setList(patch) {
 
 /** Read the filter of angles: a range such as 0..90. */
 function readAngle() {
-  const input = /** @type {HTMLInputElement} */ (byId("filter-angle"));
+  const input = field("filter-angle");
   const text = input.value.trim().replace(/\s*(\.\.|to|–)\s*/, "..");
   const match = /^(-?\d+(?:\.\d+)?)\.\.(-?\d+(?:\.\d+)?)$/.exec(text);
   input.setAttribute("aria-invalid", String(text !== "" && !match));
@@ -129,13 +123,13 @@ function writeTypes() {
 /** Show how the list is sorted and filtered. */
 export function writeFilters() {
   const { sort, descending, type, face, angle, each, unfit } = state.list;
-  box("each").checked = Boolean(each);
-  box("unfit").checked = Boolean(unfit);
+  field("each").checked = Boolean(each);
+  field("unfit").checked = Boolean(unfit);
   choice("prefer").value = state.prefer ?? "";
   choice("sort").value = sort;
   choice("filter-type").value = type;
   choice("filter-face").value = face;
-  /** @type {HTMLInputElement} */ (byId("filter-angle")).value = angle;
+  field("filter-angle").value = angle;
   byId("descending").setAttribute("aria-pressed", String(descending));
   byId("descending").textContent = descending ? "↓ largest first" : "↑ smallest first";
 }

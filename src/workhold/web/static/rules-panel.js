@@ -1,15 +1,12 @@
 /**
  * Step 3: what is ruled out: faces, zones, angles, margins, types.
  */
-import { byId, make, quiet, show } from "./dom.js";
+import { byId, field, make, quiet, show } from "./dom.js";
 import { bandWords, isNever, toggleFace } from "./part-drawing.js";
 import { change, on, state } from "./state.js";
 import { kindOf, kinds } from "./toolkits.js";
 import { fieldLength, length, number, readLength, readNumber } from "./units.js";
 import { circleLoop, ZoneTool } from "./zone-tool.js";
-
-/** @returns {HTMLInputElement} */
-const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
 
 /** Fixtures whose seating is worked out in one search. */
 const MOST_SEATED = 1000;

@@ -2,7 +2,7 @@
  * Two set-ups one after the other: the part turned over, held by faces that the first side leaves, and a switch between both.
  */
 import { ApiError, send } from "./api.js";
-import { byId, make, show } from "./dom.js";
+import { byId, field, make, show } from "./dom.js";
 import { snapshot } from "./link.js";
 import { isNever } from "./part-drawing.js";
 import { fileRead, readOver, resumeFile, usePart } from "./part-panel.js";
@@ -12,8 +12,7 @@ import { searching, start, takeUp } from "./search.js";
 import { partDrawing } from "./stage-panel.js";
 import { axisWords, turnedOver } from "./standing-question.js";
 import { change, on, state } from "./state.js";
-import { sideSwitch, turnCard } from "./turn-card.js";
-import { fieldLength, readLength } from "./units.js";
+import { fieldLength, readLength, unitWord } from "./units.js";
 
 /** @typedef {import("./link.js").Kept} Kept */
 /** @typedef {{shown: number, kept: (Kept|null)[]}} Sides which side is on show, and what restores each that is not */
@@ -79,7 +78,7 @@ function write() {
       click: () => toggleCut(number), pointerenter: () => partDrawing.point(number), pointerleave: () => partDrawing.point(null),
     }, String(number))));
   const file = fileRead();
-  /** @type {HTMLInputElement} */ (byId("turn-height")).placeholder = file?.how.peg_height ? fieldLength(file.how.peg_height) : "the part’s";
+  field("turn-height").placeholder = file?.how.peg_height ? fieldLength(file.how.peg_height) : "the part’s";
   byId("second-side").textContent = `Second side: ${axisWords(turnedOver(solid.axis))} up`;
   byId("second-side").toggleAttribute("disabled", !file || turning || searching());
   byId("turn-words").textContent = turning ? "The part is being turned over …" : file
@@ -107,7 +106,7 @@ export function sameFaces(part, other, numbers) {
 
 /** How far pegs reach on the second side, in mm; as on the first where nobody says. */
 function pegHeight(file) {
-  const value = readLength(/** @type {HTMLInputElement} */ (byId("turn-height")).value);
+  const value = readLength(field("turn-height").value);
   return value !== null && value > 0 ? value : file.how.peg_height;
 }
 
@@ -174,4 +173,22 @@ export function fileOf(number) {
 export function firstSideQuery(number) {
   const first = number ? setUps().find((one) => one.number === 0) : undefined;
   return first ? { first_side: JSON.stringify({ job: first.job, rank: first.rank, cut: first.known.cut ?? first.known.avoid }) } : {};
+}
+
+/** The card that offers the second side of a part. */
+function turnCard() {
+  return make("section.card.turn.wide", { id: "turn-card", "aria-labelledby": "turn-title", hidden: true },
+    make("h2", { id: "turn-title" }, "Then the second side"),
+    make("p.small", { id: "turn-words" }),
+    make("div.chips", { id: "turn-faces" }),
+    make("div.row-of-buttons", {},
+      make("button.strong", { id: "second-side", type: "button" }, "Second side"), " ",
+      make("label.inline", {}, "Peg height there ", make("span.unit", {}, unitWord()), make("input.short", { id: "turn-height", inputmode: "decimal", autocomplete: "off" }))),
+    make("div.trouble-box", { id: "turn-trouble", role: "alert", hidden: true }));
+}
+
+/** A button for each side. @param {string[]} words what the sides are called */
+function sideSwitch(words) {
+  return make("div.segmented", { id: "sides", role: "group", "aria-label": "Side of the part", hidden: true },
+    ...words.map((word, number) => make("button", { id: `side-${number}`, type: "button", "aria-pressed": "false" }, word)));
 }

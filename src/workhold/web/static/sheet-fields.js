@@ -1,7 +1,7 @@
 /**
  * What else stands on the setup sheet: part zero, thickness, dowels, how far the cutter keeps off, the machine's place.
  */
-import { byId, quiet } from "./dom.js";
+import { byId, choice, quiet } from "./dom.js";
 import { change, on, state } from "./state.js";
 import { fieldLength, length, readLength, readNumber, scale } from "./units.js";
 
@@ -58,7 +58,7 @@ function read() {
 /** Write what is known into fields that nobody is typing in. */
 function write() {
   const { sheet, selected, part } = state;
-  /** @type {HTMLSelectElement} */ (byId("paper")).value = sheet.paper;
+  choice("paper").value = sheet.paper;
   seating().checked = sheet.seating === true;
   for (const each of FIELDS) {
     const input = field(each);

@@ -2,7 +2,7 @@
  * The fixture shown in three dimensions: its bodies, opened and closed by a slider.
  */
 import { ApiError, downloadPath, fetched } from "./api.js";
-import { byId, make, show } from "./dom.js";
+import { byId, field, make, show } from "./dom.js";
 import { hasShape, isSent, sendShape } from "./part-shape.js";
 import { SIDES, setUps } from "./set-ups.js";
 import { sheetQuery } from "./sheet-fields.js";
@@ -26,7 +26,7 @@ export function spaceDialog() {
   byId("pin").before(make("button", button, "3-D"), " ");
   document.body.append(made());
   const dialog = /** @type {HTMLDialogElement} */ (byId("space"));
-  const slider = /** @type {HTMLInputElement} */ (byId("space-opening"));
+  const slider = field("space-opening");
   byId("in-space").addEventListener("click", openSpace);
   slider.addEventListener("input", () => {
     stopPlaying();
@@ -156,7 +156,7 @@ function chooseSide(number) {
 
 /** Play the closing, of one side after the other where there are two. */
 async function play() {
-  const slider = /** @type {HTMLInputElement} */ (byId("space-opening"));
+  const slider = field("space-opening");
   const sides = setUps().map(({ number }) => number);
   await playing(sides, {
     show: (number) => (sides.length > 1 ? showSide(number) : Promise.resolve()),
@@ -203,7 +203,7 @@ async function viewOf() {
 
 /** Set the slider to closed, as far as these bodies open. */
 function setSlider(bodies) {
-  const slider = /** @type {HTMLInputElement} */ (byId("space-opening"));
+  const slider = field("space-opening");
   const widest = WIDEST * (view?.size ?? 1) * 1000;
   show(byId("space-slider"), bodies.some((body) => body.opens));
   slider.max = String(widest);

@@ -2,7 +2,7 @@
  * Supports under the part and a clamp on top: the best sets of the fixture shown, over the plan, from the side, in figures.
  */
 import { ApiError, send } from "./api.js";
-import { byId, make, quiet, show } from "./dom.js";
+import { byId, field, make, quiet, show } from "./dom.js";
 import { drawSide } from "./side-view.js";
 import { fixtureDrawing, partDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
@@ -23,8 +23,6 @@ let asked = null;
 /** @type {ZoneTool|null} */
 let tool = null;
 
-/** @returns {HTMLInputElement} */
-const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
 const card = () => /** @type {HTMLDetailsElement} */ (byId("supports"));
 
 /** Make the panel and set it up. */

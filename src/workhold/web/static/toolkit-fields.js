@@ -1,7 +1,7 @@
 /**
  * Fields for the values of a toolkit, made from their description: how each looks, is read and is written.
  */
-import { byId, make } from "./dom.js";
+import { field as input, make } from "./dom.js";
 import { same } from "./toolkits.js";
 import { fieldLength, readLength, readNumber } from "./units.js";
 
@@ -9,9 +9,6 @@ import { fieldLength, readLength, readNumber } from "./units.js";
 
 /** Labels of forms that take two inputs. */
 const PAIRS = { pitch: ["x", "y"], span: ["least", "most"] };
-
-/** @returns {HTMLInputElement} */
-const input = (id) => /** @type {HTMLInputElement} */ (byId(id));
 
 /** The name of a field's element. @param {Field} field */
 function idOf({ name, table }) {

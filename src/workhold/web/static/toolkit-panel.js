@@ -2,7 +2,7 @@
  * Step 2: what holds the part, from what a user has by name or in own values; the fields are those of its kind.
  */
 import { ask } from "./api.js";
-import { byId, make, quiet, show } from "./dom.js";
+import { byId, field, make, quiet, show } from "./dom.js";
 import { change, on, state } from "./state.js";
 import { makeFields, readField, writeField } from "./toolkit-fields.js";
 import { asKind, fieldsOf, kindOf, kinds, learnKinds, same, setValue, valueOf } from "./toolkits.js";
@@ -15,9 +15,6 @@ const OWN = "own";
 let presets = [];
 /** The fields there are, by their names. */
 let shown = "";
-
-/** @returns {HTMLInputElement} */
-const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
 
 /** Set the panel up. */
 export function toolkitPanel() {

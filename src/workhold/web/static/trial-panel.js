@@ -3,7 +3,7 @@
  * wide open it is caught, and every other place where the same pegs can hold it.
  */
 import { ApiError, ask, send } from "./api.js";
-import { byId, make, show } from "./dom.js";
+import { byId, field, make, show } from "./dom.js";
 import { lyingIn, seatPictures } from "./seat-pictures.js";
 import { fixtureDrawing } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
@@ -30,9 +30,6 @@ let known = null;
 let asked = null;
 /** Whether all wrong seats are shown. */
 let every = false;
-
-/** @returns {HTMLInputElement} */
-const field = (id) => /** @type {HTMLInputElement} */ (byId(id));
 
 /** Set the panel up. */
 export function trialPanel() {

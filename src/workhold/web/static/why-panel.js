@@ -3,7 +3,6 @@
  */
 import { ApiError, ask } from "./api.js";
 import { byId, make, show } from "./dom.js";
-import { appliedHelp } from "./helps.js";
 import { showMiss } from "./stage-panel.js";
 import { change, on, state } from "./state.js";
 import { openComparison } from "./comparison-dialog.js";
@@ -76,4 +75,20 @@ function helpButton(help) {
 /** Words with a capital letter. */
 function sentence(words) {
   return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/**
+ * The change of the settings that a help in words means, where it is not a change of the toolkit; null for words that are not known here.
+ * @param {string} words as the server says them
+ * @param {import("./state.js").State} state
+ * @returns {Partial<import("./state.js").State>|null}
+ */
+function appliedHelp(words, state) {
+  const face = /^touching face (\d+) too$/.exec(words);
+  if (face) return { avoid: state.avoid.filter((number) => number !== Number(face[1])) };
+  if (/^touching faces /.test(words)) return { avoid: [] };
+  if (words.startsWith("without the keep-out zones")) return { zones: [] };
+  if (words.startsWith("at any angle")) return { angles: [] };
+  if (words.startsWith("without a contact margin")) return { contactMargin: 0 };
+  return null;
 }

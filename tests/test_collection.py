@@ -1,7 +1,11 @@
-"""A test draws the same examples alone and after any other, and of many like cases some are left to ``make prove``."""
+"""A test draws the same examples alone and after any other; of many like cases some are left to ``make prove``.
+
+What needs an extra skips where it is missing, before anything of it is imported.
+"""
 
 from __future__ import annotations
 
+import ast
 from importlib import import_module
 from pathlib import Path
 
@@ -41,3 +45,31 @@ def test_of_two_lists_every_value_is_tried(
 ) -> None:
     """Each of the first with one of the second, whose two names count once."""
     assert (request.node.get_closest_marker("prove") is not None) == ((one + two) % 2 != 0) and two == three
+
+
+TESTS = Path(__file__).parent
+# What the extra for tests does not install.
+OPTIONAL = {"OCP", "anywidget", "build123d", "cadquery", "distributed", "fsspec", "mcp", "pandas", "pyarrow"}
+
+
+def imported_first(text: str) -> set[str]:
+    """The optional packages that a module imports on loading, before it asks whether they are there."""
+    found: set[str] = set()
+    for statement in ast.parse(text).body:
+        if "importorskip" in ast.unparse(statement):
+            break
+        if isinstance(statement, ast.Import):
+            found |= {one.name.partition(".")[0] for one in statement.names}
+        elif isinstance(statement, ast.ImportFrom):
+            found.add((statement.module or "").partition(".")[0])
+    return found & OPTIONAL
+
+
+def test_no_test_needs_an_extra_to_be_collected() -> None:
+    every = {path: imported_first(path.read_text(encoding="utf-8")) for path in TESTS.rglob("*.py")}
+    assert {str(path.relative_to(TESTS)): found for path, found in every.items() if found} == {}
+
+
+def test_an_import_before_the_question_is_found() -> None:
+    assert imported_first("import os\nfrom OCP.gp import gp_Pnt\n") == {"OCP"}
+    assert imported_first("import pytest\npytest.importorskip('OCP')\nimport OCP\n") == set()
