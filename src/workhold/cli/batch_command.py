@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
@@ -58,12 +58,6 @@ PartsArgument = Annotated[
         "with its part, toolkits, restrictions and loads.",
     ),
 ]
-SheetsOption = Annotated[
-    bool,
-    typer.Option(
-        "--sheets", help="Write the setup sheet of each first choice as PDF.", rich_help_panel="Results"
-    ),
-]
 
 
 @spread
@@ -88,9 +82,9 @@ def batch(
     best: str = option(
         "Results", "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST
     ),
-    sheets: SheetsOption = False,
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    sheets: bool = flag("Results", "Write the setup sheet of each first choice as PDF.", "--sheets"),
+    force: bool = FORCE,
+    json_: bool = JSON,
     workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given."),
     cluster: str | None = option(
         WORK,

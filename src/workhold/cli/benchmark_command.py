@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option
+from workhold.cli.commands import flag, option
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
 from workhold.cli.progress import progress_bar
 from workhold.cli.values import choice, optional_count, positive_number
 from workhold.errors import InputError
@@ -39,9 +39,7 @@ def benchmark(
         ),
     ] = None,
     out: str | None = option(None, "DIR", "Of run: the folder to write the sets into."),
-    parquet: Annotated[
-        bool, typer.Option("--parquet", help="Of run: write sets of 5,000 fixtures or more as Parquet.")
-    ] = False,
+    parquet: bool = flag(None, "Of run: write sets of 5,000 fixtures or more as Parquet.", "--parquet"),
     set_: str | None = option(
         None, "NAME", "Of check: the set that the files are for, where they do not say.", "--set"
     ),
@@ -51,16 +49,14 @@ def benchmark(
         "Of check: how far pegs may be from where the complete list has them.",
         default=TOLERANCE,
     ),
-    symmetric: Annotated[
-        bool,
-        typer.Option(
-            "--symmetric",
-            help="Of check: one fixture stands for all that a rotation of the part carries into it.",
-        ),
-    ] = False,
+    symmetric: bool = flag(
+        None,
+        "Of check: one fixture stands for all that a rotation of the part carries into it.",
+        "--symmetric",
+    ),
     threads: str | None = option(None, "N", "Threads to use; all processors if not given."),
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    force: bool = FORCE,
+    json_: bool = JSON,
 ) -> None:
     """List the sets of the benchmark, make their complete lists, or compare another program's with them.
 

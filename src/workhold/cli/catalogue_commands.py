@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import asdict
 
-from workhold.cli.commands import option, spread
+from workhold.cli.commands import flag, option, spread
 from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
 from workhold.cli.values import length_unit, optional_length
 from workhold.errors import InputError
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["features", "parts", "toolkits"]
 
 
-def parts(unit: str | None = SHOWN_UNIT, json_: JsonOption = False) -> None:
+def parts(unit: str | None = SHOWN_UNIT, json_: bool = JSON) -> None:
     """List the built-in parts.
 
     They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any
@@ -69,7 +69,7 @@ def toolkits(
         ),
     ] = None,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """List the vises, plates and fences that come with workhold, or show all figures of one.
 
@@ -206,21 +206,15 @@ def features(
     part: PartArgument,
     *,
     draw: str | None = option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png."),
-    force: ForceOption = False,
+    force: bool = FORCE,
     peg_radius: str | None = option(
         None, "LENGTH", "Draw also where the centres of pegs of this radius can be."
     ),
-    parts: Annotated[
-        bool,
-        typer.Option(
-            "--parts",
-            help="List, and draw, the parts of a file that holds several; of a STEP file its solids.",
-        ),
-    ] = False,
-    layers: Annotated[
-        bool, typer.Option("--layers", help="List the layers of a DXF file with what is on them.")
-    ] = False,
-    json_: JsonOption = False,
+    parts: bool = flag(
+        None, "List, and draw, the parts of a file that holds several; of a STEP file its solids.", "--parts"
+    ),
+    layers: bool = flag(None, "List the layers of a DXF file with what is on them.", "--layers"),
+    json_: bool = JSON,
     reading: PartWords,
 ) -> None:
     """List the numbered faces of PART, as pictures and result files name them.

@@ -20,7 +20,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from workhold.errors import NO_ROOM, plain, shortened
 
-__all__ = ["PlainCommand", "PlainGroup", "forget", "option", "print_remark", "spread"]
+__all__ = ["PlainCommand", "PlainGroup", "flag", "forget", "option", "print_remark", "spread"]
 
 
 def print_remark(message: str) -> None:
@@ -59,6 +59,11 @@ WIDEST_ENTRY = 27
 def option(panel: str | None, metavar: str, help: str, *names: str, default: str | None = None) -> Any:
     """Makes an option in a section of the help: the default of a parameter, or of a field of a group."""
     return typer.Option(default, *names, metavar=metavar, help=help, rich_help_panel=panel)
+
+
+def flag(panel: str | None, help: str, name: str) -> Any:
+    """Makes an option without a value, off if not given; see :func:`option`."""
+    return typer.Option(False, name, help=help, rich_help_panel=panel)
 
 
 def spread(command: Callable[..., None]) -> Callable[..., None]:

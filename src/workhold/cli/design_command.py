@@ -6,20 +6,20 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.design_report import explain_none, picture_names
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import (
+    FORCE,
     FORMAT,
+    JSON,
     OUTPUT,
     STANDARD_OUTPUT,
-    ForceOption,
-    JsonOption,
     output_form,
     print_json,
     refuse_both,
@@ -51,13 +51,6 @@ ENGINES = ("curves", "algebra")
 # the search finds them in the first part. Bytes of a fixture in a file of each form.
 KNOWN_FROM, SEARCH_SHARE, MANY = 0.05, 0.9, 200_000
 BYTES = {"json": 960, "csv": 550, "npz": 209}
-
-UnfitOption = Annotated[
-    bool,
-    typer.Option(
-        "--unfit", help="List also what is no fixture for a workshop, in red.", rich_help_panel=OUTPUT
-    ),
-]
 
 
 @spread
@@ -94,24 +87,21 @@ def design(
     draw: str | None = option(
         OUTPUT, "DIR", "Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss."
     ),
-    force: ForceOption = False,
+    force: bool = FORCE,
     list_: str = option(OUTPUT, "N", "How many to list on the terminal.", "--list", default="5"),
-    unfit: UnfitOption = False,
-    supports: Annotated[
-        bool,
-        typer.Option(
-            "--supports",
-            help="Also find three supports and a clamp on top for the best twenty, as supports does.",
-            rich_help_panel=OUTPUT,
-        ),
-    ] = False,
+    unfit: bool = flag(OUTPUT, "List also what is no fixture for a workshop, in red.", "--unfit"),
+    supports: bool = flag(
+        OUTPUT,
+        "Also find three supports and a clamp on top for the best twenty, as supports does.",
+        "--supports",
+    ),
     sheet: str | None = option(
         OUTPUT,
         "FILE",
         "Write the setup sheet of the first choice into this file (.pdf, .svg, .png), with --supports on "
         "its supports.",
     ),
-    json_: JsonOption = False,
+    json_: bool = JSON,
     reading: PartWords,
 ) -> None:
     """Find every way to hold PART in a vise, or on a plate with a clamp or two.

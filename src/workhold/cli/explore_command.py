@@ -12,7 +12,7 @@ import typer
 from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
@@ -45,8 +45,8 @@ def explore(
     words: QueryWords,
     machined: ProgramWords,
     out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values."),
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    force: bool = FORCE,
+    json_: bool = JSON,
     reading: PartWords,
 ) -> None:
     """Try PART in many toolkits: how many fixtures each has, and the figures of its first choice.

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.jobs import asked_of, jobs_of
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
 from workhold.cli.table import Table
@@ -149,26 +149,6 @@ EVERY_TYPE = "both"
 SECONDS = "60"
 SHEET_ENDINGS = (".pdf", ".svg", ".png")
 
-UnfitOption = Annotated[
-    bool,
-    typer.Option("--unfit", help="Use also what is no fixture for a workshop.", rich_help_panel=FAMILY),
-]
-BothSidesOption = Annotated[
-    bool,
-    typer.Option(
-        "--both-sides",
-        help="Hold every part turned over as well, for the second operation.",
-        rich_help_panel=FAMILY,
-    ),
-]
-SameZeroOption = Annotated[
-    bool,
-    typer.Option(
-        "--same-zero",
-        help="All parts of a set-up have their zero at one place and are turned alike.",
-        rich_help_panel=FAMILY,
-    ),
-]
 PartsArgument = Annotated[
     list[str],
     typer.Argument(
@@ -198,15 +178,19 @@ def family(
         "Use no fixture whose figure is worse, such as location-error=0.05 (mm, N or degrees). May be "
         "repeated.",
     ),
-    unfit: UnfitOption = False,
-    both_sides: BothSidesOption = False,
+    unfit: bool = flag(FAMILY, "Use also what is no fixture for a workshop.", "--unfit"),
+    both_sides: bool = flag(
+        FAMILY, "Hold every part turned over as well, for the second operation.", "--both-sides"
+    ),
     zero: str | None = option(
         FAMILY,
         "POINT",
         "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not "
         "given, the origin of the drawing where that is on the part, else the corner.",
     ),
-    same_zero: SameZeroOption = False,
+    same_zero: bool = flag(
+        FAMILY, "All parts of a set-up have their zero at one place and are turned alike.", "--same-zero"
+    ),
     time_limit: str = option(
         FAMILY,
         "SECONDS",
@@ -228,8 +212,8 @@ def family(
         "Write the sheets of the plan, one for each set-up, to this file; its name ends in .pdf, .svg or "
         ".png.",
     ),
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    force: bool = FORCE,
+    json_: bool = JSON,
     reading: PartWords,
 ) -> None:
     """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
 from workhold.cli.program_options import passing_data, passing_words
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
 from workhold.cli.seat_table import seat_table
@@ -21,7 +21,7 @@ from workhold.cli.setup_sheets import (
     GLB,
     PART_FILE,
     STEP,
-    SupportedOption,
+    SUPPORTED,
     asked_models,
     write_fixture,
 )
@@ -114,9 +114,9 @@ def seat(
         "given.",
     ),
     draw: str | None = option(None, "FILE", "Draw how the part can rest into this file, .svg or .png."),
-    force: ForceOption = False,
+    force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Report whether the part ends up in the pose of fixture N when the vise or the clamp is tightened.
 
@@ -310,17 +310,17 @@ def show(
     draw: str | None = option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
     glb: str | None = GLB,
     step: str | None = STEP,
-    supports: SupportedOption = False,
+    supports: bool = SUPPORTED,
     thickness: str | None = BODY_THICKNESS,
     part: str | None = PART_FILE,
-    force: ForceOption = False,
+    force: bool = FORCE,
     load: list[str] | None = LOAD,
     loads: str | None = LOADS_FILE,
     jaw_force: str | None = JAW_FORCE,
     jaw: str = JAW,
     friction: str | None = FRICTION,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Show how to set up fixture N of a result: the holes for the pegs, the opening and the part's pose.
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import asdict, frozen
 
-from workhold.cli.outputs import JsonOption, print_json
+from workhold.cli.outputs import JSON, print_json
 from workhold.cli.values import choice
 from workhold.errors import InputError
 from workhold.version import __version__
@@ -69,7 +69,7 @@ class InstallationRow:
     remedy: str | None = None
 
 
-def doctor(json_: JsonOption = False) -> None:
+def doctor(json_: bool = JSON) -> None:
     """Report what is installed, what is missing, and what each would be good for.
 
     Nothing is changed. Only NumPy and the other libraries of the core are needed to search; extras add
@@ -280,7 +280,7 @@ def schema(
     name: Annotated[
         str | None, typer.Argument(metavar="[NAME]", help="part, toolkit, loads, query or result.")
     ] = None,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Print the JSON Schema of a part, a toolkit, loads, a query or a result, or list them.
 

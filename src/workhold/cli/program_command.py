@@ -10,7 +10,7 @@ from attrs import asdict
 
 from workhold.cli.commands import option
 from workhold.cli.options import SHOWN_UNIT
-from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
 from workhold.cli.program_options import (
     CUT_DEPTH,
     CUT_WIDTH,
@@ -74,9 +74,9 @@ def program(
     cut_width: str | None = CUT_WIDTH,
     cutting_direction: str | None = CUTTING_DIRECTION,
     draw: str | None = option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
-    force: ForceOption = False,
+    force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Report what was understood of a program for the mill: tools, lengths, heights, time, lines left out.
 

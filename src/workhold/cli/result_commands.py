@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from workhold.cli.commands import flag, option
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import ResultArgument
 from workhold.cli.outputs import (
+    FORCE,
     FORMAT,
+    JSON,
     STANDARD_OUTPUT,
-    ForceOption,
-    JsonOption,
     output_form,
     print_json,
     print_written,
@@ -39,8 +40,8 @@ def convert(
     result_file: ResultArgument,
     out: Annotated[str, typer.Argument(metavar="FILE", help="The file to write; - is the terminal.")],
     format_: str | None = FORMAT,
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    force: bool = FORCE,
+    json_: bool = JSON,
 ) -> None:
     """Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a
     spreadsheet.
@@ -68,23 +69,14 @@ REFUTED = 2
 
 def verify(
     result_file: ResultArgument,
-    list_: Annotated[
-        str,
-        typer.Option(
-            "--list", metavar="N", help="How many fixtures that are not proven to list on the terminal."
-        ),
-    ] = "5",
-    complete: Annotated[
-        bool,
-        typer.Option(
-            "--complete", help="Also search again, and compare: which fixtures, how many, and the account."
-        ),
-    ] = False,
-    threads: Annotated[
-        str | None,
-        typer.Option(metavar="N", help="Threads of that search; as many as processors if not given."),
-    ] = None,
-    json_: JsonOption = False,
+    list_: str = option(
+        None, "N", "How many fixtures that are not proven to list on the terminal.", "--list", default="5"
+    ),
+    complete: bool = flag(
+        None, "Also search again, and compare: which fixtures, how many, and the account.", "--complete"
+    ),
+    threads: str | None = option(None, "N", "Threads of that search; as many as processors if not given."),
+    json_: bool = JSON,
 ) -> None:
     """Prove or refute every fixture of a result, and every number written with it.
 

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import shlex
 from math import isfinite
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
 from attrs import evolve, frozen
 
-from workhold.cli.commands import option
+from workhold.cli.commands import flag, option
 from workhold.cli.values import (
     length,
     number,
@@ -324,14 +323,6 @@ def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[
 
 
 SEATING = "Seating"
-FoolproofOption = Annotated[
-    bool,
-    typer.Option(
-        "--foolproof",
-        help="List only those of them that have no wrong place to rest in, or a caliper shows each.",
-        rich_help_panel=SEATING,
-    ),
-]
 
 
 @frozen
@@ -350,7 +341,11 @@ class SeatingWords:
         "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so "
         "much more than where they hold it; places beyond it do not count.",
     )
-    foolproof: FoolproofOption = False
+    foolproof: bool = flag(
+        SEATING,
+        "List only those of them that have no wrong place to rest in, or a caliper shows each.",
+        "--foolproof",
+    )
 
     def asked(self, unit: Unit) -> dict[str, Any]:
         """Keyword arguments of a query.
@@ -366,4 +361,4 @@ class SeatingWords:
             raise InputError(
                 "--opening and --foolproof need --seating K: of how many fixtures, the first, to look at it."
             )
-        return {"seating": count, "opening": opening, "foolproof": bool(self.foolproof)}
+        return {"seating": count, "opening": opening, "foolproof": self.foolproof}

@@ -20,6 +20,7 @@ from typing import Annotated, Any
 import typer
 import typer.completion
 
+from workhold.cli.commands import flag, option
 from workhold.cli.values import choice, positive_number, whole_number
 from workhold.errors import InputError, lacks_memory
 from workhold.version import __version__
@@ -38,52 +39,39 @@ MOST_SEARCHES = 256
 FIRST_RUN = "workhold: compiling for this machine, which takes half a minute or so the first time."
 
 
-def limit(metavar: str, variable: str, help: str) -> typer.models.OptionInfo:
+def limit(default: str | None, metavar: str, variable: str, help: str) -> Any:
     """Makes an option that is a limit and can come from the environment."""
-    option: typer.models.OptionInfo = typer.Option(
-        metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
+    return typer.Option(
+        default, metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
     )
-    return option
 
 
 def serve(
-    host: Annotated[
-        str, typer.Option(metavar="ADDRESS", help="Where to listen; 0.0.0.0 lets other machines in.")
-    ] = "127.0.0.1",
-    port: Annotated[
-        str, typer.Option(metavar="PORT", help="Port to listen at; 0 takes a free one.")
-    ] = "8000",
-    open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
-    allow_host: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Another name that the server may be called by. May be repeated."),
-    ] = None,
-    trust_proxy: Annotated[
-        list[str] | None,
-        typer.Option(metavar="ADDRESS", help="A reverse proxy that says for whom it asks. May be repeated."),
-    ] = None,
-    allow_origin: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="ORIGIN",
-            help="A site whose pages may use the server, such as https://shop.example. May be repeated.",
-        ),
-    ] = None,
-    ask_token: Annotated[
-        bool, typer.Option("--ask-token", help="Let in only who has the address that is printed.")
-    ] = False,
-    upload_size: Annotated[str, limit("MB", "UPLOAD_SIZE", "Largest file with a part.")] = "20",
-    searches: Annotated[str, limit("N", "SEARCHES", "Searches at the same time.")] = "2",
-    seconds: Annotated[
-        str, limit("S", "SECONDS", "Longest search; what was found by then is shown.")
-    ] = "120",
-    memory: Annotated[
-        str | None, limit("MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine.")
-    ] = None,
-    fixtures: Annotated[
-        str, limit("N", "FIXTURES", "Most fixtures kept of a search, the best ones.")
-    ] = "300000",
-    life: Annotated[str, limit("MINUTES", "LIFE", "How long a search is kept after its last use.")] = "60",
+    host: str = option(
+        None, "ADDRESS", "Where to listen; 0.0.0.0 lets other machines in.", default="127.0.0.1"
+    ),
+    port: str = option(None, "PORT", "Port to listen at; 0 takes a free one.", default="8000"),
+    open_: bool = flag(None, "Open the page in the browser.", "--open"),
+    allow_host: list[str] | None = option(
+        None, "NAME", "Another name that the server may be called by. May be repeated."
+    ),
+    trust_proxy: list[str] | None = option(
+        None, "ADDRESS", "A reverse proxy that says for whom it asks. May be repeated."
+    ),
+    allow_origin: list[str] | None = option(
+        None,
+        "ORIGIN",
+        "A site whose pages may use the server, such as https://shop.example. May be repeated.",
+    ),
+    ask_token: bool = flag(None, "Let in only who has the address that is printed.", "--ask-token"),
+    upload_size: str = limit("20", "MB", "UPLOAD_SIZE", "Largest file with a part."),
+    searches: str = limit("2", "N", "SEARCHES", "Searches at the same time."),
+    seconds: str = limit("120", "S", "SECONDS", "Longest search; what was found by then is shown."),
+    memory: str | None = limit(
+        None, "MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine."
+    ),
+    fixtures: str = limit("300000", "N", "FIXTURES", "Most fixtures kept of a search, the best ones."),
+    life: str = limit("60", "MINUTES", "LIFE", "How long a search is kept after its last use."),
 ) -> None:
     """Serve the page: from a drawing to a setup sheet in the browser.
 

@@ -9,11 +9,9 @@ import sys
 from collections.abc import Iterable, Sequence
 from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from workhold.cli.commands import option, print_remark
+from workhold.cli.commands import flag, option, print_remark
 from workhold.cli.outputs import STANDARD_OUTPUT, refuse_output
 from workhold.errors import InputError
 from workhold.units import Unit
@@ -30,7 +28,7 @@ __all__ = [
     "GLB",
     "PART_FILE",
     "STEP",
-    "SupportedOption",
+    "SUPPORTED",
     "asked_models",
     "chosen_of_file",
     "chosen_supports",
@@ -57,14 +55,11 @@ PART_FILE = option(
     "not a prism.",
     "--part",
 )
-SupportedOption = Annotated[
-    bool,
-    typer.Option(
-        "--supports",
-        help="In the GLB and STEP also the best three supports under the part and a clamp on top, of the "
-        "usual sizes.",
-    ),
-]
+SUPPORTED = flag(
+    None,
+    "In the GLB and STEP also the best three supports under the part and a clamp on top, of the usual sizes.",
+    "--supports",
+)
 PAPER = (".pdf", ".svg", ".png")
 # So many of the best are asked for supports, a millisecond each.
 MOST_ASKED = 200

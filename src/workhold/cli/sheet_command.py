@@ -9,9 +9,9 @@ from typing import Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option
+from workhold.cli.commands import flag, option
 from workhold.cli.options import SHOWN_UNIT, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, print_written, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_written, refuse_output
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
 from workhold.cli.setup_sheets import chosen_of_file, chosen_supports, first_side_of, is_of_supports
 from workhold.cli.values import (
@@ -54,7 +54,7 @@ def sheet(
             help="The file to write; its name ends in .pdf, .svg, .png, .dxf, .step or .csv.",
         ),
     ],
-    force: ForceOption = False,
+    force: bool = FORCE,
     paper: str = option(ON_PAPER, "SIZE", "a4 or letter.", default="a4"),
     unit: str | None = SHOWN_UNIT,
     part_name: str | None = option(ON_PAPER, "NAME", "What to call the part; its own name if not given."),
@@ -89,14 +89,11 @@ def sheet(
     plate_thickness: str | None = option(
         BODIES, "LENGTH", "How far pegs go into the plate; 10 mm is assumed if not given."
     ),
-    supports: Annotated[
-        bool,
-        typer.Option(
-            "--supports",
-            rich_help_panel=SUPPORTS,
-            help="With the best three supports under the part and a clamp on top, of the usual sizes.",
-        ),
-    ] = False,
+    supports: bool = flag(
+        SUPPORTS,
+        "With the best three supports under the part and a clamp on top, of the usual sizes.",
+        "--supports",
+    ),
     support_height: str | None = option(
         SUPPORTS, "LENGTH", "How high the supports lift the part; 10 mm is assumed if not given."
     ),
@@ -105,20 +102,17 @@ def sheet(
         "RESULT",
         "Of a solid's second side: the result of the first, to say which faces it cuts and locates on.",
     ),
-    seating: Annotated[
-        bool,
-        typer.Option(
-            "--seating",
-            rich_help_panel=ON_PAPER,
-            help="Say whether the part ends up there: how far to open, and how it looks where it does not.",
-        ),
-    ] = False,
+    seating: bool = flag(
+        ON_PAPER,
+        "Say whether the part ends up there: how far to open, and how it looks where it does not.",
+        "--seating",
+    ),
     load: list[str] | None = LOAD,
     loads: str | None = LOADS_FILE,
     jaw_force: str | None = JAW_FORCE,
     jaw: str = JAW,
     friction: str | None = FRICTION,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality,
     loads, cautions.

@@ -11,7 +11,7 @@ from attrs import asdict
 from workhold.cli.commands import option, print_remark
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.setup_sheets import PART_FILE, asked_models, write_bodies
@@ -105,9 +105,9 @@ def supports(
         "given.",
     ),
     part: str | None = PART_FILE,
-    force: ForceOption = False,
+    force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Report where three supports hold the part up under fixture N, and where a clamp presses it down.
 

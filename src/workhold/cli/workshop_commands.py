@@ -9,7 +9,7 @@ import typer
 
 from workhold.cli.commands import option, spread
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, print_written, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_json, print_written, refuse_output
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import (
     length,
@@ -48,9 +48,9 @@ def copies(
     draw: str | None = option(
         None, "FILE", "Draw the plate into this file, whose name ends in .svg or .png."
     ),
-    force: ForceOption = False,
+    force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Report how many copies of fixture N a plate holds at once, and where each stands.
 
@@ -148,7 +148,7 @@ def drill(
             "--out", "-o", metavar="FILE", help="The file to write; its name ends in .dxf or .step."
         ),
     ],
-    force: ForceOption = False,
+    force: bool = FORCE,
     held_in: ToolkitWords,
     bolts: str | None = option(
         PLATES, "X,Y;X,Y", "Where bolts hold each plate, from the centre of its hole A1: 5,-12;5,112."
@@ -166,7 +166,7 @@ def drill(
         PLATES, "LENGTH", "Thickness of the plates in a .step file; 10 mm if not given."
     ),
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.
 
