@@ -128,20 +128,16 @@ def batch(
     from workhold.batch.durations import Measured
     from workhold.batch.run import BatchRun, run_batch
     from workhold.batch.store import FolderStore, store_at
-    from workhold.kernels.base.compiling import is_first_run
+    from workhold.cli.warming import compile_on_first_run, compile_seating
 
     store = FolderStore(folder / RECORDS) if records is None else store_at(records)
     start = perf_counter()
     with ask_to_stop("what is done is kept, tables and report are written") as stop:
         keep_what_is_found()
-        if cluster is None and is_first_run():
-            from workhold.cli.warming import compile_kernels
-
-            compile_kernels(stop)
-        if cluster is None and any(is_seated(held) for request in requests for held in request.held_in):
-            from workhold.cli.warming import compile_seating
-
-            compile_seating(stop)
+        if cluster is None:
+            compile_on_first_run(stop)
+            if any(is_seated(held) for request in requests for held in request.held_in):
+                compile_seating(stop)
         with batch_progress() as progress, ExitStack() as workshop:
             queue = place_to_work(progress, count, cluster, processes, None if records is None else store)
             workshop.enter_context(queue)

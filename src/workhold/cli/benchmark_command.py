@@ -144,12 +144,13 @@ def make_sets(
     names = ["manifest.json", "check.py", *(f"{one.name}.json" for one in chosen)]
     refuse_output_folder(folder, names, (), force)
     from workhold.benchmark.making import load_arrow, made_sets, write_common
+    from workhold.cli.warming import compile_on_first_run
 
     if parquet:
         load_arrow()
     write_common(chosen, folder)
     with ask_to_stop("the sets that are done are kept") as cancel:
-        compile_first(cancel)
+        compile_on_first_run(cancel)
         with progress_bar("Making sets", "fixtures") as progress:
             made = list(
                 made_sets(chosen, folder, parquet=parquet, threads=workers, progress=progress, cancel=cancel)
@@ -185,16 +186,6 @@ def make_sets(
         raise typer.Exit(DIFFERS)
 
 
-def compile_first(cancel: Any) -> None:
-    """Compiles the kernels where that has not been done on this machine."""
-    from workhold.kernels.base.compiling import is_first_run
-
-    if is_first_run():
-        from workhold.cli.warming import compile_kernels
-
-        compile_kernels(cancel)
-
-
 def check_entries(
     files: Sequence[str],
     set_name: str | None,
@@ -209,13 +200,14 @@ def check_entries(
     from workhold.benchmark.catalogue import set_named
     from workhold.benchmark.making import compared_entry
     from workhold.benchmark.matching import read_entry
+    from workhold.cli.warming import compile_on_first_run
 
     entries = [read_entry(Path(name), set_name) for name in files]
     for entry in entries:
         set_named(entry.set_name)
     done = list[tuple[str, str, Any]]()
     with ask_to_stop("what is compared is printed") as cancel:
-        compile_first(cancel)
+        compile_on_first_run(cancel)
         with progress_bar("Comparing", "files") as progress:
             for number, (name, entry) in enumerate(zip(files, entries, strict=True), 1):
                 outcome = compared_entry(entry, tolerance, symmetric, workers, cancel)

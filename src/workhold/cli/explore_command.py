@@ -72,20 +72,16 @@ def explore(
             ),
             force,
         )
-    from workhold.kernels.base.compiling import is_first_run
-
     workpiece = machined.reading(part, reading).load(part, heights_of_all(toolkits)).workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
     refuse_unknown_faces(workpiece, asked["restrictions"])
     queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]
+    from workhold.cli.warming import compile_on_first_run
     from workhold.search.design import explore as try_all
 
     found: list[Explored] = []
     with ask_to_stop("what was tried so far is kept") as cancel:
-        if is_first_run():
-            from workhold.cli.warming import compile_kernels
-
-            compile_kernels(cancel)
+        compile_on_first_run(cancel)
         with search_progress() as progress:
             for item in try_all(queries, cancel):
                 found.append(item)

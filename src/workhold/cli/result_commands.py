@@ -155,14 +155,11 @@ def print_supports(outcome: Verification, count: int, seconds: float, as_json: b
 
 def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
     """Adds to the verification what a search of the same query finds."""
+    from workhold.cli.warming import compile_on_first_run
     from workhold.completeness import completed
-    from workhold.kernels.base.compiling import is_first_run
 
     with ask_to_stop("nothing is compared") as cancel:
-        if is_first_run():
-            from workhold.cli.warming import compile_kernels
-
-            compile_kernels(cancel)
+        compile_on_first_run(cancel)
         with search_progress() as progress:
             return completed(outcome, listing, threads=workers, progress=progress, cancel=cancel)
 
