@@ -16,6 +16,7 @@ from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
+from workhold.cli.table import plural, print_tables
 from workhold.cli.toolkit_lists import (
     ListWords,
     Named,
@@ -145,7 +146,6 @@ def batch(
             done = run_batch(requests, kept, BatchRun(store, queue, measured, progress, stop))
     spent = perf_counter() - start
     report = write_all(done, store, measured, folder, spent, progress.events, sheets)
-    from workhold.cli.table import print_tables
 
     for part, reason in list(report.bad)[:MOST_NAMED]:
         print_remark(f"{part}: {reason}")
@@ -344,8 +344,6 @@ def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -
 
 def run_sentence(done: Batch, spent: float) -> str:
     """Says how many answers the run found, and in what time."""
-    from workhold.cli.tables import plural
-
     before = f"; {done.kept:,} were known from before" if done.kept else ""
     return (
         f"{plural(len(done.parts), 'part')}, {plural(done.fresh, 'answer')} found in {spent:.1f} s{before}."
@@ -363,7 +361,6 @@ def write_all(
         When they cannot be written.
     """
     from workhold.batch.report import Summary, write_results
-    from workhold.cli.tables import plural
     from workhold.version import __version__
 
     toolkits = len({job.held_in.name for job in done.jobs})

@@ -13,6 +13,7 @@ from workhold.cli.commands import flag, option
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
 from workhold.cli.progress import progress_bar
+from workhold.cli.table import Table, plural, print_tables
 from workhold.cli.values import choice, optional_count, positive_number
 from workhold.errors import InputError
 
@@ -108,8 +109,6 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
     if as_json:
         print_json(sets=[set_data(one) for one in chosen])
         return
-    from workhold.cli.table import Table, print_tables
-    from workhold.cli.tables import plural
 
     table = Table(("set", ">fixtures", "reason"))
     for one in chosen:
@@ -166,9 +165,6 @@ def make_sets(
             ]
         )
     else:
-        from workhold.cli.table import print_tables
-        from workhold.cli.tables import plural
-
         sentences = [
             f"{one.entry.name}: {one.size:,} fixtures, not the {one.entry.size:,} of the manifest."
             for one in other
@@ -233,8 +229,6 @@ def comparison_data(name: str, set_name: str, outcome: Comparison) -> dict[str, 
 
 def print_comparisons(done: Sequence[tuple[str, str, Comparison]]) -> None:
     """Prints a row for each file, and the first fixtures that are missed or extra."""
-    from workhold.cli.table import Table, print_tables
-
     table = Table(("set", ">complete", ">theirs", ">found", ">missed", ">extra", ">repeated", ">share"))
     sentences = []
     for _, set_name, one in done:

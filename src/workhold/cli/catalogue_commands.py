@@ -16,11 +16,11 @@ from attrs import asdict
 from workhold.cli.commands import flag, option, spread
 from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
 from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
+from workhold.cli.table import Table, plural, print_tables
 from workhold.cli.values import length_unit, optional_length
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.cli.table import Table
     from workhold.files.part.loaded import Loaded
     from workhold.files.toolkit_file import LoadedToolkit
     from workhold.fixels.table import Form
@@ -38,7 +38,6 @@ def parts(unit: str | None = SHOWN_UNIT, json_: bool = JSON) -> None:
 
     Example: workhold design widget --pitch 8 --columns 1 --peg-radius 3
     """
-    from workhold.cli.table import Table, print_tables
     from workhold.files.part.finding import builtin_parts
     from workhold.files.part.load import load
 
@@ -80,7 +79,6 @@ def toolkits(
     Example: workhold toolkits plate-one-inch --unit inch
     """
     shown = None if unit is None else length_unit(unit)
-    from workhold.cli.table import print_tables
     from workhold.files.toolkit_file import load_toolkit, preset_names
     from workhold.units import MILLIMETRE
 
@@ -104,7 +102,6 @@ def toolkits(
 
 def toolkits_table(unit: Unit) -> Table:
     """All presets, one line each, with lengths in a unit."""
-    from workhold.cli.table import Table
     from workhold.files.toolkit_file import load_toolkit, preset_names
 
     of = unit.abbreviation
@@ -125,8 +122,6 @@ def toolkits_table(unit: Unit) -> Table:
 
 def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
     """Every figure of a toolkit, one line each."""
-    from workhold.cli.table import Table
-
     toolkit, of = loaded.toolkit, unit.abbreviation
     first, finest = toolkit.carriers[0], unit.decimals + 1
     each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
@@ -235,8 +230,7 @@ def features(
     loaded = reading.load(part)
     workpiece = loaded.workpiece
 
-    from workhold.cli.table import print_tables
-    from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence, plural
+    from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence
 
     if parts:
         list_parts(loaded, shown_unit, picture, json_)
@@ -274,7 +268,6 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
     InputError
         For other files.
     """
-    from workhold.cli.table import Table, print_tables
     from workhold.files.part.survey import drawn_layers
 
     found, known = drawn_layers(part, reading.drawing_unit, reading.unit)
@@ -307,7 +300,6 @@ def list_solids(part: str, unit: Unit, as_json: bool) -> None:
     InputError
         For a file that cannot be read.
     """
-    from workhold.cli.table import print_tables
     from workhold.cli.tables import solid_table
     from workhold.files.part.loaded import solids_in
 
@@ -320,8 +312,6 @@ def list_solids(part: str, unit: Unit, as_json: bool) -> None:
 
 def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) -> None:
     """Prints the parts of a file, and draws them."""
-    from workhold.cli.table import Table, print_tables
-
     table = Table(
         (">part", f">width {unit.abbreviation}", f">height {unit.abbreviation}", ">holes", "lowest corner")
     )

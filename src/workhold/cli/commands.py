@@ -18,6 +18,7 @@ import typer
 from attrs import fields, resolve_types
 from typer.core import TyperCommand, TyperGroup
 
+from workhold.cli.table import sentence_lines, width_of
 from workhold.errors import NO_ROOM, plain, shortened
 
 __all__ = ["PlainCommand", "PlainGroup", "flag", "forget", "option", "print_remark", "spread"]
@@ -28,8 +29,6 @@ def print_remark(message: str) -> None:
 
     Where the disk is full the remark is lost, and nothing else.
     """
-    from workhold.cli.table import sentence_lines, width_of
-
     line = f"workhold: {plain(shortened(message))}"
     if sys.stderr.isatty():
         line = "\n".join(sentence_lines(line, width_of(sys.stderr)))

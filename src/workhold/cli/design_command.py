@@ -32,6 +32,7 @@ from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of, without_faces_cut
 from workhold.cli.setup_sheets import first_sheet, refuse_sheet, report_sheet
 from workhold.cli.supports_command import asked_thickness, report_supported
+from workhold.cli.table import plural, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, optional_count, whole_number
 from workhold.errors import InputError
@@ -188,7 +189,6 @@ def design(
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":
-        from workhold.cli.table import print_tables
         from workhold.cli.tables import other_heights
 
         stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
@@ -248,7 +248,6 @@ def report(
     result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit, unfit: bool
 ) -> None:
     """Reports a result; the words go to stderr where stdout carries the file."""
-    from workhold.cli.table import print_tables
     from workhold.cli.tables import counts_sentence, proof_sentences, result_table, unfit_sentence
     from workhold.listing.identity import entries
 
@@ -311,8 +310,6 @@ def further_data(
 def draw_pictures(result: Result, folder: Path, out: str | None, unit: Unit) -> None:
     """Draws the best fixtures and says where they are."""
     from workhold.cli.design_report import draw_best
-    from workhold.cli.table import print_tables
-    from workhold.cli.tables import plural
 
     written = draw_best(result, folder, unit)
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout

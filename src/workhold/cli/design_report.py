@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
+from workhold.cli.table import Table, print_tables
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -130,7 +131,6 @@ def explain_none(
 
 def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO) -> None:
     """Prints the explanation."""
-    from workhold.cli.table import Table, print_tables
     from workhold.cli.tables import fixture_tables
 
     print_tables("", stream=stream)
@@ -164,8 +164,6 @@ def draw_nearest_miss(
     InputError
         When the folder cannot be written.
     """
-    from workhold.cli.table import print_tables
-
     assert explanation.nearest is not None
     written = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
     print_tables(f"Drawn: the nearest miss in {written[0]} and {written[-1].name}.", stream=stream)

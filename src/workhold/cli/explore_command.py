@@ -16,6 +16,7 @@ from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
+from workhold.cli.table import Table, print_tables
 from workhold.cli.toolkit_lists import SWEEP, ListWords, heights_of_all, query_of, toolkits_to_try
 from workhold.cli.toolkit_options import TOOLKIT
 from workhold.cli.values import length_unit
@@ -102,8 +103,6 @@ def explore(
         choice = {"ranking": list(ranking), "first_choice": None if best is None else best.name}
         print_json(toolkits=explored_data(found), **choice, written=[] if out is None else [out])
     elif out is not None:
-        from workhold.cli.table import print_tables
-
         print_tables(f"Written to {out}.")
     if len(found) < len(toolkits):
         print_remark(f"interrupted: {len(toolkits) - len(found)} toolkits were not tried.")
@@ -130,7 +129,6 @@ FIGURES_KEPT = 3
 
 def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
     """Prints the table and says which toolkit is best."""
-    from workhold.cli.table import Table, print_tables
     from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
     from workhold.presenting.figure_words import figure_text, heading

@@ -20,7 +20,7 @@ from workhold.cli.options import PartWords
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
-from workhold.cli.table import Table
+from workhold.cli.table import Table, plural, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, number, optional_count, picture_ending, positive_number
 from workhold.errors import InputError
@@ -39,9 +39,6 @@ LONGEST_NAME = 26
 
 def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
     """Prints the curve, what was left out, and the plan."""
-    from workhold.cli.table import print_tables
-    from workhold.cli.tables import plural
-
     toolkit = found.toolkit
     for part in found.left_out:
         print_remark(f"{part.name} is left out: {part.reason}.")
@@ -292,8 +289,6 @@ def family(
         return
     report(found, plan, spent, shown)
     if written:
-        from workhold.cli.table import print_tables
-
         print_tables(f"Written to {', '.join(written)}.")
 
 

@@ -15,18 +15,16 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from importlib import metadata
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from attrs import asdict, frozen
 
 from workhold.cli.outputs import JSON, print_json
+from workhold.cli.table import Table, print_tables
 from workhold.cli.values import choice
 from workhold.errors import InputError
 from workhold.version import __version__
-
-if TYPE_CHECKING:
-    from workhold.cli.table import Table
 
 __all__ = ["SCHEMAS", "doctor", "schema", "schema_of"]
 
@@ -77,8 +75,6 @@ def doctor(json_: bool = JSON) -> None:
 
     Example: workhold doctor
     """
-    from workhold.cli.table import print_tables
-
     own = kernels()
     findings = [own, *extras(own.state == BUILT)]
     machine = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
@@ -95,8 +91,6 @@ def doctor(json_: bool = JSON) -> None:
 
 def table(findings: list[InstallationRow]) -> Table:
     """The findings, one line each; what is missing is red on a terminal."""
-    from workhold.cli.table import Table
-
     made = Table(("part", "state", "what it is good for"))
     for number, found in enumerate(findings):
         made.add_row(found.what, found.state, found.use)
@@ -288,7 +282,6 @@ def schema(
 
     Example: workhold schema result > result.schema.json
     """
-
     if name is not None:
         text = json.dumps(schema_of(choice("the schema", name, tuple(SCHEMAS))), indent=2)
         sys.stdout.write(text + "\n")
@@ -296,8 +289,6 @@ def schema(
     elif json_:
         print_json(schemas=[{"name": one, "of": words} for one, (words, _) in SCHEMAS.items()])
     else:
-        from workhold.cli.table import Table, print_tables
-
         table = Table(("name", "of"))
         for one, (words, _) in SCHEMAS.items():
             table.add_row(one, words)

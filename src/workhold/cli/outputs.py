@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from workhold.cli.commands import flag, option
 from workhold.cli.ending import Interrupted, keep_what_is_found
+from workhold.cli.table import print_tables
 from workhold.cli.values import choice, picture_ending
 from workhold.errors import InputError
 
@@ -266,6 +267,5 @@ def print_written(as_json: bool, sentence: str, *paths: str | Path) -> None:
     if as_json:
         print_json(written=[str(path) for path in paths])
         return
-    from workhold.cli.table import print_tables
 
     print_tables(sentence)

@@ -26,6 +26,7 @@ from workhold.cli.outputs import (
     write_output,
 )
 from workhold.cli.progress import progress_bar, search_progress
+from workhold.cli.table import plural, print_tables
 from workhold.cli.values import optional_count, whole_number
 from workhold.errors import InputError
 
@@ -55,7 +56,6 @@ def convert(
     if out != STANDARD_OUTPUT:
         refuse_output(out, (result_file,), force)
 
-    from workhold.cli.tables import plural
     from workhold.files.result.reader import read_result
 
     result = read_result(result_file)
@@ -91,7 +91,6 @@ def verify(
     listed = whole_number("--list", list_)
     workers = optional_count("--threads", threads)
 
-    from workhold.cli.table import print_tables
     from workhold.verification.listing import read_listing
     from workhold.verification.verify import verify_listing
 
@@ -145,8 +144,6 @@ def print_supports(outcome: Verification, count: int, seconds: float, as_json: b
 
         print_json(**verification_data(outcome))
         return
-    from workhold.cli.table import print_tables
-    from workhold.cli.tables import plural
 
     words = [sentence.replace("Fixture", "Triple", 1) for sentence in unproven_sentences(outcome, count)]
     tally = f"{outcome.proven} proven, {outcome.refuted} refuted"
@@ -178,8 +175,6 @@ def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
 
 def summary(outcome: Verification) -> str:
     """Says how many fixtures are proven, refuted and undecided."""
-    from workhold.cli.tables import plural
-
     return (
         f"{plural(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
         f"{outcome.undecided} undecided at {outcome.bits} bits"

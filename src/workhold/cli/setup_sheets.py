@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from workhold.cli.commands import flag, option, print_remark
 from workhold.cli.outputs import STANDARD_OUTPUT, refuse_output
+from workhold.cli.table import print_tables
 from workhold.errors import InputError
 from workhold.units import Unit
 
@@ -167,8 +168,6 @@ def report_sheet(
     supported: Sequence[Supports] = (),
 ) -> None:
     """Writes the sheet of the first choice and says so, or says why there is none."""
-    from workhold.cli.table import print_tables
-
     stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     rank = first_sheet(result, sheet, out, thickness, unit, before, supported)
     if rank is None:

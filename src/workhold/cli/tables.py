@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import degrees, hypot, nan, pi
 from typing import TYPE_CHECKING
 
-from workhold.cli.table import Table
+from workhold.cli.table import Table, plural
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.model.solid import other_way_up
 from workhold.presenting.figure_words import (
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "Table",
     "band_table",
     "counts_sentence",
     "face_table",
@@ -40,7 +39,6 @@ __all__ = [
     "height_table",
     "jumps_sentence",
     "other_heights",
-    "plural",
     "proof_sentences",
     "quality_table",
     "result_table",
@@ -56,15 +54,6 @@ UNDECIDED = (
     "  Every fixture listed holds; one more may exist at such a place. Nearly equal sizes are the cause: "
     "another peg radius or pitch decides it."
 )
-
-
-def plural(count: int, word: str) -> str:
-    """A number and its noun.
-
-    >>> plural(1, "fixture"), plural(2, "fixture")
-    ('1 fixture', '2 fixtures')
-    """
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def counts_sentence(result: Result) -> str:

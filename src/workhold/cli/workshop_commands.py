@@ -10,6 +10,7 @@ import typer
 from workhold.cli.commands import option, spread
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import FORCE, JSON, print_json, print_written, refuse_output
+from workhold.cli.table import Table, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import (
     length,
@@ -91,8 +92,6 @@ def copies(
         return
     print_copies(found, packing, result, size, shown)
     if written:
-        from workhold.cli.table import print_tables
-
         print_tables(f"Written to {draw}.")
 
 
@@ -118,7 +117,6 @@ def print_copies(
     found: list[Fixture], packing: Packing, result: Result, size: tuple[int, int], unit: Unit
 ) -> None:
     """Prints how many copies there are, and where each stands."""
-    from workhold.cli.table import Table, print_tables
     from workhold.model.setup import part_zero
 
     zero = part_zero(result.workpiece)
