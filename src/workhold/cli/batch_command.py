@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
@@ -118,8 +119,10 @@ def batch(
         raise InputError(
             "--workers, --cluster and --local-cluster are three places to work: give one of them."
         )
-    if cluster is not None or processes is not None:
-        refuse_no_cluster()
+    if (cluster is not None or processes is not None) and find_spec("distributed") is None:
+        raise InputError(
+            "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
+        )
     folder = Path(out)
     from workhold.batch.tables import has_parquet, table_names
 
@@ -167,22 +170,6 @@ def batch(
     if not done.is_complete:
         print_remark("interrupted: start the same command again to go on.")
         raise typer.Exit(INTERRUPTED)
-
-
-def refuse_no_cluster() -> None:
-    """Refuses a cluster where the library for it is not installed.
-
-    Raises
-    ------
-    InputError
-        With what to install.
-    """
-    from importlib.util import find_spec
-
-    if find_spec("distributed") is None:
-        raise InputError(
-            "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
-        )
 
 
 def is_seated(held: HeldIn) -> bool:

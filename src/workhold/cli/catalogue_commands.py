@@ -17,8 +17,7 @@ from workhold.cli.commands import flag, option, spread
 from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
 from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
 from workhold.cli.table import Table, plural, print_tables
-from workhold.cli.values import length_unit, optional_length
-from workhold.errors import InputError
+from workhold.cli.values import length_from_zero, length_unit
 
 if TYPE_CHECKING:
     from workhold.files.part.loaded import Loaded
@@ -217,9 +216,7 @@ def features(
     Example: workhold features part.dxf --draw faces.svg
     """
     shown_unit = length_unit(reading.unit)
-    radius = optional_length("--peg-radius", peg_radius, shown_unit)
-    if radius is not None and radius < 0:
-        raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more.")
+    radius = None if peg_radius is None else length_from_zero("--peg-radius", peg_radius, shown_unit)
     picture = asked_picture(draw, (part,), force)
     if layers:
         list_layers(part, reading, shown_unit, json_)

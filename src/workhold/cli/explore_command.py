@@ -24,8 +24,6 @@ from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.model.requirements import Restrictions
-    from workhold.model.workpiece import Workpiece
     from workhold.search.design import Explored
 
 __all__ = ["explore"]
@@ -57,29 +55,23 @@ def explore(
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
+    from workhold.cli.warming import compile_on_first_run
+    from workhold.contact.features import face_of_segment
     from workhold.files.atomic import text_file
+    from workhold.search.design import explore as try_all
 
     shown = length_unit(reading.unit)
     toolkits = toolkits_to_try(vise, toolkit, varied, shown)
     asked = words.asked(shown, machined.program is not None, machined.has_forces)
     if out is not None:
-        refuse_output(
-            out,
-            (
-                part,
-                words.loads,
-                *machined.files,
-                *(name for names in vise or () for name in names.split(",")),
-            ),
-            force,
-        )
+        named = (name for names in vise or () for name in names.split(","))
+        refuse_output(out, (part, words.loads, *machined.files, *named), force)
     workpiece = machined.reading(part, reading).load(part, heights_of_all(toolkits)).workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
-    refuse_unknown_faces(workpiece, asked["restrictions"])
+    # Faces that do not exist are refused before any toolkit is tried.
+    for number in asked["restrictions"].avoid:
+        face_of_segment(workpiece, number)
     queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]
-    from workhold.cli.warming import compile_on_first_run
-    from workhold.search.design import explore as try_all
-
     found: list[Explored] = []
     with ask_to_stop("what was tried so far is kept") as cancel:
         compile_on_first_run(cancel)
@@ -107,20 +99,6 @@ def explore(
     if len(found) < len(toolkits):
         print_remark(f"interrupted: {len(toolkits) - len(found)} toolkits were not tried.")
         raise typer.Exit(INTERRUPTED)
-
-
-def refuse_unknown_faces(workpiece: Workpiece, restrictions: Restrictions) -> None:
-    """Refuses faces that do not exist, before any toolkit is tried.
-
-    Raises
-    ------
-    InputError
-        Naming the face.
-    """
-    from workhold.contact.features import face_of_segment
-
-    for number in restrictions.avoid:
-        face_of_segment(workpiece, number)
 
 
 # Figures that a narrow terminal shows as well.

@@ -243,7 +243,10 @@ def family(
     if sheets is not None and most is None and loss is None:
         raise InputError("--sheets needs a plan: say which with --setups or --max-loss.")
     outputs = [name for name in (out, draw, sheets) if name is not None]
-    refuse_one_name_twice(outputs)
+    resolved = [Path(name).resolve() for name in outputs]
+    for place, name in enumerate(outputs):
+        if resolved[place] in resolved[:place]:
+            raise InputError(f"{name} is named for two outputs: give each a name of its own.")
     for name in outputs:
         refuse_output(name, inputs, force)
     types = None if type_ == EVERY_TYPE else type_
@@ -290,20 +293,6 @@ def family(
     report(found, plan, spent, shown)
     if written:
         print_tables(f"Written to {', '.join(written)}.")
-
-
-def refuse_one_name_twice(names: list[str]) -> None:
-    """Refuses outputs that would replace each other.
-
-    Raises
-    ------
-    InputError
-        Naming the file.
-    """
-    resolved = [Path(name).resolve() for name in names]
-    for place, path in enumerate(resolved):
-        if path in resolved[:place]:
-            raise InputError(f"{names[place]} is named for two outputs: give each a name of its own.")
 
 
 def write_all(

@@ -22,6 +22,7 @@ from workhold.cli.values import (
     length,
     optional_force,
     optional_positive_length,
+    two_lengths,
     whole_number,
 )
 from workhold.errors import InputError
@@ -256,10 +257,7 @@ def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
     InputError
         For anything but two lengths.
     """
-    words = text.split(",")
-    if len(words) != 2:
-        raise InputError(f"--zero {text!r} is not a place here: give two lengths, such as 10,5.")
-    return length("--zero", words[0], unit), length("--zero", words[1], unit)
+    return two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
 
 
 def asked_height(text: str, thickness: float | None, unit: Unit) -> float | Literal["top", "bottom"]:

@@ -98,7 +98,10 @@ def verify(
     from workhold.verification.supports import is_supports_file, verify_supports_file
 
     if is_supports_file(result_file):
-        refuse_complete(complete)
+        if complete:
+            raise InputError(
+                "--complete searches for fixtures again, and this file lists supports: leave it out."
+            )
         found = verify_supports_file(result_file)
         print_supports(found, listed, perf_counter() - start, json_)
         if not found.holds:
@@ -121,20 +124,6 @@ def verify(
         raise typer.Exit(INTERRUPTED)
     if not outcome.holds:
         raise typer.Exit(REFUTED)
-
-
-def refuse_complete(complete: bool) -> None:
-    """Refuses to search again for a file of supports.
-
-    Raises
-    ------
-    InputError
-        When that is asked.
-    """
-    if complete:
-        raise InputError(
-            "--complete searches for fixtures again, and this file lists supports: leave it out."
-        )
 
 
 def print_supports(outcome: Verification, count: int, seconds: float, as_json: bool) -> None:

@@ -14,6 +14,7 @@ from attrs import evolve, frozen
 from workhold.cli.commands import flag, option
 from workhold.cli.values import (
     length,
+    length_from_zero,
     number,
     optional_count,
     optional_force,
@@ -181,7 +182,7 @@ class QueryWords:
         loads = asked_loads(self.load, self.loads, unit)
         names = None if self.rank_by is None else [word for word in self.rank_by.split(",") if word.strip()]
         return {
-            "contact_margin": asked_contact_margin(self.contact_margin, unit),
+            "contact_margin": length_from_zero("--contact-margin", self.contact_margin, unit),
             "restrictions": Restrictions(
                 avoid=tuple(
                     whole_number("--avoid", word) for words in self.avoid or () for word in words.split(",")
@@ -262,20 +263,6 @@ def angles(text: str) -> tuple[float, float]:
     if not (isfinite(least) and isfinite(most)):
         raise InputError(f"--angle {text!r} is no range of angles: give it in degrees, such as -10..10.")
     return least, most
-
-
-def asked_contact_margin(text: str, unit: Unit) -> float:
-    """The contact margin in mm.
-
-    Raises
-    ------
-    InputError
-        For words that are no length, and below zero.
-    """
-    margin = length("--contact-margin", text, unit)
-    if margin < 0:
-        raise InputError(f"--contact-margin {text} is negative: give 0 or more.")
-    return margin
 
 
 def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:

@@ -97,7 +97,12 @@ def serve(
             f"--searches {figures['searches']:,} is beyond {MOST_SEARCHES}: one for each processor is best."
         )
     for proxy in trust_proxy or ():
-        refuse_no_address(proxy)
+        try:
+            ip_address(proxy)
+        except ValueError:
+            raise InputError(
+                f"--trust-proxy {proxy!r} is no address: give a number such as 10.0.0.2."
+            ) from None
     from workhold.web.guard import ServerLimits, usual_memory
     from workhold.web.origins import checked_origin
     from workhold.web.serve import is_for_others, run_server
@@ -117,20 +122,6 @@ def serve(
     token = token_urlsafe(TOKEN_BYTES) if ask_token else None
     limits = ServerLimits(memory_bytes=most, **figures)
     run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare, origins)
-
-
-def refuse_no_address(text: str) -> None:
-    """Refuses what is not the numeric address of a proxy.
-
-    Raises
-    ------
-    InputError
-        Naming it.
-    """
-    try:
-        ip_address(text)
-    except ValueError:
-        raise InputError(f"--trust-proxy {text!r} is no address: give a number such as 10.0.0.2.") from None
 
 
 def limit_value(option: str, text: str) -> float:

@@ -16,11 +16,12 @@ from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FI
 from workhold.cli.setup_sheets import chosen_of_file, chosen_supports, first_side_of, is_of_supports
 from workhold.cli.values import (
     choice,
-    length,
+    length_from_zero,
     length_unit,
     optional_force,
     optional_positive_length,
     positive_number,
+    two_lengths,
 )
 from workhold.errors import InputError
 from workhold.limits import refuse_long
@@ -154,9 +155,7 @@ def sheet(
         "seating": seating or None,
         "machine_position": None if machine_position is None else position(machine_position, shown_unit),
     }
-    keep_off = length("--clearance", clearance, shown_unit)
-    if keep_off < 0:
-        raise InputError(f"--clearance {clearance} is negative: give 0 or more.")
+    keep_off = length_from_zero("--clearance", clearance, shown_unit)
     given = asked_loads(load, loads, shown_unit)
     on_supports = is_of_supports(result_file)
     in_space: dict[str, Any] = {
@@ -244,12 +243,8 @@ def position(text: str, unit: Unit) -> tuple[float, float]:
     InputError
         When it is none, or beyond all lengths.
     """
-    parts = text.split(",")
-    if len(parts) != 2:
-        raise InputError(
-            f"--machine-position {text!r} is not a position: give it as X,Y, such as -312.5,-88."
-        )
-    x, y = (length("--machine-position", part, unit) for part in parts)
-    for value in (x, y):
-        refuse_long("--machine-position", value)
-    return x, y
+    option_name = "--machine-position"
+    place = two_lengths(option_name, text, unit, "a position: give it as X,Y, such as -312.5,-88.")
+    for value in place:
+        refuse_long(option_name, value)
+    return place

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from attrs import evolve, field, frozen
 
 from workhold.cli.commands import option
-from workhold.cli.values import length, optional_length, pitches, whole_number
+from workhold.cli.values import length, optional_length, pitches, two_lengths, whole_number
 from workhold.errors import InputError
 from workhold.fixels.fields import MIN_GAP, NAMES, OPTIONS
 from workhold.fixels.table import TOOLKIT_SECTION
@@ -169,11 +169,8 @@ def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
     InputError
         For less or more than two lengths.
     """
-    if text.count(",") != 1:
-        raise InputError(
-            f"{option_name} {text!r} is not two lengths: give the least and the most, such as 10,35."
-        )
-    return lengths(option_name, text, unit)
+    remedy = "two lengths: give the least and the most, such as 10,35."
+    return two_lengths(option_name, text, unit, remedy)
 
 
 def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
