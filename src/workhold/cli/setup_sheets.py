@@ -39,7 +39,6 @@ __all__ = [
     "refuse_sheet",
     "report_sheet",
     "write_bodies",
-    "write_fixture",
 ]
 
 GLB = option(None, "FILE", "Write it in three dimensions into this file, whose name ends in .glb.")
@@ -96,30 +95,6 @@ def asked_models(
             words = option_name.replace("_", "-")
             raise InputError(f"--{words} is of a file in three dimensions: give --glb or --step too.")
     return paths
-
-
-def write_fixture(
-    result: Result,
-    rank: int,
-    paths: Sequence[Path],
-    wishes: tuple[float | None, Sequence[Load] | None, float | None],
-    part: str | None,
-    *,
-    supported: bool,
-    unit: Unit,
-) -> None:
-    """Writes the fixture of a rank as GLB and STEP files, on the best supports if wanted.
-
-    Parameters
-    ----------
-    wishes : thickness of the part in mm, loads on it and jaw force in N; None where nobody says.
-    part : the STEP file of its own shape.
-    """
-    from workhold.presenting.assembly import Assembly, shape_in
-
-    shape = shape_in(part, result.workpiece)
-    chosen = chosen_supports(result, rank, *wishes) if supported else None
-    write_bodies(Assembly.of(result[rank - 1], result, {"thickness": wishes[0]}, chosen, shape), paths, unit)
 
 
 def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
