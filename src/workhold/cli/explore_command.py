@@ -55,11 +55,6 @@ def explore(
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
-    from workhold.cli.warming import compile_on_first_run
-    from workhold.contact.features import face_of_segment
-    from workhold.files.atomic import text_file
-    from workhold.search.design import explore as try_all
-
     shown = length_unit(reading.unit)
     toolkits = toolkits_to_try(vise, toolkit, varied, shown)
     asked = words.asked(shown, machined.program is not None, machined.has_forces)
@@ -68,6 +63,11 @@ def explore(
         refuse_output(out, (part, words.loads, *machined.files, *named), force)
     workpiece = machined.reading(part, reading).load(part, heights_of_all(toolkits)).workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
+    from workhold.cli.warming import compile_on_first_run
+    from workhold.contact.features import face_of_segment
+    from workhold.files.atomic import text_file
+    from workhold.search.design import explore as try_all
+
     # Faces that do not exist are refused before any toolkit is tried.
     for number in asked["restrictions"].avoid:
         face_of_segment(workpiece, number)

@@ -5,7 +5,6 @@ Of a sheet there are the one of a design's first choice, and what sheets say of 
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Sequence
 from datetime import date
 from pathlib import Path
@@ -13,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from workhold.cli.commands import flag, option, print_remark
 from workhold.cli.outputs import STANDARD_OUTPUT, refuse_output
-from workhold.cli.table import print_tables
 from workhold.errors import InputError
 from workhold.units import Unit
 
@@ -35,9 +33,7 @@ __all__ = [
     "chosen_supports",
     "first_sheet",
     "first_side_of",
-    "is_of_supports",
     "refuse_sheet",
-    "report_sheet",
     "write_bodies",
 ]
 
@@ -133,24 +129,6 @@ def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | Non
     refuse_output(path, inputs, force)
 
 
-def report_sheet(
-    result: Result,
-    sheet: str,
-    out: str | None,
-    thickness: float | None,
-    unit: Unit,
-    before: str | None,
-    supported: Sequence[Supports] = (),
-) -> None:
-    """Writes the sheet of the first choice and says so, or says why there is none."""
-    stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
-    rank = first_sheet(result, sheet, out, thickness, unit, before, supported)
-    if rank is None:
-        print_tables(f"As there is no fixture, {sheet} was not written.", stream=stream)
-    else:
-        print_tables(f"The setup sheet of fixture {rank} was written to {sheet}.", stream=stream)
-
-
 def first_sheet(
     result: Result,
     sheet: str,
@@ -230,13 +208,6 @@ def said_to_be_there(rank: int, first: int, chosen: ChosenSupports) -> ChosenSup
     if rank != first:
         print_remark(f"fixture {first} has no such supports: the sheet is of fixture {rank}.")
     return chosen
-
-
-def is_of_supports(path: str) -> bool:
-    """Whether a file is one that ``workhold supports`` wrote."""
-    from workhold.verification.supports import is_supports_file
-
-    return is_supports_file(path)
 
 
 def chosen_of_file(

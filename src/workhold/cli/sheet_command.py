@@ -13,7 +13,7 @@ from workhold.cli.commands import flag, option
 from workhold.cli.options import SHOWN_UNIT, asked_rank, result_with
 from workhold.cli.outputs import FORCE, JSON, print_written, refuse_output
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
-from workhold.cli.setup_sheets import chosen_of_file, chosen_supports, first_side_of, is_of_supports
+from workhold.cli.setup_sheets import chosen_of_file, chosen_supports, first_side_of
 from workhold.cli.values import (
     choice,
     length_from_zero,
@@ -138,6 +138,7 @@ def sheet(
     shown_unit = length_unit(unit)
 
     from workhold.statics.loads import jaw_stiffness
+    from workhold.verification.supports import is_supports_file
 
     settings: dict[str, Any] = {
         "paper": choice("--paper", paper, ("a4", "letter")),
@@ -157,7 +158,7 @@ def sheet(
     }
     keep_off = length_from_zero("--clearance", clearance, shown_unit)
     given = asked_loads(load, loads, shown_unit)
-    on_supports = is_of_supports(result_file)
+    on_supports = is_supports_file(result_file)
     in_space: dict[str, Any] = {
         "support_height": optional_positive_length("--support-height", support_height, shown_unit),
         "plate_thickness": optional_positive_length("--plate-thickness", plate_thickness, shown_unit),
