@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
 from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
-from workhold.cli.program_options import passing_data, passing_words
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
 from workhold.cli.seat_command import by_hand_words, seating_words
 from workhold.cli.setup_sheets import (
@@ -183,3 +182,49 @@ def load_tables(
         forces,
         note,
     )
+
+
+def passing_data(
+    result: Result, rank: int, jaw_force: float | None = None, jaw: str | float = "screw"
+) -> dict[str, Any]:
+    """Returns where the program's tools come nearest, and which forces they ask for, as plain data.
+
+    Nothing without a program. Jaw force and jaw are as of :func:`passing_words`.
+    """
+    from workhold.statics.program_clearance import passing_of
+    from workhold.statics.program_forces import cutting_need_of
+
+    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
+    names = ("distance", "line", "tool", "element")
+    passing = {} if near is None else {name: getattr(near, name) for name in names}
+    data = {"program_clearance": passing} if passing else {}
+    return data if need is None else data | {"program_forces": need.to_dict()}
+
+
+def passing_words(
+    result: Result, rank: int, unit: Unit, jaw_force: float | None = None, jaw: str | float = "screw"
+) -> list[str]:
+    """Says how near the program's tools come to the fixture of a rank, and which forces they ask for.
+
+    Nothing without a program.
+
+    Parameters
+    ----------
+    jaw_force : in N, instead of the result's.
+    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
+    """
+    from workhold.statics.program_clearance import passing_of
+    from workhold.statics.program_forces import cutting_need_of
+
+    program = result.query.program
+    if program is None:
+        return []
+    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
+    forces = [] if need is None else need.words(result.toolkit.moving.noun, unit, result.toolkit.travels)
+    if near is None:
+        return [f"No tool of {program.name} comes down to where anything holds the part.", *forces]
+    return [
+        f"The tools of {program.name} keep {unit.text(near.distance)} from all that holds the part; "
+        f"T{near.tool} comes nearest in line {near.line}, to the {near.element}.",
+        *forces,
+    ]
