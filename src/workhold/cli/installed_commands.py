@@ -12,7 +12,7 @@ import json
 import platform
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from importlib import metadata
 from importlib.util import find_spec
 from typing import Annotated, Any
@@ -83,20 +83,13 @@ def doctor(json_: bool = JSON) -> None:
             version=__version__, python=sys.executable, machine=machine, findings=list(map(asdict, findings))
         )
         return
-    print_tables(f"workhold {__version__}, {machine}: {sys.executable}", "", table(findings))
+    missing = {number for number, found in enumerate(findings) if found.remedy}
+    rows = [(found.what, found.state, found.use) for found in findings]
+    table = Table(("part", "state", "what it is good for"), rows, missing)
+    print_tables(f"workhold {__version__}, {machine}: {sys.executable}", "", table)
     remedies = [f"  {found.what}: {found.remedy}" for found in findings if found.remedy]
     if remedies:
         print_tables("", "To add what is missing:", *remedies)
-
-
-def table(findings: list[InstallationRow]) -> Table:
-    """The findings, one line each; what is missing is red on a terminal."""
-    made = Table(("part", "state", "what it is good for"))
-    for number, found in enumerate(findings):
-        made.add_row(found.what, found.state, found.use)
-        if found.remedy:
-            made.red.add(number)
-    return made
 
 
 def kernels() -> InstallationRow:
@@ -193,13 +186,6 @@ def step_fault() -> str | None:
     return None
 
 
-def part_schema() -> dict[str, Any]:
-    """The schema of a workpiece in JSON."""
-    from workhold.files.input_forms import WorkpieceFile
-
-    return WorkpieceFile.model_json_schema()
-
-
 def toolkit_schema() -> dict[str, Any]:
     """The schema of a toolkit's TOML file: one of those of the kinds."""
     from pydantic import TypeAdapter
@@ -216,34 +202,13 @@ def toolkit_schema() -> dict[str, Any]:
     return schema
 
 
-def loads_schema() -> dict[str, Any]:
-    """The schema of a loads file."""
-    from workhold.files.input_forms import LoadsFile
-
-    return LoadsFile.model_json_schema()
-
-
-def query_schema() -> dict[str, Any]:
-    """The schema of a search as it is asked over HTTP."""
-    from workhold.web.forms import JobForm
-
-    return JobForm.model_json_schema()
-
-
-def result_schema() -> dict[str, Any]:
-    """The schema of a result file."""
-    from workhold.files.result.fixture_forms import ResultFile
-
-    return ResultFile.model_json_schema()
-
-
-# The schemas by name, each with what it is of.
-SCHEMAS: Mapping[str, tuple[str, Callable[[], dict[str, Any]]]] = {
-    "part": ("a part in JSON", part_schema),
-    "toolkit": ("a vise, a plate or a fence, as its TOML file says it", toolkit_schema),
-    "loads": ("a loads file, TOML or JSON", loads_schema),
-    "query": ("a search as it is asked over HTTP", query_schema),
-    "result": ("a result file in JSON", result_schema),
+# What each schema is of.
+SCHEMAS = {
+    "part": "a part in JSON",
+    "toolkit": "a vise, a plate or a fence, as its TOML file says it",
+    "loads": "a loads file, TOML or JSON",
+    "query": "a search as it is asked over HTTP",
+    "result": "a result file in JSON",
 }
 
 
@@ -253,13 +218,17 @@ def schema_of(name: str) -> dict[str, Any]:
     Forms of which a word in the file chooses one differ in all they say, so that a file must fit at least one
     of them.
     """
-    words, make = SCHEMAS[name]
-    schema: dict[str, Any] = loosened(make())
+    from workhold.files.input_forms import LoadsFile, WorkpieceFile
+    from workhold.files.result.fixture_forms import ResultFile
+    from workhold.web.forms import JobForm
+
+    forms = {"part": WorkpieceFile, "loads": LoadsFile, "query": JobForm, "result": ResultFile}
+    made = toolkit_schema() if name == "toolkit" else forms[name].model_json_schema()
     return {
         "$schema": DIALECT,
-        **schema,
+        **loosened(made),
         "title": f"workhold {name}",
-        "description": f"The shape of {words}.",
+        "description": f"The shape of {SCHEMAS[name]}.",
     }
 
 
@@ -287,9 +256,6 @@ def schema(
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
     elif json_:
-        print_json(schemas=[{"name": one, "of": words} for one, (words, _) in SCHEMAS.items()])
+        print_json(schemas=[{"name": one, "of": words} for one, words in SCHEMAS.items()])
     else:
-        table = Table(("name", "of"))
-        for one, (words, _) in SCHEMAS.items():
-            table.add_row(one, words)
-        print_tables(table)
+        print_tables(Table(("name", "of"), list(SCHEMAS.items())))
