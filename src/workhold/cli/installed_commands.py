@@ -83,13 +83,17 @@ def doctor(json_: bool = JSON) -> None:
             version=__version__, python=sys.executable, machine=machine, findings=list(map(asdict, findings))
         )
         return
-    missing = {number for number, found in enumerate(findings) if found.remedy}
-    rows = [(found.what, found.state, found.use) for found in findings]
-    table = Table(("part", "state", "what it is good for"), rows, missing)
-    print_tables(f"workhold {__version__}, {machine}: {sys.executable}", "", table)
+    print_tables(f"workhold {__version__}, {machine}: {sys.executable}", "", table(findings))
     remedies = [f"  {found.what}: {found.remedy}" for found in findings if found.remedy]
     if remedies:
         print_tables("", "To add what is missing:", *remedies)
+
+
+def table(findings: list[InstallationRow]) -> Table:
+    """The findings, one line each; what is missing is red on a terminal."""
+    rows = [(found.what, found.state, found.use) for found in findings]
+    missing = {number for number, found in enumerate(findings) if found.remedy}
+    return Table(("part", "state", "what it is good for"), rows, missing)
 
 
 def kernels() -> InstallationRow:

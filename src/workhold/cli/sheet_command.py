@@ -155,14 +155,12 @@ def sheet(
         "dowel": dowel,
         "seating": seating or None,
         "machine_position": None if machine_position is None else position(machine_position, shown_unit),
+        "support_height": optional_positive_length("--support-height", support_height, shown_unit),
+        "plate_thickness": optional_positive_length("--plate-thickness", plate_thickness, shown_unit),
     }
     keep_off = length_from_zero("--clearance", clearance, shown_unit)
     given = asked_loads(load, loads, shown_unit)
     on_supports = is_supports_file(result_file)
-    in_space: dict[str, Any] = {
-        "support_height": optional_positive_length("--support-height", support_height, shown_unit),
-        "plate_thickness": optional_positive_length("--plate-thickness", plate_thickness, shown_unit),
-    }
     for_cam = ending in MODEL_ENDINGS
     shows_supports = not for_cam or ending in STEP_ENDINGS
     refuse_in_space(for_cam, shows_supports, path, supports or on_supports, support_height, first_setup)
@@ -170,25 +168,25 @@ def sheet(
     if on_supports:
         chosen = chosen_of_file(result_file, rank, settings, given)
         result, rank = chosen.supports.fixture.listing.result, 1
-        in_space |= {"supports": chosen, "listed_as": "Supports"}
-        in_space |= {"number": chosen.number, "count": len(chosen.supports.triples)}
-        given = given or tuple(flat for one in chosen.supports.loads if (flat := one.planar) is not None)
+        settings |= {"supports": chosen, "listed_as": "Supports"}
+        settings |= {"number": chosen.number, "count": len(chosen.supports.triples)}
+        given = tuple(flat for one in chosen.supports.loads if (flat := one.planar) is not None)
     else:
         result = result_with(result_file, rank)
         if supports:
-            in_space["supports"] = chosen_supports(
+            settings["supports"] = chosen_supports(
                 result, rank, settings["thickness"], given or None, settings["jaw_force"]
             )
     if first_setup is not None:
-        in_space["first_side"] = first_side_of(result, rank, first_setup)
+        settings["first_side"] = first_side_of(result, rank, first_setup)
     if seating and result[rank - 1].seating is None and result.toolkit.closes_at_once:
         from workhold.cli.warming import compile_seating
 
         compile_seating(Event())
     if for_cam:
-        write_model(path, result, rank, settings | in_space, keep_off)
+        write_model(path, result, rank, settings, keep_off)
     else:
-        settings |= {"loads": given or result.query.loads, **in_space}
+        settings["loads"] = given or result.query.loads
         write_paper(path, result, rank, result_file, settings)
     print_written(json_, f"Written to {path}.", path)
 
