@@ -19,7 +19,7 @@ from typing import Any
 
 from attrs import define, evolve, field
 
-from workhold.batch.tasks import MOST_TRIES, Outcome, Task, Watcher, done
+from workhold.batch.tasks import Outcome, Task, Watcher, done
 from workhold.errors import InputError
 from workhold.web.worker import worker_main
 
@@ -27,6 +27,8 @@ __all__ = ["LocalWorkers", "processor_count"]
 
 # Seconds between looks at whether to stop.
 LOOK = 0.1
+# A task whose worker died is tried so many times: once more by another one, then it is named.
+MOST_TRIES = 2
 # Workers that end before they are ready, one after the other, before all is given up.
 MOST_FAILED_STARTS = 3
 # Bytes of address space that a worker has at least; it takes a third of this before any work.

@@ -9,6 +9,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from attrs import evolve
 
 from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
@@ -213,25 +214,17 @@ def requests_of(
     InputError
         For words that mean nothing, parts that do not exist, and jobs without a toolkit.
     """
-    from attrs import evolve
-
-    from workhold.batch.run import Request
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
-    from workhold.files.part_list import part_list
 
     lists = varied.has_pitches or toolkit is not None
     named = asked_toolkits(toolkit, varied, reading) if lists else None
     asked_of(words, reading)
-    requests = []
+    requests: list[Request] = []
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
     if plain:
         if named is None:
             raise InputError("no toolkit is given: name one or more with --toolkit (see workhold toolkits).")
-        held_in = held_in_all(named, words, reading)
-        requests = [
-            Request(part, options_of(named, words[2].reading(part.name, reading)), held_in)
-            for part in part_list(plain, [folder])
-        ]
+        requests += requests_in(named, plain, words, reading, folder)
     for name in parts:
         if name in plain:
             continue
@@ -250,26 +243,34 @@ def requests_of(
                     raise InputError(
                         "no toolkit is given: name one or more under toolkit, or for all of them."
                     )
-                held_in = held_in_all(own, own_words, own_reading)
-                requests += [
-                    Request(part, options_of(own, own_words[2].reading(part.name, own_reading)), held_in)
-                    for part in part_list([job.part], [folder])
-                ]
+                requests += requests_in(own, [job.part], own_words, own_reading, folder)
             except InputError as error:
                 raise InputError(f"{job.place}: {error}") from error
     return requests
 
 
-def options_of(toolkits: Sequence[Named], reading: PartWords) -> dict[str, Any]:
-    """Makes the options of reading a part that some toolkits share, with the heights of their carriers.
+def requests_in(
+    toolkits: Sequence[Named], parts: Sequence[str], words: AskedWords, reading: PartWords, folder: Path
+) -> list[Request]:
+    """Lists what is asked of some parts, each of which is read once and held in all of some toolkits.
 
     Raises
     ------
     InputError
-        For words that mean nothing, and toolkits that differ in the heights of a carrier.
+        For words that mean nothing, parts that do not exist, and toolkits that differ in the heights of a
+        carrier.
     """
-    heights = heights_of_all(toolkits)
-    return {**reading.options(), **({"heights": heights} if heights else {})}
+    from workhold.batch.run import ANY_PART, HeldIn, Request
+    from workhold.files.part_list import part_list
+
+    asked = asked_of(words, reading)
+    held_in = [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in toolkits]
+    listed, heights = part_list(parts, [folder]), heights_of_all(toolkits)
+    of_carriers = {"heights": heights} if heights else {}
+    return [
+        Request(part, words[2].reading(part.name, reading).options() | of_carriers, held_in)
+        for part in listed
+    ]
 
 
 def asked_toolkits(
@@ -313,20 +314,6 @@ def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
     unit, has_program = length_unit(reading.unit), machined.program is not None
     asked = wishes.asked(unit, has_program, machined.has_forces) | seated_by.asked(unit)
     return asked | machined.asked(unit, reading.peg_height)
-
-
-def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -> list[HeldIn]:
-    """Lists what is asked in each toolkit.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing.
-    """
-    from workhold.batch.run import ANY_PART, HeldIn
-
-    asked = asked_of(words, reading)
-    return [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in named]
 
 
 def run_sentence(done: Batch, spent: float) -> str:

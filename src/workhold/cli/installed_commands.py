@@ -91,7 +91,7 @@ def doctor(json_: bool = JSON) -> None:
 
 def table(findings: list[InstallationRow]) -> Table:
     """The findings, one line each; what is missing is red on a terminal."""
-    rows = [(found.what, found.state, found.use) for found in findings]
+    rows: list[tuple[str, ...]] = [(found.what, found.state, found.use) for found in findings]
     missing = {number for number, found in enumerate(findings) if found.remedy}
     return Table(("part", "state", "what it is good for"), rows, missing)
 
@@ -226,7 +226,12 @@ def schema_of(name: str) -> dict[str, Any]:
     from workhold.files.result.fixture_forms import ResultFile
     from workhold.web.forms import JobForm
 
-    forms = {"part": WorkpieceFile, "loads": LoadsFile, "query": JobForm, "result": ResultFile}
+    forms: dict[str, Any] = {
+        "part": WorkpieceFile,
+        "loads": LoadsFile,
+        "query": JobForm,
+        "result": ResultFile,
+    }
     made = toolkit_schema() if name == "toolkit" else forms[name].model_json_schema()
     return {
         "$schema": DIALECT,
