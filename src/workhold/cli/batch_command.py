@@ -9,7 +9,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from attrs import evolve
 
 from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
@@ -230,15 +229,11 @@ def requests_of(
             continue
         for job in read_jobs(Path(name)):
             try:
-                own_reading = evolve(reading, **job.reading)
-                own_words = (
-                    evolve(words[0], **job.query),
-                    evolve(words[1], **job.seating),
-                    evolve(words[2], **job.program),
-                )
+                own_reading = job.over(reading)
+                own_words = job.over(words[0]), job.over(words[1]), job.over(words[2])
                 own = named
                 if job.toolkits is not None:
-                    own = asked_toolkits(list(job.toolkits), ListWords(), own_reading)
+                    own = asked_toolkits(job.toolkits, ListWords(), own_reading)
                 if own is None:
                     raise InputError(
                         "no toolkit is given: name one or more under toolkit, or for all of them."

@@ -57,13 +57,8 @@ class Asked:
     digest: str = ""
     zero: PartZero | None = None
 
-    @property
-    def turned_over(self) -> Asked:
-        """The other side of a part that is a drawing."""
-        return self.lying_as(None)
-
     def lying_as(self, read: Workpiece | None) -> Asked:
-        """The other side of the part, of a solid as its file was read for it.
+        """The other side of the part, of a solid as its file was read for it; None of a drawing.
 
         Raises
         ------
