@@ -154,13 +154,11 @@ def first_sheet(
     """
     from workhold.presenting.papers import write_paper
 
-    # Fixtures that are alike stand in other holes, which three supports may find room between.
-    ranks = range(1, min(len(result), MOST_ASKED) + 1)
-    if not ranks:
+    if not len(result):
         return None
-    rank, supports = ranks[0], None
+    rank, supports = 1, None
     if thickness is not None:
-        rank, supports = first_supported(result, ranks, thickness, supported)
+        rank, supports = first_supported(result, thickness, supported)
     settings = {
         "day": date.today(),
         "unit": unit,
@@ -168,15 +166,14 @@ def first_sheet(
         "supports": supports,
         "first_side": None if before is None else first_side_of(result, rank, before),
     }
-    result_file = None if out == STANDARD_OUTPUT else out
-    write_paper(sheet, result, rank, result_file, settings)
+    write_paper(sheet, result, rank, None if out == STANDARD_OUTPUT else out, settings)
     return rank
 
 
 def first_supported(
-    result: Result, ranks: Sequence[int], thickness: float, supported: Sequence[Supports]
+    result: Result, thickness: float, supported: Sequence[Supports]
 ) -> tuple[int, ChosenSupports | None]:
-    """The first of some fixtures that three supports hold up, and these; the first one where none has any.
+    """The rank of the best fixture that three supports hold up, and these; the first one where none has any.
 
     Supports that are known already go before others, and larger pads before smaller ones.
     """
@@ -184,30 +181,25 @@ def first_supported(
     from workhold.supports.asking import requests_by_size, supported_by_size
 
     query = result.query
-    # The table is for the jaw force that the loads ask for.
-    known = dict(enumerate(supported, 1)) if query.jaw_force is None else {}
-    for rank in ranks:
-        if rank in known and known[rank].triples:
-            return rank, said_to_be_there(rank, ranks[0], ChosenSupports.of(known[rank]))
-    fixtures, requests = [result[rank - 1] for rank in ranks], requests_by_size(query, thickness)
-    found, _ = supported_by_size(
-        fixtures, query, requests, None, query.jaw_force, first_only=True, drops_weak_force=True
-    )
-    if found[-1].triples:
-        rank = ranks[len(found) - 1]
-        return rank, said_to_be_there(rank, ranks[0], ChosenSupports.of(found[-1]))
+    # What is known is for the jaw force that the loads ask for.
+    found = supported if query.jaw_force is None else ()
+    if not any(one.triples for one in found):
+        # Fixtures that are alike stand in other holes, which three supports may find room between.
+        fixtures = [result[k] for k in range(min(len(result), MOST_ASKED))]
+        requests = requests_by_size(query, thickness)
+        found, _ = supported_by_size(
+            fixtures, query, requests, None, query.jaw_force, first_only=True, drops_weak_force=True
+        )
+    for rank, one in enumerate(found, 1):
+        if one.triples:
+            if rank > 1:
+                print_remark(f"fixture 1 has no such supports: the sheet is of fixture {rank}.")
+            return rank, ChosenSupports.of(one)
     print_remark(
         "no three supports hold the part under any of the best, so the sheet has none: another side up "
         "(--axis) or a finer pitch may help, or parallels under it instead."
     )
-    return ranks[0], None
-
-
-def said_to_be_there(rank: int, first: int, chosen: ChosenSupports) -> ChosenSupports:
-    """Supports under a fixture, with a remark where it is not the first one."""
-    if rank != first:
-        print_remark(f"fixture {first} has no such supports: the sheet is of fixture {rank}.")
-    return chosen
+    return 1, None
 
 
 def chosen_of_file(
