@@ -111,11 +111,8 @@ class ToolkitWords:
         from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, toolkit_of
 
         kind, said = kind_of(USUAL)
-        named = [
-            word
-            for word in (self.vise, self.toolkit)
-            if word is not None and word.lower() not in (*KINDS, *ALIASES)
-        ]
+        words = [word for word in (self.vise, self.toolkit) if word is not None]
+        named = [word for word in words if word.lower() not in (*KINDS, *ALIASES)]
         if len(named) > 1:
             raise InputError(
                 f"--vise {named[0]} and --toolkit {named[1]} name two toolkits: give one of them."
@@ -127,8 +124,8 @@ class ToolkitWords:
             kind, said, tolerance = loaded.kind, loaded.fields, loaded.tolerance
             if fields.get("peg_radius", said["peg_radius"]) != said["peg_radius"]:
                 tolerance = evolve(tolerance, fit=None)
-        for word in (self.vise, self.toolkit):
-            if word is not None and word.lower() in (*KINDS, *ALIASES):
+        for word in words:
+            if word not in named:
                 kind, more = kind_of(word.lower())
                 said = {**said, **more}
         self.refuse_others(KINDS[kind])
