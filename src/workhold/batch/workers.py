@@ -23,7 +23,7 @@ from workhold.batch.tasks import Outcome, Task, Watcher, done
 from workhold.errors import InputError
 from workhold.web.worker import worker_main
 
-__all__ = ["LocalWorkers", "processor_count"]
+__all__ = ["LocalWorkers"]
 
 # Seconds between looks at whether to stop.
 LOOK = 0.1
@@ -35,13 +35,6 @@ MOST_FAILED_STARTS = 3
 LEAST_MEMORY = 2 << 30
 # Seconds that no task takes: there is no limit to its time.
 ENDLESS = 1e8
-
-
-def processor_count() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def memory_share(workers: int) -> int:

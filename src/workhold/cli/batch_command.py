@@ -28,6 +28,7 @@ from workhold.cli.toolkit_lists import (
 )
 from workhold.cli.values import length_unit, optional_count
 from workhold.errors import InputError
+from workhold.limits import thread_count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -190,9 +191,9 @@ def place_to_work(
 ) -> LocalWorkers | ClusterWorkers:
     """Makes the queue asked for; the workers of a cluster write records to ``store`` themselves."""
     if cluster is None and processes is None:
-        from workhold.batch.workers import LocalWorkers, processor_count
+        from workhold.batch.workers import LocalWorkers
 
-        return LocalWorkers(count or processor_count(), progress)
+        return LocalWorkers(count or thread_count(None), progress)
     from workhold.batch.cluster import ClusterWorkers
 
     return ClusterWorkers(progress, cluster, processes or 0, store)

@@ -181,9 +181,8 @@ def design(
         if not result.complete:
             raise typer.Exit(INTERRUPTED)
         return
-    spent = f"{perf_counter() - start:.1f} s" + (
-        ", compiling on this first run included" if first_run else ""
-    )
+    compiled = ", compiling on this first run included" if first_run else ""
+    spent = f"{perf_counter() - start:.1f} s{compiled}"
     report(result, spent, out, form, listed, shown, unfit, stream)
     supported: tuple[Supports, ...] = ()
     if high is not None:

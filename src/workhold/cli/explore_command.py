@@ -66,7 +66,9 @@ def explore(
     from workhold.cli.warming import compile_on_first_run
     from workhold.contact.features import face_of_segment
     from workhold.files.atomic import text_file
+    from workhold.files.toolkit_file import is_sold
     from workhold.search.design import explore as try_all
+    from workhold.search.design import first_choice
 
     # Faces that do not exist are refused before any toolkit is tried.
     for number in asked["restrictions"].avoid:
@@ -83,16 +85,16 @@ def explore(
     # Toolkits with one clamp and with two have a default ranking each; the first that can be asked gives the
     # columns.
     ranking = next((query.ranking for _, query in queries if not isinstance(query, InputError)), ())
+    first = first_choice(found, ranking, is_sold)
     if not json_:
-        print_explored(found, types, ranking, shown)
+        print_explored(found, types, ranking, first, shown)
     if out is not None:
         with text_file(Path(out)) as stream:
             stream.write(table_text(found, types))
     if json_:
         from workhold.presenting.data import explored_data
 
-        best = first_of(found, ranking)
-        choice = {"ranking": list(ranking), "first_choice": None if best is None else best.name}
+        choice = {"ranking": list(ranking), "first_choice": None if first is None else first.name}
         print_json(toolkits=explored_data(found), **choice, written=[] if out is None else [out])
     elif out is not None:
         print_tables(f"Written to {out}.")
@@ -105,7 +107,9 @@ def explore(
 FIGURES_KEPT = 3
 
 
-def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
+def print_explored(
+    found: list[Explored], types: list[str], ranking: tuple[str, ...], best: Explored | None, unit: Unit
+) -> None:
     """Prints the table and says which toolkit is best."""
     from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
@@ -129,20 +133,11 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
     for item in found:
         if item.reason:
             print_tables(f"{item.name}: {item.reason}")
-    best = first_of(found, ranking)
     if best is not None:
         shown = [f for f in (*figures[1:], figures[0]) if f.key in best.figures]
         words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in shown)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         print_tables(f"First choice: {best.name}; its first fixture has {words}.{unsold}")
-
-
-def first_of(found: list[Explored], ranking: tuple[str, ...]) -> Explored | None:
-    """Returns the toolkit to take, see :func:`workhold.search.design.first_choice`."""
-    from workhold.files.toolkit_file import is_sold
-    from workhold.search.design import first_choice
-
-    return first_choice(found, ranking, is_sold)
 
 
 def table_text(found: list[Explored], types: list[str]) -> str:

@@ -279,9 +279,8 @@ def family(
             progress=progress,
         )
     plan = found.plan(most) if found.members and (most is not None or loss is not None) else None
-    spent = f"{perf_counter() - start:.1f} s" + (
-        ", compiling on this first run included" if first_run else ""
-    )
+    compiled = ", compiling on this first run included" if first_run else ""
+    spent = f"{perf_counter() - start:.1f} s{compiled}"
     written = write_all(found, plan, out, draw, sheets, shown)
     if json_:
         from json import loads
