@@ -82,7 +82,7 @@ def benchmark(
     elif asked == "run":
         make_sets(chosen_sets(given), out, parquet, workers, force, json_)
     else:
-        check_entries(given, set_, room or 0.0, symmetric, workers, json_)
+        check_entries(given, set_, room, symmetric, workers, json_)
 
 
 def chosen_sets(words: Sequence[str]) -> list[SetEntry]:

@@ -84,11 +84,11 @@ def serve(
     if not 0 <= at <= HIGHEST_PORT:
         raise InputError(f"--port {port} is no port: give a number from 0 to {HIGHEST_PORT}.")
     figures: dict[str, Any] = {
-        "upload_bytes": int(1e6 * limit_value("--upload-size", upload_size)),
-        "searches": int(limit_value("--searches", searches)),
-        "seconds": limit_value("--seconds", seconds),
-        "fixtures": int(limit_value("--fixtures", fixtures)),
-        "life_seconds": 60 * limit_value("--life", life),
+        "upload_bytes": int(1e6 * positive_number("--upload-size", upload_size)),
+        "searches": int(positive_number("--searches", searches)),
+        "seconds": positive_number("--seconds", seconds),
+        "fixtures": int(positive_number("--fixtures", fixtures)),
+        "life_seconds": 60 * positive_number("--life", life),
     }
     if figures["searches"] < 1 or figures["fixtures"] < 1:
         raise InputError("--searches and --fixtures are counts: give 1 or more.")
@@ -107,7 +107,11 @@ def serve(
     from workhold.web.origins import checked_origin
     from workhold.web.serve import is_for_others, run_server
 
-    most = usual_memory(figures["searches"]) if memory is None else int(limit_value("--memory", memory)) << 20
+    most = (
+        usual_memory(figures["searches"])
+        if memory is None
+        else int(positive_number("--memory", memory)) << 20
+    )
 
     def listening(address: str) -> None:
         typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
@@ -122,20 +126,6 @@ def serve(
     token = token_urlsafe(TOKEN_BYTES) if ask_token else None
     limits = ServerLimits(memory_bytes=most, **figures)
     run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare, origins)
-
-
-def limit_value(option: str, text: str) -> float:
-    """Reads a positive number.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
-    value = positive_number(option, text)
-    if not value:
-        raise InputError(f"{option} {text!r} leaves nothing: give a positive number.")
-    return value
 
 
 def prepare() -> None:

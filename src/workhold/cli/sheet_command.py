@@ -146,7 +146,7 @@ def sheet(
         "day": date.today() if day is None else day_of(day),
         "part_name": part_name,
         "jaw_force": optional_force("--jaw-force", jaw_force),
-        "friction": positive_number("--friction", friction),
+        "friction": None if friction is None else positive_number("--friction", friction),
         "jaw": jaw_stiffness(jaw),
         "zero": zero,
         "thickness": optional_positive_length("--thickness", thickness, shown_unit),

@@ -63,7 +63,7 @@ def show(
     rank = asked_rank(number)
     shown_unit = length_unit(unit)
     closing_force = optional_force("--jaw-force", jaw_force)
-    coefficient = positive_number("--friction", friction)
+    coefficient = None if friction is None else positive_number("--friction", friction)
     asked = asked_loads(load, loads, shown_unit)
     picture = asked_picture(draw, (result_file, loads), force)
     models = asked_models(

@@ -120,7 +120,7 @@ def supports(
     shown = length_unit(unit)
     count = optional_count("--triples", triples)
     closing = optional_force("--jaw-force", jaw_force)
-    coefficient = positive_number("--friction", friction)
+    coefficient = None if friction is None else positive_number("--friction", friction)
     if out is not None:
         refuse_output(out, (result_file,), force)
     models = asked_models(glb, step, (result_file, part), force, support_height=support_height, part=part)

@@ -199,16 +199,14 @@ def optional_count(option: str, text: str | None) -> int | None:
     return None if text is None else counting_number(option, whole_number(option, text))
 
 
-def positive_number(option: str, text: str | None) -> float | None:
-    """A finite number above zero, or None where the option is not given.
+def positive_number(option: str, text: str) -> float:
+    """A finite number above zero.
 
     Raises
     ------
     InputError
         For anything else.
     """
-    if text is None:
-        return None
     value = number(text.strip())
     if not (isfinite(value) and value > 0):
         raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")
