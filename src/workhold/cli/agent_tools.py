@@ -39,7 +39,7 @@ from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zo
 from workhold.model.result import Result
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
 
-__all__ = ["TOOLS", "AgentTool"]
+__all__ = ["TOOLS"]
 
 
 @frozen

@@ -145,7 +145,6 @@ def supports(
     request, *smaller = requests_by_size(result.query, high, asked)
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in load] if load else None
-    every, written = out is not None, [path for path in (out, glb, step) if path is not None]
     with (
         ask_to_stop("the best of what was looked at is kept") as cancel,
         progress_bar("Looking for supports", "of 1 fixture") as show,
@@ -156,7 +155,7 @@ def supports(
             [request, *smaller],
             loads,
             closing,
-            None if every else count,
+            count if out is None else None,
             cancel=cancel,
             progress=lambda fraction: show(fraction, 0),
         )
@@ -180,7 +179,8 @@ def supports(
         best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
         assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
         write_bodies(assembly, models, shown)
-    report(found, count, result, rank, written, shown, json_, coefficient, helped)
+    written = [path for path in (out, glb, step) if path is not None]
+    report(found, count, rank, written, shown, json_, coefficient, helped)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
 
@@ -260,7 +260,6 @@ def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[fl
 def report(
     found: Supports,
     count: int | None,
-    result: Result,
     rank: int,
     written: list[str],
     unit: Unit,
@@ -281,7 +280,7 @@ def report(
 
         print_tables(f"Fixture {rank}: {why_no_set(found, unit)}")
     else:
-        print_sets(found, listed, result, rank, unit)
+        print_sets(found, listed, rank, unit)
         if friction is not None:
             print_tables(friction_words(friction, helped))
     if found.count is not None and found.count > len(listed) and not written:
@@ -292,7 +291,7 @@ def report(
         print_remark("stopped before all sets were looked at: there may be better ones.")
 
 
-def print_sets(found: Supports, listed: Sequence[Triple], result: Result, rank: int, unit: Unit) -> None:
+def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit) -> None:
     """Prints some sets of three as a table, with what is not seen in it."""
     from workhold.supports.words import set_headings, set_row
 
