@@ -16,7 +16,6 @@ too near : a shift is too near when two copies that far apart are not clear of e
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import reduce
 from itertools import combinations, pairwise
 from math import acos, ceil, floor, pi
@@ -27,7 +26,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
 from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import Bench, bench_of, draw_part, draw_pegs
+from workhold.drawing.bench import bench_of, draw_part, draw_pegs
 from workhold.drawing.carriers import STILL, draw_clamp, draw_push, draw_wall, labelled
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, LengthUnit, Scene, View, shortened
 from workhold.errors import InputError
@@ -312,7 +311,8 @@ def draw_copies(
     plate, (columns, rows) = toolkit.carriers[0], size
     benches = [bench_of(fixture, workpiece, toolkit) for fixture in copies]
     holes = Box(*plate.place(0, 0), *plate.place(columns - 1, rows - 1)).grown(max(plate.pitch) / 2)
-    extent = reduce(Box.union, (box for bench in benches for box in taken_up(bench)), holes)
+    clamps = [clamp.room for bench in benches for clamp in bench.shown.clamps]
+    extent = reduce(Box.union, [*(bench.shown.part for bench in benches), *clamps], holes)
     walls = [Box(holes.x0, wall.bar.y0, holes.x1, wall.bar.y1) for wall in benches[0].shown.walls]
     extent = reduce(Box.union, walls, extent)
     page = LANDSCAPE if extent.width >= 0.8 * extent.height else PORTRAIT
@@ -340,13 +340,6 @@ def draw_copies(
         )
     scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, LengthUnit.suiting(unit, min(plate.pitch)))
     return scene.svg()
-
-
-def taken_up(bench: Bench) -> Iterator[Box]:
-    """What a copy takes up: the boxes of its outline and of its clamps with their arrows."""
-    yield bench.shown.part
-    for clamp in bench.shown.clamps:
-        yield clamp.room
 
 
 def draw_whole_plate(scene: Scene, holes: Box, plate: Carrier, size: tuple[int, int], view: View) -> None:

@@ -109,11 +109,9 @@ class Family:
     @cached_property
     def plans(self) -> tuple[Plan, ...]:
         """The plan at each point of the curve."""
-        return (
-            ()
-            if self.table is None
-            else tuple(plan_of(point, self.table, self.members) for point in self.points)
-        )
+        if self.table is None:
+            return ()
+        return tuple(plan_of(point, self.table, self.members) for point in self.points)
 
     def plan(self, setups: int | None = None) -> Plan:
         """The plan with the least loss and at most ``setups`` set-ups; None asks for the fewest set-ups.
