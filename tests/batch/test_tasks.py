@@ -12,10 +12,11 @@ from batch_helpers import COARSE, FINE, Failing, Unprepared
 from workhold import load
 from workhold.batch import tasks
 from workhold.batch.store import FolderStore, is_whole, plain_record, workpiece_of
-from workhold.batch.tables import BEST, seating_figures
+from workhold.batch.tables import BEST
 from workhold.batch.tasks import Answering, Reading, done, name_of, program
 from workhold.errors import InputError
 from workhold.files.part.finding import builtin_path
+from workhold.files.result.fixture_forms import seating_figures_of
 from workhold.files.result.writer import result_text
 from workhold.model.query import Query
 from workhold.search.design import answer
@@ -74,7 +75,9 @@ def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes) -> None:
             and record == "".join(result_text(first)).encode()
         )
         fixtures = plain_record(record)["fixtures"]
-        told = [seating_figures(fixture.get("seating")) for fixture in fixtures]
+        told = [
+            seating_figures_of(fixture["seating"]) if fixture.get("seating") else {} for fixture in fixtures
+        ]
         assert told[: len(first.seating)] == [
             {key: pytest.approx(value, abs=1e-9) for key, value in one.figures.items()}
             for one in first.seating

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from workhold.cli.jobs import read_jobs
+from workhold.cli.options import PartWords
+from workhold.cli.search_options import QueryWords, SeatingWords
 from workhold.errors import InputError
 
 TOML = """
@@ -53,21 +55,22 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("name", ["jobs.toml", "jobs.csv"])
 def test_words_are_those_of_the_command_line(folder: Path, name: str) -> None:
     first, second = read_jobs(folder / name)
-    assert (first.part, first.toolkits) == (str(folder / "a.json"), ("plate-20mm", str(folder / "own.toml")))
-    assert first.reading == {"unit": "inch", "part_number": "2"}
-    assert first.query == {
+    assert (first.part, first.toolkits) == (str(folder / "a.json"), ["plate-20mm", str(folder / "own.toml")])
+    assert first.options_of(PartWords) == {"unit": "inch", "part_number": "2"}
+    assert first.options_of(QueryWords) == {
         "avoid": ["3", "7"],
         "keep_out": ["circle=1,2,3"],
         "load": ["force=200 at=1,0.5", "moment=5000"],
         "loads": str(folder / "loads.toml"),
         "tolerance": "0.01,0.02",
     }
-    assert (second.part, second.toolkits, second.query) == (
+    assert (second.part, second.toolkits, second.options_of(QueryWords)) == (
         "widget",
-        ("fence-20mm",),
+        ["fence-20mm"],
         {"contact_margin": "0.5"},
     )
-    assert (first.seating, second.seating) == ({}, {"seating": "5", "opening": "0.1in", "foolproof": True})
+    assert first.options_of(SeatingWords) == {}
+    assert second.options_of(SeatingWords) == {"seating": "5", "opening": "0.1in", "foolproof": True}
 
 
 @pytest.mark.parametrize(

@@ -153,7 +153,7 @@ def test_a_query_fits_that_the_server_takes() -> None:
 
 def test_the_command_prints_them(run: Any) -> None:
     """By name, each a schema of its own dialect that says what it is of."""
-    for name, (words, _) in SCHEMAS.items():
+    for name, words in SCHEMAS.items():
         content = json.loads(run("schema", name.upper()).stdout)
         assert (
             content == schema_of(name)

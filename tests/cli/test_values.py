@@ -16,7 +16,6 @@ from workhold.units import MILLIMETRE
 
 
 def test_a_positive_number_is_above_zero_and_finite() -> None:
-    assert positive_number("--jaw-force", None) is None
     assert positive_number("--jaw-force", " 1e-3 ") == 0.001
     for text in ("0", "-5", "inf", "nan", "much", ""):
         with pytest.raises(InputError, match="is not a positive number"):

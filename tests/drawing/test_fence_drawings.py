@@ -13,7 +13,7 @@ from sheet_reading import collisions
 from svg_reading import texts
 
 from workhold import Fence, Result, Workpiece, design
-from workhold.cli.fixture_commands import seat_table
+from workhold.cli.seat_command import seat_table
 from workhold.drawing.bench import contact_of
 from workhold.drawing.fixture_pictures import draw_fixture
 from workhold.drawing.result_sheet import result_sheet

@@ -21,7 +21,7 @@ from held_any_way import AHEAD, HELD, PITCH, WALL_OFFSET, WORDS, Held, load_case
 from sheet_reading import collisions
 from svg_reading import NAMESPACE, by_class, matrix, texts
 
-from workhold.cli.fixture_commands import load_tables
+from workhold.cli.show_command import load_tables
 from workhold.cli.table import print_tables
 from workhold.cli.tables import fixture_tables, quality_table
 from workhold.drawing import draw_fixture, draw_thumbnails

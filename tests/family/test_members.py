@@ -83,11 +83,11 @@ def test_the_zero_is_the_same_point_of_the_part() -> None:
     zero = part_zero(LEVER, "hole 1")
     other = zero_of_other_side(zero)
     assert other == PartZero((-zero.point[0], zero.point[1]), zero.words)
-    turned = Asked("lever", lever_query(Restrictions())).turned_over
+    turned = Asked("lever", lever_query(Restrictions())).lying_as(None)
     assert turned.zero == PartZero((0.0, 0.0), "origin of the drawing")
     assert turned.zero.point == pytest.approx(zero_of_other_side(part_zero(LEVER)).point)
     assert turned.name == "lever, side 2"
-    assert Asked("lever", lever_query(Restrictions()), zero=zero).turned_over.zero == other
+    assert Asked("lever", lever_query(Restrictions()), zero=zero).lying_as(None).zero == other
 
 
 def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
@@ -119,7 +119,7 @@ def test_both_sides_share_pins() -> None:
         Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), ranking=RANKINGS[1]))
         for p in shop_parts(2)
     ]
-    family = family_of([side for one in parts for side in (one, one.turned_over)], threads=1)
+    family = family_of([side for one in parts for side in (one, one.lying_as(None))], threads=1)
     assert [one.name for one in family.members] == [
         "ell-1",
         "ell-1, side 2",

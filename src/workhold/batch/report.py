@@ -192,7 +192,7 @@ class Report:
         record = Path(row["record"])
         link = (
             f'<a href="{escaped(record.relative_to(self.folder).as_posix())}">the best</a>'
-            if self.holds(record)
+            if record.is_relative_to(self.folder)
             else ""
         )
         if sheet is not None:
@@ -202,10 +202,6 @@ class Report:
         line = f"workhold sheet {quote(str(record))} 1 --part-name {quote(name)} -o {quote(f'{name}.pdf')}"
         code = f"<code>{escaped(line)}</code>"
         return f"<small>{link}<details><summary>setup sheet</summary>{code}</details></small>"
-
-    def holds(self, path: Path) -> bool:
-        """Whether a file stands beside the page."""
-        return path.is_relative_to(self.folder)
 
     def write(self, path: Path, summary: Summary) -> None:
         """Writes the page.

@@ -105,29 +105,16 @@ class Part:
         except InputError as error:
             return cls(request, refusal=str(error))
 
-    def reading(self) -> Reading:
-        """The task that reads it.
-
-        Raises
-        ------
-        InputError
-            When the file cannot be opened any more.
-        """
-        return reading_of(self.request)
-
     def take(self, record: Mapping[str, Any]) -> None:
         """Takes note of what was read."""
         self.refusal = record["refusal"]
         if not self.refusal:
-            self.content = name_of(record["loops"], record["departure"], *solid_key(record))
+            # What may be touched makes outlines of one shape two parts; a prism is its shape alone.
+            solid = [record["solid"], record["bands"]] if record.get("solid") else []
+            self.content = name_of(record["loops"], record["departure"], *solid)
             self.faces, self.remarks = record["faces"], tuple(record["remarks"])
             width, height = record["size"]
             self.size = (width, height)
-
-
-def solid_key(record: Mapping[str, Any]) -> list[Any]:
-    """What makes outlines of one shape two parts: what may be touched; nothing for a prism."""
-    return [record["solid"], record["bands"]] if record.get("solid") else []
 
 
 def reading_of(request: Request) -> Reading:
@@ -334,7 +321,7 @@ def read_parts(batch: Batch, work: BatchRun) -> None:
         path = part.request.listed.path
         return reading_seconds(path.suffix, path.stat().st_size if path.is_file() else 0)
 
-    outcomes, _ = work.do("Reading", parts, seconds, lambda part: part.reading())
+    outcomes, _ = work.do("Reading", parts, seconds, lambda part: reading_of(part.request))
     for part in parts:
         record = work.store.read(part.name)
         if record is not None:

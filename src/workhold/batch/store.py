@@ -30,7 +30,6 @@ from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "PART_NAME",
     "FolderStore",
     "Store",
     "UrlStore",

@@ -7,11 +7,11 @@ known a cell is empty. Lengths are in mm, angles in degrees, forces in N.
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from attrs import frozen
 
@@ -57,6 +57,7 @@ BEST: Mapping[str, type] = {
 BLOCK = 8192
 
 Row = dict[str, Any]
+AddRows = Callable[[Sequence[Row]], None]
 
 
 @frozen(eq=False)
@@ -127,6 +128,7 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
 
 def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
     """Columns of a table on a fixture of a result file."""
+    from workhold.files.result.fixture_forms import seating_figures_of
     from workhold.files.result.reader import peg_place
 
     assert isinstance(job.held_in.query, Query)
@@ -135,9 +137,9 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
     direction = fixture.get("direction") if directions is None else " ".join(directions)
     holes = []
     for peg in fixture["pegs"]:
-        carrier, column, row = peg_place(peg, direction if directions is None else peg.get("direction"))
-        holes.append(carriers[carrier].place_name(column, row))
-    return {
+        carrier, *place = peg_place(peg, direction if directions is None else peg.get("direction"))
+        holes.append(carriers[carrier].place_name(*place))
+    row: Row = {
         "type": fixture["type"],
         "direction": direction,
         **fixture["pose"],
@@ -145,28 +147,13 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
         "holes": " ".join(holes),
         "faces": " ".join(str(peg["segment"]) for peg in fixture["pegs"]),
         **fixture["quality"],
-        **seating_figures(fixture.get("seating")),
-        **passing_columns(fixture.get("program_clearance")),
     }
-
-
-def passing_columns(passing: Mapping[str, Any] | None) -> Row:
-    """Columns on where a program's tools come nearest to a fixture in a result file; none where none do."""
-    if passing is None:
-        return {}
-    return {
-        PROGRAM_FIGURE.key: passing["distance"],
-        **{f"program_{name}": passing[name] for name in ("line", "tool", "element")},
-    }
-
-
-def seating_figures(seating: Mapping[str, Any] | None) -> Row:
-    """Columns on the seating of a fixture in a result file: infinite without an end, empty where unknown."""
-    if seating is None:
-        return {}
-    from workhold.files.result.fixture_forms import seating_figures_of
-
-    return seating_figures_of(seating)
+    if (seating := fixture.get("seating")) is not None:
+        row |= seating_figures_of(seating)
+    if (passing := fixture.get("program_clearance")) is not None:
+        row[PROGRAM_FIGURE.key] = passing["distance"]
+        row |= {f"program_{name}": passing[name] for name in ("line", "tool", "element")}
+    return row
 
 
 def has_parquet() -> bool:
@@ -180,13 +167,6 @@ def table_names() -> tuple[str, str]:
     return f"results.{ending}", f"best.{ending}"
 
 
-class Rows(Protocol):
-    """What takes rows of a table."""
-
-    def add(self, rows: Sequence[Row]) -> None:
-        """Writes some rows."""
-
-
 def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
     """Writes both tables of a folder and passes the rows on; files take their names at the end.
 
@@ -197,35 +177,23 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
     """
     table = parquet_table if has_parquet() else csv_table
     with ExitStack() as files:
-        results, best = (
+        add_results, add_best = (
             files.enter_context(table(folder / name, columns))
             for name, columns in zip(table_names(), (RESULTS, BEST), strict=True)
         )
         waiting: list[JobRow] = []
+
+        def add_waiting() -> None:
+            add_results([one.row for one in waiting])
+            add_best([row for one in waiting for row in one.best])
+            waiting.clear()
+
         for row in rows:
             waiting.append(row)
             if len(waiting) == BLOCK:
-                add_all(waiting, results, best)
+                add_waiting()
             yield row
-        add_all(waiting, results, best)
-
-
-def add_all(waiting: list[JobRow], results: Rows, best: Rows) -> None:
-    """Writes the rows that wait."""
-    results.add([one.row for one in waiting])
-    best.add([row for one in waiting for row in one.best])
-    waiting.clear()
-
-
-@frozen
-class CsvRows:
-    """Rows of comma-separated values."""
-
-    writer: Any
-
-    def add(self, rows: Sequence[Row]) -> None:
-        """Writes some rows; see :class:`Rows`."""
-        self.writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
+        add_waiting()
 
 
 def cell(value: Any) -> Any:
@@ -236,31 +204,21 @@ def cell(value: Any) -> Any:
 
 
 @contextmanager
-def csv_table(path: Path, columns: Mapping[str, type]) -> Iterator[Rows]:
-    """A table as comma-separated values."""
+def csv_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
+    """A table as comma-separated values, as a function that adds rows to it."""
     with text_file(path) as stream:
         writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
         writer.writeheader()
-        yield CsvRows(writer)
 
+        def add(rows: Sequence[Row]) -> None:
+            writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
 
-@frozen
-class ParquetRows:
-    """Rows of a Parquet file."""
-
-    writer: Any
-
-    def add(self, rows: Sequence[Row]) -> None:
-        """Writes some rows; see :class:`Rows`."""
-        import pyarrow
-
-        if rows:
-            self.writer.write_table(pyarrow.Table.from_pylist(list(rows), schema=self.writer.schema))
+        yield add
 
 
 @contextmanager
-def parquet_table(path: Path, columns: Mapping[str, type]) -> Iterator[Rows]:
-    """A table as Parquet; the same rows give the same bytes."""
+def parquet_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
+    """A table as Parquet, as a function that adds rows to it; the same rows give the same bytes."""
     import pyarrow
     from pyarrow import parquet
 
@@ -270,6 +228,11 @@ def parquet_table(path: Path, columns: Mapping[str, type]) -> Iterator[Rows]:
         binary_file(path) as stream,
         parquet.ParquetWriter(stream, schema, compression="zstd", store_schema=False) as writer,
     ):
-        yield ParquetRows(writer)
+
+        def add(rows: Sequence[Row]) -> None:
+            if rows:
+                writer.write_table(pyarrow.Table.from_pylist(list(rows), schema=schema))
+
+        yield add
         # Beside the schema it would stand too far from the end to be looked for.
         writer.add_key_value_metadata({"made by": MARK})

@@ -32,7 +32,6 @@ from workhold.model.result import Result
 from workhold.version import __version__
 
 __all__ = [
-    "MOST_TRIES",
     "Answering",
     "Outcome",
     "Queue",
@@ -284,10 +283,6 @@ def make_ready(task: Task) -> None:
         task.prepare()
     except InputError as error:
         raise UnfitWorkerError(str(error)) from error
-
-
-# A task whose worker died is tried so many times: once more by another one, then it is named.
-MOST_TRIES = 2
 
 
 class Watcher(Protocol):

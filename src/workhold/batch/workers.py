@@ -19,27 +19,22 @@ from typing import Any
 
 from attrs import define, evolve, field
 
-from workhold.batch.tasks import MOST_TRIES, Outcome, Task, Watcher, done
+from workhold.batch.tasks import Outcome, Task, Watcher, done
 from workhold.errors import InputError
 from workhold.web.worker import worker_main
 
-__all__ = ["LocalWorkers", "processor_count"]
+__all__ = ["LocalWorkers"]
 
 # Seconds between looks at whether to stop.
 LOOK = 0.1
+# A task whose worker died is tried so many times: once more by another one, then it is named.
+MOST_TRIES = 2
 # Workers that end before they are ready, one after the other, before all is given up.
 MOST_FAILED_STARTS = 3
 # Bytes of address space that a worker has at least; it takes a third of this before any work.
 LEAST_MEMORY = 2 << 30
 # Seconds that no task takes: there is no limit to its time.
 ENDLESS = 1e8
-
-
-def processor_count() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def memory_share(workers: int) -> int:

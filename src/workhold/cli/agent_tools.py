@@ -39,7 +39,7 @@ from workhold.model.requirements import Load, Restrictions, Tolerance, circle_zo
 from workhold.model.result import Result
 from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
 
-__all__ = ["TOOLS", "AgentTool"]
+__all__ = ["TOOLS"]
 
 
 @frozen
@@ -68,21 +68,10 @@ class AgentTool:
 
 def load(asked: LoadArguments, folder: Path, cancel: Event) -> Answer:
     """Reads a part and lists its faces."""
-    loaded = read(asked)
+    loaded = read_workpiece(asked.part, **asked.reading())
     return Answer(
         part_data(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None
     )
-
-
-def read(asked: LoadArguments) -> Loaded:
-    """Reads the part.
-
-    Raises
-    ------
-    InputError
-        When it cannot be read, in the words of a tool's arguments.
-    """
-    return read_workpiece(asked.part, **asked.reading())
 
 
 def design(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
@@ -126,7 +115,7 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
     """
     from workhold.search.design import answer
 
-    loaded = read(asked)
+    loaded = read_workpiece(asked.part, **asked.reading())
     toolkit, tolerance = held_in(asked.toolkit, asked.fields)
     loads = loads_of(asked.loads)
     zones = [

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
+from workhold.cli.table import plural, print_tables
 from workhold.cli.toolkit_lists import (
     ListWords,
     Named,
@@ -26,6 +28,7 @@ from workhold.cli.toolkit_lists import (
 )
 from workhold.cli.values import length_unit, optional_count
 from workhold.errors import InputError
+from workhold.limits import thread_count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,12 +61,6 @@ PartsArgument = Annotated[
         "with its part, toolkits, restrictions and loads.",
     ),
 ]
-SheetsOption = Annotated[
-    bool,
-    typer.Option(
-        "--sheets", help="Write the setup sheet of each first choice as PDF.", rich_help_panel="Results"
-    ),
-]
 
 
 @spread
@@ -88,9 +85,9 @@ def batch(
     best: str = option(
         "Results", "K", "How many fixtures of each job to keep; all are counted.", default=USUAL_BEST
     ),
-    sheets: SheetsOption = False,
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    sheets: bool = flag("Results", "Write the setup sheet of each first choice as PDF.", "--sheets"),
+    force: bool = FORCE,
+    json_: bool = JSON,
     workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given."),
     cluster: str | None = option(
         WORK,
@@ -123,8 +120,10 @@ def batch(
         raise InputError(
             "--workers, --cluster and --local-cluster are three places to work: give one of them."
         )
-    if cluster is not None or processes is not None:
-        refuse_no_cluster()
+    if (cluster is not None or processes is not None) and find_spec("distributed") is None:
+        raise InputError(
+            "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
+        )
     folder = Path(out)
     from workhold.batch.tables import has_parquet, table_names
 
@@ -134,20 +133,16 @@ def batch(
     from workhold.batch.durations import Measured
     from workhold.batch.run import BatchRun, run_batch
     from workhold.batch.store import FolderStore, store_at
-    from workhold.kernels.base.compiling import is_first_run
+    from workhold.cli.warming import compile_on_first_run, compile_seating
 
     store = FolderStore(folder / RECORDS) if records is None else store_at(records)
     start = perf_counter()
     with ask_to_stop("what is done is kept, tables and report are written") as stop:
         keep_what_is_found()
-        if cluster is None and is_first_run():
-            from workhold.cli.warming import compile_kernels
-
-            compile_kernels(stop)
-        if cluster is None and any(is_seated(held) for request in requests for held in request.held_in):
-            from workhold.cli.warming import compile_seating
-
-            compile_seating(stop)
+        if cluster is None:
+            compile_on_first_run(stop)
+            if any(is_seated(held) for request in requests for held in request.held_in):
+                compile_seating(stop)
         with batch_progress() as progress, ExitStack() as workshop:
             queue = place_to_work(progress, count, cluster, processes, None if records is None else store)
             workshop.enter_context(queue)
@@ -155,7 +150,6 @@ def batch(
             done = run_batch(requests, kept, BatchRun(store, queue, measured, progress, stop))
     spent = perf_counter() - start
     report = write_all(done, store, measured, folder, spent, progress.events, sheets)
-    from workhold.cli.table import print_tables
 
     for part, reason in list(report.bad)[:MOST_NAMED]:
         print_remark(f"{part}: {reason}")
@@ -179,22 +173,6 @@ def batch(
         raise typer.Exit(INTERRUPTED)
 
 
-def refuse_no_cluster() -> None:
-    """Refuses a cluster where the library for it is not installed.
-
-    Raises
-    ------
-    InputError
-        With what to install.
-    """
-    from importlib.util import find_spec
-
-    if find_spec("distributed") is None:
-        raise InputError(
-            "a cluster takes Dask, which is not installed: install distributed>=2024.8 and fsspec>=2024.6."
-        )
-
-
 def is_seated(held: HeldIn) -> bool:
     """Whether seating is asked for with one clamp or a vise; with two clamps it needs no kernels."""
     from workhold.model.query import Query
@@ -213,9 +191,9 @@ def place_to_work(
 ) -> LocalWorkers | ClusterWorkers:
     """Makes the queue asked for; the workers of a cluster write records to ``store`` themselves."""
     if cluster is None and processes is None:
-        from workhold.batch.workers import LocalWorkers, processor_count
+        from workhold.batch.workers import LocalWorkers
 
-        return LocalWorkers(count or processor_count(), progress)
+        return LocalWorkers(count or thread_count(None), progress)
     from workhold.batch.cluster import ClusterWorkers
 
     return ClusterWorkers(progress, cluster, processes or 0, store)
@@ -236,63 +214,59 @@ def requests_of(
     InputError
         For words that mean nothing, parts that do not exist, and jobs without a toolkit.
     """
-    from attrs import evolve
-
-    from workhold.batch.run import Request
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
-    from workhold.files.part_list import part_list
 
     lists = varied.has_pitches or toolkit is not None
     named = asked_toolkits(toolkit, varied, reading) if lists else None
     asked_of(words, reading)
-    requests = []
+    requests: list[Request] = []
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
     if plain:
         if named is None:
             raise InputError("no toolkit is given: name one or more with --toolkit (see workhold toolkits).")
-        held_in = held_in_all(named, words, reading)
-        requests = [
-            Request(part, options_of(named, words[2].reading(part.name, reading)), held_in)
-            for part in part_list(plain, [folder])
-        ]
+        requests += requests_in(named, plain, words, reading, folder)
     for name in parts:
         if name in plain:
             continue
         for job in read_jobs(Path(name)):
             try:
-                own_reading = evolve(reading, **job.reading)
-                own_words = (
-                    evolve(words[0], **job.query),
-                    evolve(words[1], **job.seating),
-                    evolve(words[2], **job.program),
-                )
+                own_reading = job.over(reading)
+                own_words = job.over(words[0]), job.over(words[1]), job.over(words[2])
                 own = named
                 if job.toolkits is not None:
-                    own = asked_toolkits(list(job.toolkits), ListWords(), own_reading)
+                    own = asked_toolkits(job.toolkits, ListWords(), own_reading)
                 if own is None:
                     raise InputError(
                         "no toolkit is given: name one or more under toolkit, or for all of them."
                     )
-                held_in = held_in_all(own, own_words, own_reading)
-                requests += [
-                    Request(part, options_of(own, own_words[2].reading(part.name, own_reading)), held_in)
-                    for part in part_list([job.part], [folder])
-                ]
+                requests += requests_in(own, [job.part], own_words, own_reading, folder)
             except InputError as error:
                 raise InputError(f"{job.place}: {error}") from error
     return requests
 
 
-def options_of(toolkits: Sequence[Named], reading: PartWords) -> dict[str, Any]:
-    """Makes the options of reading a part that some toolkits share, with the heights of their carriers.
+def requests_in(
+    toolkits: Sequence[Named], parts: Sequence[str], words: AskedWords, reading: PartWords, folder: Path
+) -> list[Request]:
+    """Lists what is asked of some parts, each of which is read once and held in all of some toolkits.
 
     Raises
     ------
     InputError
-        For words that mean nothing, and toolkits that differ in the heights of a carrier.
+        For words that mean nothing, parts that do not exist, and toolkits that differ in the heights of a
+        carrier.
     """
-    heights = heights_of_all(toolkits)
-    return {**reading.options(), **({"heights": heights} if heights else {})}
+    from workhold.batch.run import ANY_PART, HeldIn, Request
+    from workhold.files.part_list import part_list
+
+    asked = asked_of(words, reading)
+    held_in = [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in toolkits]
+    listed, heights = part_list(parts, [folder]), heights_of_all(toolkits)
+    of_carriers = {"heights": heights} if heights else {}
+    return [
+        Request(part, words[2].reading(part.name, reading).options() | of_carriers, held_in)
+        for part in listed
+    ]
 
 
 def asked_toolkits(
@@ -338,24 +312,8 @@ def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
     return asked | machined.asked(unit, reading.peg_height)
 
 
-def held_in_all(named: Sequence[Named], words: AskedWords, reading: PartWords) -> list[HeldIn]:
-    """Lists what is asked in each toolkit.
-
-    Raises
-    ------
-    InputError
-        For words that mean nothing.
-    """
-    from workhold.batch.run import ANY_PART, HeldIn
-
-    asked = asked_of(words, reading)
-    return [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in named]
-
-
 def run_sentence(done: Batch, spent: float) -> str:
     """Says how many answers the run found, and in what time."""
-    from workhold.cli.tables import plural
-
     before = f"; {done.kept:,} were known from before" if done.kept else ""
     return (
         f"{plural(len(done.parts), 'part')}, {plural(done.fresh, 'answer')} found in {spent:.1f} s{before}."
@@ -373,7 +331,6 @@ def write_all(
         When they cannot be written.
     """
     from workhold.batch.report import Summary, write_results
-    from workhold.cli.tables import plural
     from workhold.version import __version__
 
     toolkits = len({job.held_in.name for job in done.jobs})

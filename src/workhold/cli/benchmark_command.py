@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option
+from workhold.cli.commands import flag, option
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output_folder
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
 from workhold.cli.progress import progress_bar
+from workhold.cli.table import Table, plural, print_tables
 from workhold.cli.values import choice, optional_count, positive_number
 from workhold.errors import InputError
 
@@ -39,9 +40,7 @@ def benchmark(
         ),
     ] = None,
     out: str | None = option(None, "DIR", "Of run: the folder to write the sets into."),
-    parquet: Annotated[
-        bool, typer.Option("--parquet", help="Of run: write sets of 5,000 fixtures or more as Parquet.")
-    ] = False,
+    parquet: bool = flag(None, "Of run: write sets of 5,000 fixtures or more as Parquet.", "--parquet"),
     set_: str | None = option(
         None, "NAME", "Of check: the set that the files are for, where they do not say.", "--set"
     ),
@@ -51,16 +50,14 @@ def benchmark(
         "Of check: how far pegs may be from where the complete list has them.",
         default=TOLERANCE,
     ),
-    symmetric: Annotated[
-        bool,
-        typer.Option(
-            "--symmetric",
-            help="Of check: one fixture stands for all that a rotation of the part carries into it.",
-        ),
-    ] = False,
+    symmetric: bool = flag(
+        None,
+        "Of check: one fixture stands for all that a rotation of the part carries into it.",
+        "--symmetric",
+    ),
     threads: str | None = option(None, "N", "Threads to use; all processors if not given."),
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    force: bool = FORCE,
+    json_: bool = JSON,
 ) -> None:
     """List the sets of the benchmark, make their complete lists, or compare another program's with them.
 
@@ -85,7 +82,7 @@ def benchmark(
     elif asked == "run":
         make_sets(chosen_sets(given), out, parquet, workers, force, json_)
     else:
-        check_entries(given, set_, room or 0.0, symmetric, workers, json_)
+        check_entries(given, set_, room, symmetric, workers, json_)
 
 
 def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
@@ -112,8 +109,6 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
     if as_json:
         print_json(sets=[set_data(one) for one in chosen])
         return
-    from workhold.cli.table import Table, print_tables
-    from workhold.cli.tables import plural
 
     table = Table(("set", ">fixtures", "reason"))
     for one in chosen:
@@ -148,12 +143,13 @@ def make_sets(
     names = ["manifest.json", "check.py", *(f"{one.name}.json" for one in chosen)]
     refuse_output_folder(folder, names, (), force)
     from workhold.benchmark.making import load_arrow, made_sets, write_common
+    from workhold.cli.warming import compile_on_first_run
 
     if parquet:
         load_arrow()
     write_common(chosen, folder)
     with ask_to_stop("the sets that are done are kept") as cancel:
-        compile_first(cancel)
+        compile_on_first_run(cancel)
         with progress_bar("Making sets", "fixtures") as progress:
             made = list(
                 made_sets(chosen, folder, parquet=parquet, threads=workers, progress=progress, cancel=cancel)
@@ -169,9 +165,6 @@ def make_sets(
             ]
         )
     else:
-        from workhold.cli.table import print_tables
-        from workhold.cli.tables import plural
-
         sentences = [
             f"{one.entry.name}: {one.size:,} fixtures, not the {one.entry.size:,} of the manifest."
             for one in other
@@ -189,16 +182,6 @@ def make_sets(
         raise typer.Exit(DIFFERS)
 
 
-def compile_first(cancel: Any) -> None:
-    """Compiles the kernels where that has not been done on this machine."""
-    from workhold.kernels.base.compiling import is_first_run
-
-    if is_first_run():
-        from workhold.cli.warming import compile_kernels
-
-        compile_kernels(cancel)
-
-
 def check_entries(
     files: Sequence[str],
     set_name: str | None,
@@ -213,13 +196,14 @@ def check_entries(
     from workhold.benchmark.catalogue import set_named
     from workhold.benchmark.making import compared_entry
     from workhold.benchmark.matching import read_entry
+    from workhold.cli.warming import compile_on_first_run
 
     entries = [read_entry(Path(name), set_name) for name in files]
     for entry in entries:
         set_named(entry.set_name)
     done = list[tuple[str, str, Any]]()
     with ask_to_stop("what is compared is printed") as cancel:
-        compile_first(cancel)
+        compile_on_first_run(cancel)
         with progress_bar("Comparing", "files") as progress:
             for number, (name, entry) in enumerate(zip(files, entries, strict=True), 1):
                 outcome = compared_entry(entry, tolerance, symmetric, workers, cancel)
@@ -245,8 +229,6 @@ def comparison_data(name: str, set_name: str, outcome: Comparison) -> dict[str, 
 
 def print_comparisons(done: Sequence[tuple[str, str, Comparison]]) -> None:
     """Prints a row for each file, and the first fixtures that are missed or extra."""
-    from workhold.cli.table import Table, print_tables
-
     table = Table(("set", ">complete", ">theirs", ">found", ">missed", ">extra", ">repeated", ">share"))
     sentences = []
     for _, set_name, one in done:

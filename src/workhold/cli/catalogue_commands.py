@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import asdict
 
-from workhold.cli.commands import option, spread
+from workhold.cli.commands import flag, option, spread
 from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
-from workhold.cli.values import length_unit, optional_length
-from workhold.errors import InputError
+from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
+from workhold.cli.table import Table, plural, print_tables
+from workhold.cli.values import length_from_zero, length_unit
 
 if TYPE_CHECKING:
-    from workhold.cli.table import Table
     from workhold.files.part.loaded import Loaded
     from workhold.files.toolkit_file import LoadedToolkit
     from workhold.fixels.table import Form
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["features", "parts", "toolkits"]
 
 
-def parts(unit: str | None = SHOWN_UNIT, json_: JsonOption = False) -> None:
+def parts(unit: str | None = SHOWN_UNIT, json_: bool = JSON) -> None:
     """List the built-in parts.
 
     They are models of the workpieces in Wallack and Canny (1996), whose dimensions were never published. Any
@@ -38,7 +37,6 @@ def parts(unit: str | None = SHOWN_UNIT, json_: JsonOption = False) -> None:
 
     Example: workhold design widget --pitch 8 --columns 1 --peg-radius 3
     """
-    from workhold.cli.table import Table, print_tables
     from workhold.files.part.finding import builtin_parts
     from workhold.files.part.load import load
 
@@ -69,7 +67,7 @@ def toolkits(
         ),
     ] = None,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """List the vises, plates and fences that come with workhold, or show all figures of one.
 
@@ -80,7 +78,6 @@ def toolkits(
     Example: workhold toolkits plate-one-inch --unit inch
     """
     shown = None if unit is None else length_unit(unit)
-    from workhold.cli.table import print_tables
     from workhold.files.toolkit_file import load_toolkit, preset_names
     from workhold.units import MILLIMETRE
 
@@ -104,7 +101,6 @@ def toolkits(
 
 def toolkits_table(unit: Unit) -> Table:
     """All presets, one line each, with lengths in a unit."""
-    from workhold.cli.table import Table
     from workhold.files.toolkit_file import load_toolkit, preset_names
 
     of = unit.abbreviation
@@ -125,8 +121,6 @@ def toolkits_table(unit: Unit) -> Table:
 
 def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
     """Every figure of a toolkit, one line each."""
-    from workhold.cli.table import Table
-
     toolkit, of = loaded.toolkit, unit.abbreviation
     first, finest = toolkit.carriers[0], unit.decimals + 1
     each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
@@ -206,21 +200,15 @@ def features(
     part: PartArgument,
     *,
     draw: str | None = option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png."),
-    force: ForceOption = False,
+    force: bool = FORCE,
     peg_radius: str | None = option(
         None, "LENGTH", "Draw also where the centres of pegs of this radius can be."
     ),
-    parts: Annotated[
-        bool,
-        typer.Option(
-            "--parts",
-            help="List, and draw, the parts of a file that holds several; of a STEP file its solids.",
-        ),
-    ] = False,
-    layers: Annotated[
-        bool, typer.Option("--layers", help="List the layers of a DXF file with what is on them.")
-    ] = False,
-    json_: JsonOption = False,
+    parts: bool = flag(
+        None, "List, and draw, the parts of a file that holds several; of a STEP file its solids.", "--parts"
+    ),
+    layers: bool = flag(None, "List the layers of a DXF file with what is on them.", "--layers"),
+    json_: bool = JSON,
     reading: PartWords,
 ) -> None:
     """List the numbered faces of PART, as pictures and result files name them.
@@ -228,9 +216,7 @@ def features(
     Example: workhold features part.dxf --draw faces.svg
     """
     shown_unit = length_unit(reading.unit)
-    radius = optional_length("--peg-radius", peg_radius, shown_unit)
-    if radius is not None and radius < 0:
-        raise InputError(f"--peg-radius {peg_radius} is negative: give 0 or more.")
+    radius = None if peg_radius is None else length_from_zero("--peg-radius", peg_radius, shown_unit)
     picture = asked_picture(draw, (part,), force)
     if layers:
         list_layers(part, reading, shown_unit, json_)
@@ -241,8 +227,7 @@ def features(
     loaded = reading.load(part)
     workpiece = loaded.workpiece
 
-    from workhold.cli.table import print_tables
-    from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence, plural
+    from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence
 
     if parts:
         list_parts(loaded, shown_unit, picture, json_)
@@ -280,7 +265,6 @@ def list_layers(part: str, reading: PartWords, unit: Unit, as_json: bool) -> Non
     InputError
         For other files.
     """
-    from workhold.cli.table import Table, print_tables
     from workhold.files.part.survey import drawn_layers
 
     found, known = drawn_layers(part, reading.drawing_unit, reading.unit)
@@ -313,7 +297,6 @@ def list_solids(part: str, unit: Unit, as_json: bool) -> None:
     InputError
         For a file that cannot be read.
     """
-    from workhold.cli.table import print_tables
     from workhold.cli.tables import solid_table
     from workhold.files.part.loaded import solids_in
 
@@ -326,8 +309,6 @@ def list_solids(part: str, unit: Unit, as_json: bool) -> None:
 
 def list_parts(loaded: Loaded, unit: Unit, picture: Path | None, as_json: bool) -> None:
     """Prints the parts of a file, and draws them."""
-    from workhold.cli.table import Table, print_tables
-
     table = Table(
         (">part", f">width {unit.abbreviation}", f">height {unit.abbreviation}", ">holes", "lowest corner")
     )

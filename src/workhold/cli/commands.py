@@ -18,9 +18,10 @@ import typer
 from attrs import fields, resolve_types
 from typer.core import TyperCommand, TyperGroup
 
+from workhold.cli.table import sentence_lines, width_of
 from workhold.errors import NO_ROOM, plain, shortened
 
-__all__ = ["PlainCommand", "PlainGroup", "forget", "option", "print_remark", "spread"]
+__all__ = ["PlainCommand", "PlainGroup", "flag", "forget", "option", "print_remark", "spread"]
 
 
 def print_remark(message: str) -> None:
@@ -28,8 +29,6 @@ def print_remark(message: str) -> None:
 
     Where the disk is full the remark is lost, and nothing else.
     """
-    from workhold.cli.table import sentence_lines, width_of
-
     line = f"workhold: {plain(shortened(message))}"
     if sys.stderr.isatty():
         line = "\n".join(sentence_lines(line, width_of(sys.stderr)))
@@ -59,6 +58,11 @@ WIDEST_ENTRY = 27
 def option(panel: str | None, metavar: str, help: str, *names: str, default: str | None = None) -> Any:
     """Makes an option in a section of the help: the default of a parameter, or of a field of a group."""
     return typer.Option(default, *names, metavar=metavar, help=help, rich_help_panel=panel)
+
+
+def flag(panel: str | None, help: str, name: str) -> Any:
+    """Makes an option without a value, off if not given; see :func:`option`."""
+    return typer.Option(False, name, help=help, rich_help_panel=panel)
 
 
 def spread(command: Callable[..., None]) -> Callable[..., None]:

@@ -6,20 +6,20 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import typer
 
-from workhold.cli.commands import option, print_remark, spread
-from workhold.cli.design_report import explain_none, picture_names
+from workhold.cli.commands import flag, option, print_remark, spread
+from workhold.cli.design_report import NEAREST_MISS, draw_best, draw_one, explain_none, picture_names
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
 from workhold.cli.outputs import (
+    FORCE,
     FORMAT,
+    JSON,
     OUTPUT,
     STANDARD_OUTPUT,
-    ForceOption,
-    JsonOption,
     output_form,
     print_json,
     refuse_both,
@@ -30,8 +30,9 @@ from workhold.cli.outputs import (
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of, without_faces_cut
-from workhold.cli.setup_sheets import first_sheet, refuse_sheet, report_sheet
+from workhold.cli.setup_sheets import first_sheet, refuse_sheet
 from workhold.cli.supports_command import asked_thickness, report_supported
+from workhold.cli.table import plural, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, optional_count, whole_number
 from workhold.errors import InputError
@@ -51,13 +52,6 @@ ENGINES = ("curves", "algebra")
 # the search finds them in the first part. Bytes of a fixture in a file of each form.
 KNOWN_FROM, SEARCH_SHARE, MANY = 0.05, 0.9, 200_000
 BYTES = {"json": 960, "csv": 550, "npz": 209}
-
-UnfitOption = Annotated[
-    bool,
-    typer.Option(
-        "--unfit", help="List also what is no fixture for a workshop, in red.", rich_help_panel=OUTPUT
-    ),
-]
 
 
 @spread
@@ -94,24 +88,21 @@ def design(
     draw: str | None = option(
         OUTPUT, "DIR", "Draw the best twelve and a sheet of thumbnails into this folder, or the nearest miss."
     ),
-    force: ForceOption = False,
+    force: bool = FORCE,
     list_: str = option(OUTPUT, "N", "How many to list on the terminal.", "--list", default="5"),
-    unfit: UnfitOption = False,
-    supports: Annotated[
-        bool,
-        typer.Option(
-            "--supports",
-            help="Also find three supports and a clamp on top for the best twenty, as supports does.",
-            rich_help_panel=OUTPUT,
-        ),
-    ] = False,
+    unfit: bool = flag(OUTPUT, "List also what is no fixture for a workshop, in red.", "--unfit"),
+    supports: bool = flag(
+        OUTPUT,
+        "Also find three supports and a clamp on top for the best twenty, as supports does.",
+        "--supports",
+    ),
     sheet: str | None = option(
         OUTPUT,
         "FILE",
         "Write the setup sheet of the first choice into this file (.pdf, .svg, .png), with --supports on "
         "its supports.",
     ),
-    json_: JsonOption = False,
+    json_: bool = JSON,
     reading: PartWords,
 ) -> None:
     """Find every way to hold PART in a vise, or on a plate with a clamp or two.
@@ -133,6 +124,7 @@ def design(
     if json_ and supports:
         raise InputError("--supports prints a table: leave --json out, or ask the command supports.")
     folder = None if draw is None else Path(draw)
+    stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     given = (part, held_in.vise, words.loads, *machined.files)
     if out is not None and out != STANDARD_OUTPUT:
         refuse_output(out, given, force)
@@ -178,36 +170,40 @@ def design(
     if out is not None and streamed is None:
         result = write_found(result, out, form)
     if json_:
+        from workhold.listing.identity import entries
+        from workhold.presenting.data import result_data
+
         further = further_data(result, engine, workers, folder, shown)
         if sheet is not None:
             written = first_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in)
             further["sheet"] = sheet if written else None
-        print_json(**report_data(result, listed, unfit, out), **further)
+        print_json(**result_data(result, entries(result, unfit), max(listed, 0)), result_file=out, **further)
         if not result.complete:
             raise typer.Exit(INTERRUPTED)
         return
-    spent = f"{perf_counter() - start:.1f} s" + (
-        ", compiling on this first run included" if first_run else ""
-    )
-    report(result, spent, out, form, listed, shown, unfit)
+    compiled = ", compiling on this first run included" if first_run else ""
+    spent = f"{perf_counter() - start:.1f} s{compiled}"
+    report(result, spent, out, form, listed, shown, unfit, stream)
     supported: tuple[Supports, ...] = ()
     if high is not None:
-        supported = report_supported(
-            result, high, shown, sys.stderr if out == STANDARD_OUTPUT else sys.stdout
-        )
+        supported = report_supported(result, high, shown, stream)
     if not result.complete:
         raise typer.Exit(INTERRUPTED)
     if not any(result.found.values()) and engine == "curves":
-        from workhold.cli.table import print_tables
         from workhold.cli.tables import other_heights
 
-        stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
         explain_none(result, workers, folder, shown, stream)
         print_tables(*other_heights(workpiece, loaded.heights, shown), stream=stream)
     elif folder is not None:
-        draw_pictures(result, folder, out, shown)
+        drawn = draw_best(result, folder, shown)
+        pictures = f"Drawn: {plural(len(drawn), 'picture')} in {folder}." if drawn else "Nothing to draw."
+        print_tables(pictures, stream=stream)
     if sheet is not None:
-        report_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in, supported)
+        ranked = first_sheet(result, sheet, out, high, shown, words.not_on_faces_cut_in, supported)
+        if ranked is None:
+            print_tables(f"As there is no fixture, {sheet} was not written.", stream=stream)
+        else:
+            print_tables(f"The setup sheet of fixture {ranked} was written to {sheet}.", stream=stream)
 
 
 def with_size_remark(
@@ -255,14 +251,19 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
 
 
 def report(
-    result: Result, spent: str, out: str | None, form: str, listed: int, unit: Unit, unfit: bool
+    result: Result,
+    spent: str,
+    out: str | None,
+    form: str,
+    listed: int,
+    unit: Unit,
+    unfit: bool,
+    stream: TextIO,
 ) -> None:
-    """Reports a result; the words go to stderr where stdout carries the file."""
-    from workhold.cli.table import print_tables
+    """Reports a result on a stream: stderr where stdout carries the file."""
     from workhold.cli.tables import counts_sentence, proof_sentences, result_table, unfit_sentence
     from workhold.listing.identity import entries
 
-    stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
     for note in result.notes:
         print_remark(note)
     shown = entries(result, unfit)
@@ -285,14 +286,6 @@ def report(
         print_remark(f"interrupted: this is a part of the fixtures only{marked}.")
 
 
-def report_data(result: Result, listed: int, unfit: bool, out: str | None) -> dict[str, Any]:
-    """Returns what :func:`report` says as plain data."""
-    from workhold.listing.identity import entries
-    from workhold.presenting.data import result_data
-
-    return {**result_data(result, entries(result, unfit), max(listed, 0)), "result_file": out}
-
-
 def further_data(
     result: Result, engine: str, threads: int | None, folder: Path | None, unit: Unit
 ) -> dict[str, Any]:
@@ -308,25 +301,7 @@ def further_data(
         why = explain(result.query, threads, unit)
         explained = explanation_data(why, result.toolkit)
         if folder is not None and why.nearest is not None:
-            from workhold.cli.design_report import NEAREST_MISS, draw_one
-
             written = draw_one(why.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
     elif result.complete and folder is not None:
-        from workhold.cli.design_report import draw_best
-
         written = draw_best(result, folder, unit)
     return {"explanation": explained, "pictures": [str(path) for path in written]}
-
-
-def draw_pictures(result: Result, folder: Path, out: str | None, unit: Unit) -> None:
-    """Draws the best fixtures and says where they are."""
-    from workhold.cli.design_report import draw_best
-    from workhold.cli.table import print_tables
-    from workhold.cli.tables import plural
-
-    written = draw_best(result, folder, unit)
-    stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
-    if written:
-        print_tables(f"Drawn: {plural(len(written), 'picture')} in {folder}.", stream=stream)
-    else:
-        print_tables("Nothing to draw.", stream=stream)

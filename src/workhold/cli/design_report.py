@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from workhold.errors import InputError
+from workhold.cli.table import Table, print_tables
+from workhold.files.atomic import plain_errors, unfinished
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
@@ -43,10 +44,8 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
     """
     from workhold.drawing.fixture_pictures import draw_fixture
 
-    try:
+    with plain_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
     svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=title, unit=unit)
     return write_pictures({name: svg}, folder)
 
@@ -54,7 +53,7 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
 def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
     """Writes pictures, by name, as SVG and PNG, and returns the files written; if one fails none is left."""
     from workhold.drawing.render import render
-    from workhold.files.atomic import unfinished, write_bytes
+    from workhold.files.atomic import write_bytes
 
     written = []
     try:
@@ -88,22 +87,18 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
     from workhold.drawing.path_drawn import planned_path
     from workhold.listing.identity import entries
 
-    try:
+    with plain_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for old in picture_names():
             (folder / old).unlink(missing_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder} cannot be written: {error.strerror or error}.") from error
     shown = entries(result)
-    indices = shown.index[:BEST_DRAWN].tolist()
-    fixtures = [result[index] for index in indices]
-    if not fixtures:
-        return []
     pictures = {}
-    for place, (index, fixture) in enumerate(zip(indices, fixtures, strict=True), 1):
-        held, path = (fixture, result.workpiece, result.toolkit), planned_path(result, index)
+    for place, index in enumerate(shown.index[:BEST_DRAWN].tolist(), 1):
+        held, path = (result[index], result.workpiece, result.toolkit), planned_path(result, index)
         svg = draw_fixture(*held, title=f"Fixture {index + 1}", unit=unit, path=path)
         pictures[picture_name(place)] = svg
+    if not pictures:
+        return []
     pictures[THUMBNAILS] = best_at_a_glance(result, shown, unit)
     return write_pictures(pictures, folder)
 
@@ -118,19 +113,24 @@ def explain_none(
 
     Parameters
     ----------
-    folder : where the nearest miss is drawn, if anywhere.
+    folder : where the nearest miss is drawn, as SVG and PNG, if anywhere.
+
+    Raises
+    ------
+    InputError
+        When the folder cannot be written.
     """
     from workhold.search.explaining import explain
 
     explanation = explain(result.query, threads, unit)
     print_explanation(explanation, result.query.toolkit, unit, stream)
     if folder is not None and explanation.nearest is not None:
-        draw_nearest_miss(explanation, result, folder, unit, stream)
+        svg, png = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
+        print_tables(f"Drawn: the nearest miss in {svg} and {png.name}.", stream=stream)
 
 
 def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO) -> None:
     """Prints the explanation."""
-    from workhold.cli.table import Table, print_tables
     from workhold.cli.tables import fixture_tables
 
     print_tables("", stream=stream)
@@ -152,20 +152,3 @@ def print_explanation(explanation: Explanation, toolkit: Toolkit, unit: Unit, st
     for item in explanation.helps[:MOST_HELPS]:
         helps.add_row(item.change, f"{item.fixtures:,}" if item.complete else f"over {item.fixtures:,}")
     print_tables(helps, stream=stream)
-
-
-def draw_nearest_miss(
-    explanation: Explanation, result: Result, folder: Path, unit: Unit, stream: TextIO
-) -> None:
-    """Draws the nearest miss into a folder, as SVG and PNG.
-
-    Raises
-    ------
-    InputError
-        When the folder cannot be written.
-    """
-    from workhold.cli.table import print_tables
-
-    assert explanation.nearest is not None
-    written = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
-    print_tables(f"Drawn: the nearest miss in {written[0]} and {written[-1].name}.", stream=stream)

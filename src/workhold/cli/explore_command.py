@@ -12,10 +12,11 @@ import typer
 from workhold.cli.commands import option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import PartArgument, PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
+from workhold.cli.table import Table, print_tables
 from workhold.cli.toolkit_lists import SWEEP, ListWords, heights_of_all, query_of, toolkits_to_try
 from workhold.cli.toolkit_options import TOOLKIT
 from workhold.cli.values import length_unit
@@ -23,8 +24,6 @@ from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.model.requirements import Restrictions
-    from workhold.model.workpiece import Workpiece
     from workhold.search.design import Explored
 
 __all__ = ["explore"]
@@ -45,8 +44,8 @@ def explore(
     words: QueryWords,
     machined: ProgramWords,
     out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values."),
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    force: bool = FORCE,
+    json_: bool = JSON,
     reading: PartWords,
 ) -> None:
     """Try PART in many toolkits: how many fixtures each has, and the figures of its first choice.
@@ -56,36 +55,28 @@ def explore(
 
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
-    from workhold.files.atomic import text_file
-
     shown = length_unit(reading.unit)
     toolkits = toolkits_to_try(vise, toolkit, varied, shown)
     asked = words.asked(shown, machined.program is not None, machined.has_forces)
     if out is not None:
-        refuse_output(
-            out,
-            (
-                part,
-                words.loads,
-                *machined.files,
-                *(name for names in vise or () for name in names.split(",")),
-            ),
-            force,
-        )
-    from workhold.kernels.base.compiling import is_first_run
-
+        named = (name for names in vise or () for name in names.split(","))
+        refuse_output(out, (part, words.loads, *machined.files, *named), force)
     workpiece = machined.reading(part, reading).load(part, heights_of_all(toolkits)).workpiece
     asked |= machined.asked(shown, reading.peg_height, workpiece)
-    refuse_unknown_faces(workpiece, asked["restrictions"])
-    queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]
+    from workhold.cli.warming import compile_on_first_run
+    from workhold.contact.features import face_of_segment
+    from workhold.files.atomic import text_file
+    from workhold.files.toolkit_file import is_sold
     from workhold.search.design import explore as try_all
+    from workhold.search.design import first_choice
 
+    # Faces that do not exist are refused before any toolkit is tried.
+    for number in asked["restrictions"].avoid:
+        face_of_segment(workpiece, number)
+    queries = [(one.name, query_of(workpiece, one, asked)) for one in toolkits]
     found: list[Explored] = []
     with ask_to_stop("what was tried so far is kept") as cancel:
-        if is_first_run():
-            from workhold.cli.warming import compile_kernels
-
-            compile_kernels(cancel)
+        compile_on_first_run(cancel)
         with search_progress() as progress:
             for item in try_all(queries, cancel):
                 found.append(item)
@@ -94,47 +85,32 @@ def explore(
     # Toolkits with one clamp and with two have a default ranking each; the first that can be asked gives the
     # columns.
     ranking = next((query.ranking for _, query in queries if not isinstance(query, InputError)), ())
+    first = first_choice(found, ranking, is_sold)
     if not json_:
-        print_explored(found, types, ranking, shown)
+        print_explored(found, types, ranking, first, shown)
     if out is not None:
         with text_file(Path(out)) as stream:
             stream.write(table_text(found, types))
     if json_:
         from workhold.presenting.data import explored_data
 
-        best = first_of(found, ranking)
-        choice = {"ranking": list(ranking), "first_choice": None if best is None else best.name}
+        choice = {"ranking": list(ranking), "first_choice": None if first is None else first.name}
         print_json(toolkits=explored_data(found), **choice, written=[] if out is None else [out])
     elif out is not None:
-        from workhold.cli.table import print_tables
-
         print_tables(f"Written to {out}.")
     if len(found) < len(toolkits):
         print_remark(f"interrupted: {len(toolkits) - len(found)} toolkits were not tried.")
         raise typer.Exit(INTERRUPTED)
 
 
-def refuse_unknown_faces(workpiece: Workpiece, restrictions: Restrictions) -> None:
-    """Refuses faces that do not exist, before any toolkit is tried.
-
-    Raises
-    ------
-    InputError
-        Naming the face.
-    """
-    from workhold.contact.features import face_of_segment
-
-    for number in restrictions.avoid:
-        face_of_segment(workpiece, number)
-
-
 # Figures that a narrow terminal shows as well.
 FIGURES_KEPT = 3
 
 
-def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, ...], unit: Unit) -> None:
+def print_explored(
+    found: list[Explored], types: list[str], ranking: tuple[str, ...], best: Explored | None, unit: Unit
+) -> None:
     """Prints the table and says which toolkit is best."""
-    from workhold.cli.table import Table, print_tables
     from workhold.files.toolkit_file import is_sold
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
     from workhold.presenting.figure_words import figure_text, heading
@@ -157,20 +133,11 @@ def print_explored(found: list[Explored], types: list[str], ranking: tuple[str, 
     for item in found:
         if item.reason:
             print_tables(f"{item.name}: {item.reason}")
-    best = first_of(found, ranking)
     if best is not None:
         shown = [f for f in (*figures[1:], figures[0]) if f.key in best.figures]
         words = ", ".join(f"{heading(f, unit)} {figure_text(f, best.figures[f.key], unit)}" for f in shown)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         print_tables(f"First choice: {best.name}; its first fixture has {words}.{unsold}")
-
-
-def first_of(found: list[Explored], ranking: tuple[str, ...]) -> Explored | None:
-    """Returns the toolkit to take, see :func:`workhold.search.design.first_choice`."""
-    from workhold.files.toolkit_file import is_sold
-    from workhold.search.design import first_choice
-
-    return first_choice(found, ranking, is_sold)
 
 
 def table_text(found: list[Explored], types: list[str]) -> str:

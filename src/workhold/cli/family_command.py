@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.commands import flag, option, print_remark, spread
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.jobs import asked_of, jobs_of
 from workhold.cli.options import PartWords
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
-from workhold.cli.table import Table
+from workhold.cli.table import Table, plural, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import choice, length_unit, number, optional_count, picture_ending, positive_number
 from workhold.errors import InputError
@@ -39,9 +39,6 @@ LONGEST_NAME = 26
 
 def report(found: Family, plan: Plan | None, spent: str, unit: Unit) -> None:
     """Prints the curve, what was left out, and the plan."""
-    from workhold.cli.table import print_tables
-    from workhold.cli.tables import plural
-
     toolkit = found.toolkit
     for part in found.left_out:
         print_remark(f"{part.name} is left out: {part.reason}.")
@@ -149,26 +146,6 @@ EVERY_TYPE = "both"
 SECONDS = "60"
 SHEET_ENDINGS = (".pdf", ".svg", ".png")
 
-UnfitOption = Annotated[
-    bool,
-    typer.Option("--unfit", help="Use also what is no fixture for a workshop.", rich_help_panel=FAMILY),
-]
-BothSidesOption = Annotated[
-    bool,
-    typer.Option(
-        "--both-sides",
-        help="Hold every part turned over as well, for the second operation.",
-        rich_help_panel=FAMILY,
-    ),
-]
-SameZeroOption = Annotated[
-    bool,
-    typer.Option(
-        "--same-zero",
-        help="All parts of a set-up have their zero at one place and are turned alike.",
-        rich_help_panel=FAMILY,
-    ),
-]
 PartsArgument = Annotated[
     list[str],
     typer.Argument(
@@ -198,15 +175,19 @@ def family(
         "Use no fixture whose figure is worse, such as location-error=0.05 (mm, N or degrees). May be "
         "repeated.",
     ),
-    unfit: UnfitOption = False,
-    both_sides: BothSidesOption = False,
+    unfit: bool = flag(FAMILY, "Use also what is no fixture for a workshop.", "--unfit"),
+    both_sides: bool = flag(
+        FAMILY, "Hold every part turned over as well, for the second operation.", "--both-sides"
+    ),
     zero: str | None = option(
         FAMILY,
         "POINT",
         "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. If not "
         "given, the origin of the drawing where that is on the part, else the corner.",
     ),
-    same_zero: SameZeroOption = False,
+    same_zero: bool = flag(
+        FAMILY, "All parts of a set-up have their zero at one place and are turned alike.", "--same-zero"
+    ),
     time_limit: str = option(
         FAMILY,
         "SECONDS",
@@ -228,8 +209,8 @@ def family(
         "Write the sheets of the plan, one for each set-up, to this file; its name ends in .pdf, .svg or "
         ".png.",
     ),
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    force: bool = FORCE,
+    json_: bool = JSON,
     reading: PartWords,
 ) -> None:
     """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
@@ -262,7 +243,10 @@ def family(
     if sheets is not None and most is None and loss is None:
         raise InputError("--sheets needs a plan: say which with --setups or --max-loss.")
     outputs = [name for name in (out, draw, sheets) if name is not None]
-    refuse_one_name_twice(outputs)
+    resolved = [Path(name).resolve() for name in outputs]
+    for place, name in enumerate(outputs):
+        if resolved[place] in resolved[:place]:
+            raise InputError(f"{name} is named for two outputs: give each a name of its own.")
     for name in outputs:
         refuse_output(name, inputs, force)
     types = None if type_ == EVERY_TYPE else type_
@@ -295,9 +279,8 @@ def family(
             progress=progress,
         )
     plan = found.plan(most) if found.members and (most is not None or loss is not None) else None
-    spent = f"{perf_counter() - start:.1f} s" + (
-        ", compiling on this first run included" if first_run else ""
-    )
+    compiled = ", compiling on this first run included" if first_run else ""
+    spent = f"{perf_counter() - start:.1f} s{compiled}"
     written = write_all(found, plan, out, draw, sheets, shown)
     if json_:
         from json import loads
@@ -308,23 +291,7 @@ def family(
         return
     report(found, plan, spent, shown)
     if written:
-        from workhold.cli.table import print_tables
-
         print_tables(f"Written to {', '.join(written)}.")
-
-
-def refuse_one_name_twice(names: list[str]) -> None:
-    """Refuses outputs that would replace each other.
-
-    Raises
-    ------
-    InputError
-        Naming the file.
-    """
-    resolved = [Path(name).resolve() for name in names]
-    for place, path in enumerate(resolved):
-        if path in resolved[:place]:
-            raise InputError(f"{names[place]} is named for two outputs: give each a name of its own.")
 
 
 def write_all(

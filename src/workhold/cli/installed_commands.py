@@ -12,21 +12,19 @@ import json
 import platform
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from importlib import metadata
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from attrs import asdict, frozen
 
-from workhold.cli.outputs import JsonOption, print_json
+from workhold.cli.outputs import JSON, print_json
+from workhold.cli.table import Table, print_tables
 from workhold.cli.values import choice
 from workhold.errors import InputError
 from workhold.version import __version__
-
-if TYPE_CHECKING:
-    from workhold.cli.table import Table
 
 __all__ = ["SCHEMAS", "doctor", "schema", "schema_of"]
 
@@ -69,7 +67,7 @@ class InstallationRow:
     remedy: str | None = None
 
 
-def doctor(json_: JsonOption = False) -> None:
+def doctor(json_: bool = JSON) -> None:
     """Report what is installed, what is missing, and what each would be good for.
 
     Nothing is changed. Only NumPy and the other libraries of the core are needed to search; extras add
@@ -77,8 +75,6 @@ def doctor(json_: JsonOption = False) -> None:
 
     Example: workhold doctor
     """
-    from workhold.cli.table import print_tables
-
     own = kernels()
     findings = [own, *extras(own.state == BUILT)]
     machine = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
@@ -95,14 +91,9 @@ def doctor(json_: JsonOption = False) -> None:
 
 def table(findings: list[InstallationRow]) -> Table:
     """The findings, one line each; what is missing is red on a terminal."""
-    from workhold.cli.table import Table
-
-    made = Table(("part", "state", "what it is good for"))
-    for number, found in enumerate(findings):
-        made.add_row(found.what, found.state, found.use)
-        if found.remedy:
-            made.red.add(number)
-    return made
+    rows: list[tuple[str, ...]] = [(found.what, found.state, found.use) for found in findings]
+    missing = {number for number, found in enumerate(findings) if found.remedy}
+    return Table(("part", "state", "what it is good for"), rows, missing)
 
 
 def kernels() -> InstallationRow:
@@ -199,13 +190,6 @@ def step_fault() -> str | None:
     return None
 
 
-def part_schema() -> dict[str, Any]:
-    """The schema of a workpiece in JSON."""
-    from workhold.files.input_forms import WorkpieceFile
-
-    return WorkpieceFile.model_json_schema()
-
-
 def toolkit_schema() -> dict[str, Any]:
     """The schema of a toolkit's TOML file: one of those of the kinds."""
     from pydantic import TypeAdapter
@@ -222,34 +206,13 @@ def toolkit_schema() -> dict[str, Any]:
     return schema
 
 
-def loads_schema() -> dict[str, Any]:
-    """The schema of a loads file."""
-    from workhold.files.input_forms import LoadsFile
-
-    return LoadsFile.model_json_schema()
-
-
-def query_schema() -> dict[str, Any]:
-    """The schema of a search as it is asked over HTTP."""
-    from workhold.web.forms import JobForm
-
-    return JobForm.model_json_schema()
-
-
-def result_schema() -> dict[str, Any]:
-    """The schema of a result file."""
-    from workhold.files.result.fixture_forms import ResultFile
-
-    return ResultFile.model_json_schema()
-
-
-# The schemas by name, each with what it is of.
-SCHEMAS: Mapping[str, tuple[str, Callable[[], dict[str, Any]]]] = {
-    "part": ("a part in JSON", part_schema),
-    "toolkit": ("a vise, a plate or a fence, as its TOML file says it", toolkit_schema),
-    "loads": ("a loads file, TOML or JSON", loads_schema),
-    "query": ("a search as it is asked over HTTP", query_schema),
-    "result": ("a result file in JSON", result_schema),
+# What each schema is of.
+SCHEMAS = {
+    "part": "a part in JSON",
+    "toolkit": "a vise, a plate or a fence, as its TOML file says it",
+    "loads": "a loads file, TOML or JSON",
+    "query": "a search as it is asked over HTTP",
+    "result": "a result file in JSON",
 }
 
 
@@ -259,13 +222,22 @@ def schema_of(name: str) -> dict[str, Any]:
     Forms of which a word in the file chooses one differ in all they say, so that a file must fit at least one
     of them.
     """
-    words, make = SCHEMAS[name]
-    schema: dict[str, Any] = loosened(make())
+    from workhold.files.input_forms import LoadsFile, WorkpieceFile
+    from workhold.files.result.fixture_forms import ResultFile
+    from workhold.web.forms import JobForm
+
+    forms: dict[str, Any] = {
+        "part": WorkpieceFile,
+        "loads": LoadsFile,
+        "query": JobForm,
+        "result": ResultFile,
+    }
+    made = toolkit_schema() if name == "toolkit" else forms[name].model_json_schema()
     return {
         "$schema": DIALECT,
-        **schema,
+        **loosened(made),
         "title": f"workhold {name}",
-        "description": f"The shape of {words}.",
+        "description": f"The shape of {SCHEMAS[name]}.",
     }
 
 
@@ -280,7 +252,7 @@ def schema(
     name: Annotated[
         str | None, typer.Argument(metavar="[NAME]", help="part, toolkit, loads, query or result.")
     ] = None,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Print the JSON Schema of a part, a toolkit, loads, a query or a result, or list them.
 
@@ -288,17 +260,11 @@ def schema(
 
     Example: workhold schema result > result.schema.json
     """
-
     if name is not None:
         text = json.dumps(schema_of(choice("the schema", name, tuple(SCHEMAS))), indent=2)
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
     elif json_:
-        print_json(schemas=[{"name": one, "of": words} for one, (words, _) in SCHEMAS.items()])
+        print_json(schemas=[{"name": one, "of": words} for one, words in SCHEMAS.items()])
     else:
-        from workhold.cli.table import Table, print_tables
-
-        table = Table(("name", "of"))
-        for one, (words, _) in SCHEMAS.items():
-            table.add_row(one, words)
-        print_tables(table)
+        print_tables(Table(("name", "of"), list(SCHEMAS.items())))

@@ -22,9 +22,9 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from attrs import evolve, fields_dict, frozen
+from attrs import AttrsInstance, evolve, fields_dict, frozen
 
 from workhold.cli.commands import print_remark
 from workhold.cli.options import PartWords
@@ -46,10 +46,11 @@ JOB_ENDINGS = (".csv", ".toml")
 LARGEST_FILE = 100_000_000
 PART, TOOLKIT = "part", "toolkit"
 GROUPS = PartWords, QueryWords, SeatingWords, ProgramWords
-OF_PART, OF_QUERY, OF_SEATING, OF_PROGRAM = (tuple(fields_dict(words)) for words in GROUPS)
-KEYS = (PART, TOOLKIT, *OF_PART, *OF_QUERY, *OF_SEATING, *OF_PROGRAM)
-# Words that are true or false.
-FLAGS = {"foolproof": {"true": True, "yes": True, "false": False, "no": False}}
+Words = TypeVar("Words", PartWords, QueryWords, SeatingWords, ProgramWords)
+KEYS = (PART, TOOLKIT, *(name for group in GROUPS for name in fields_dict(group)))
+# Words that are true or false, and how that is written.
+FLAGS = ("foolproof",)
+TRUTHS = {"true": True, "yes": True, "false": False, "no": False}
 # Words of which there may be several.
 LISTS = (TOOLKIT, "layer", "avoid", "keep_out", "angle", "load")
 FILES = (PART, TOOLKIT, "loads", "program", "tools")
@@ -64,17 +65,22 @@ class JobWords:
     place : where it stands, for messages.
     part : file, folder or built-in name.
     toolkits : names and files; None where the file gives none.
-    reading, query, seating, program : what the file says of reading the part, of its fixtures, of their
-        seating and of the program to pass, by the names of options.
+    options : what the file says of reading the part, of its fixtures, of their seating and of the program to
+        pass, by the names of options.
     """
 
     place: str
     part: str
-    toolkits: tuple[str, ...] | None
-    reading: Mapping[str, Any]
-    query: Mapping[str, Any]
-    seating: Mapping[str, Any]
-    program: Mapping[str, Any]
+    toolkits: list[str] | None
+    options: Mapping[str, Any]
+
+    def over(self, typed: Words) -> Words:
+        """The options of a group as typed, with those of the file in their place."""
+        return evolve(typed, **self.options_of(type(typed)))
+
+    def options_of(self, group: type[AttrsInstance]) -> dict[str, Any]:
+        """What the file says of a group of options."""
+        return {name: self.options[name] for name in fields_dict(group) if name in self.options}
 
 
 def read_jobs(path: Path) -> list[JobWords]:
@@ -158,7 +164,7 @@ def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
                 f"{place} has an unknown word {key[:40]!r}: give {', '.join(KEYS[:-1])} or {KEYS[-1]}."
             )
         if name in FLAGS:
-            words[name] = flag_of(value, FLAGS[name], f"{place}: {key}")
+            words[name] = flag_of(value, f"{place}: {key}")
             continue
         values = [
             text_of(item, f"{place}: {key}") for item in (value if isinstance(value, list) else [value])
@@ -168,13 +174,10 @@ def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
         words[name] = values if name in LISTS else ",".join(values)
     if PART not in words:
         raise InputError(f"{place} has no part: name a file, a folder or a built-in part.")
-    known = OF_PART, OF_QUERY, OF_SEATING, OF_PROGRAM
-    groups = ({name: words[name] for name in of if name in words} for of in known)
-    toolkits = tuple(words[TOOLKIT]) if TOOLKIT in words else None
-    return JobWords(place, words[PART], toolkits, *groups)
+    return JobWords(place, words.pop(PART), words.pop(TOOLKIT, None), words)
 
 
-def flag_of(value: Any, known: Mapping[str, bool], place: str) -> bool:
+def flag_of(value: Any, place: str) -> bool:
     """Reads a value that is true or false, or one of the words for that.
 
     Raises
@@ -182,9 +185,9 @@ def flag_of(value: Any, known: Mapping[str, bool], place: str) -> bool:
     InputError
         For anything else.
     """
-    flag = value if isinstance(value, bool) else known.get(str(value).lower())
+    flag = value if isinstance(value, bool) else TRUTHS.get(str(value).lower())
     if flag is None:
-        raise InputError(f"{place} is neither true nor false: write one of {', '.join(known)}.")
+        raise InputError(f"{place} is neither true nor false: write one of {', '.join(TRUTHS)}.")
     return flag
 
 
@@ -237,9 +240,9 @@ def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[Fam
                 raise InputError(
                     f"{job.place} names a toolkit: the parts of a family share that of the command line."
                 )
-            if job.program:
+            if job.options_of(ProgramWords):
                 raise InputError(f"{job.place} names a program: a family of parts is planned without any.")
-            own_words, own_reading = evolve(words, **job.query), evolve(reading, **job.reading)
+            own_words, own_reading = job.over(words), job.over(reading)
             try:
                 own_words.asked(length_unit(own_reading.unit))
                 found += [(one, own_words, own_reading) for one in part_list([job.part])]
@@ -319,7 +322,7 @@ def asked_of(
         if not both_sides:
             continue
         if workpiece.solid is None:
-            members.append(one.turned_over)
+            members.append(one.lying_as(None))
             continue
         read = read_listed(job.listed, **{**options, "axis": other_way_up(workpiece.solid.axis)})
         if read.loaded is None:

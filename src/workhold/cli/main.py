@@ -99,7 +99,6 @@ COMMANDS = {
 # function of its name, and its module is imported when it is asked for: nobody waits for the others.
 SHARED_MODULES = {
     "catalogue_commands": ("features", "parts", "toolkits"),
-    "fixture_commands": ("seat", "show"),
     "installed_commands": ("doctor", "schema"),
     "result_commands": ("convert", "verify"),
     "serving_commands": ("completion", "mcp", "serve"),

@@ -13,12 +13,11 @@ import sys
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from workhold.cli.commands import option
+from workhold.cli.commands import flag, option
 from workhold.cli.ending import Interrupted, keep_what_is_found
+from workhold.cli.table import print_tables
 from workhold.cli.values import choice, picture_ending
 from workhold.errors import InputError
 
@@ -26,11 +25,11 @@ if TYPE_CHECKING:
     from workhold.model.result import Result
 
 __all__ = [
+    "FORCE",
     "FORMAT",
+    "JSON",
     "OUTPUT",
     "STANDARD_OUTPUT",
-    "ForceOption",
-    "JsonOption",
     "asked_picture",
     "output_form",
     "print_json",
@@ -43,9 +42,7 @@ __all__ = [
     "write_picture",
 ]
 
-ForceOption = Annotated[
-    bool, typer.Option("--force", help="Replace files of these names that workhold has not written.")
-]
+FORCE = flag(None, "Replace files of these names that workhold has not written.", "--force")
 
 # What stands within the first or the last so many bytes of everything that workhold writes, and of nothing
 # else.
@@ -242,12 +239,7 @@ def write_found(result: Result, out: str, form: str) -> Result:
     return result
 
 
-JsonOption = Annotated[
-    bool,
-    typer.Option(
-        "--json", help="Print one JSON object instead of tables; lengths in mm whatever --unit says."
-    ),
-]
+JSON = flag(None, "Print one JSON object instead of tables; lengths in mm whatever --unit says.", "--json")
 
 
 def refuse_both(as_json: bool, out: str | None) -> None:
@@ -275,6 +267,5 @@ def print_written(as_json: bool, sentence: str, *paths: str | Path) -> None:
     if as_json:
         print_json(written=[str(path) for path in paths])
         return
-    from workhold.cli.table import print_tables
 
     print_tables(sentence)

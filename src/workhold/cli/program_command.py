@@ -10,7 +10,7 @@ from attrs import asdict
 
 from workhold.cli.commands import option
 from workhold.cli.options import SHOWN_UNIT
-from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
+from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
 from workhold.cli.program_options import (
     CUT_DEPTH,
     CUT_WIDTH,
@@ -20,13 +20,11 @@ from workhold.cli.program_options import (
     POWER,
     TEETH,
     ProgramWords,
-    asked_cutting,
-    asked_height,
-    asked_rapid,
+    asked_reading,
     asked_zero,
 )
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import choice, length_unit, optional_positive_length
+from workhold.cli.values import length_unit, optional_positive_length
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,7 +33,6 @@ if TYPE_CHECKING:
     from workhold.files.program.reader import ReadProgram
     from workhold.model.cutting_forces import CuttingForces
     from workhold.model.program import Program
-    from workhold.model.program_figures import ToolFigures
     from workhold.units import Unit
 
 __all__ = ["program"]
@@ -74,9 +71,9 @@ def program(
     cut_width: str | None = CUT_WIDTH,
     cutting_direction: str | None = CUTTING_DIRECTION,
     draw: str | None = option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
-    force: ForceOption = False,
+    force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Report what was understood of a program for the mill: tools, lengths, heights, time, lines left out.
 
@@ -86,9 +83,13 @@ def program(
     """
     shown = length_unit(unit)
     picture = asked_picture(draw, (program_file, tools), force)
-    height = None if thickness is None else optional_positive_length("--thickness", thickness, shown)
-    asked_unit = None if program_unit is None else choice("--program-unit", program_unit, ("mm", "inch"))
+    height = optional_positive_length("--thickness", thickness, shown)
     typed = ProgramWords(
+        program_file,
+        tools,
+        z_zero=z_zero,
+        rapid=rapid,
+        program_unit=program_unit,
         cutting_force=cutting_force,
         power=power,
         material=material,
@@ -97,19 +98,10 @@ def program(
         cut_width=cut_width,
         cutting_direction=cutting_direction,
     )
-    cutting = asked_cutting(typed, shown)
+    asked = asked_reading(typed, shown, height, asked_zero(zero, shown))
     from workhold.files.program.reader import read_program_with_calls
 
-    read = read_program_with_calls(
-        program_file,
-        tools,
-        zero=asked_zero(zero, shown),
-        z_zero=asked_height(z_zero, height, shown),
-        thickness=height,
-        rapid=asked_rapid(rapid),
-        unit=asked_unit,
-        cutting=cutting,
-    )
+    read = read_program_with_calls(program_file, tools, **asked)
     if picture is not None:
         from workhold.drawing.program_picture import draw_program
 
@@ -205,7 +197,8 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
             str(one.first_line),
             unit.number(one.cutting, 0 if unit.millimetres == 1 else 1),
             unit.number(one.rapid, 0 if unit.millimetres == 1 else 1),
-            time_words(one),
+            # A plus sign stands behind a time where some moves have no feed.
+            clock(one.seconds) + ("+" if one.untimed else ""),
             "" if one.lowest_cut is None else unit.number(one.lowest_cut),
         )
     low, high = tip_box(program.moves)
@@ -224,11 +217,6 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
         *program.notes,
         *force_table(program, unit),
     )
-
-
-def time_words(figures: ToolFigures) -> str:
-    """The time of a tool's cutting moves; a plus sign behind it where some have no feed."""
-    return clock(figures.seconds) + ("+" if figures.untimed else "")
 
 
 def clock(seconds: float) -> str:

@@ -1,7 +1,6 @@
 """Options of a program: where its zero is, how its tools cut, and that fixtures are to let it pass.
 
-How tools cut is asked where the table of tools does not say it. The answer is how near the tools come to
-a fixture, and which forces they ask for.
+How tools cut is asked where the table of tools does not say it.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ import re
 from functools import cache
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, fields, frozen
 
@@ -22,6 +21,7 @@ from workhold.cli.values import (
     length,
     optional_force,
     optional_positive_length,
+    two_lengths,
     whole_number,
 )
 from workhold.errors import InputError
@@ -30,7 +30,6 @@ from workhold.units import MILLIMETRE, Unit
 if TYPE_CHECKING:
     from workhold.model.cutting_tool import CuttingData
     from workhold.model.program import Program
-    from workhold.model.result import Result
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -42,12 +41,8 @@ __all__ = [
     "POWER",
     "ProgramWords",
     "TEETH",
-    "asked_cutting",
-    "asked_height",
-    "asked_rapid",
+    "asked_reading",
     "asked_zero",
-    "passing_data",
-    "passing_words",
 ]
 
 FORCES = "Cutting forces"
@@ -256,24 +251,7 @@ def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
     InputError
         For anything but two lengths.
     """
-    words = text.split(",")
-    if len(words) != 2:
-        raise InputError(f"--zero {text!r} is not a place here: give two lengths, such as 10,5.")
-    return length("--zero", words[0], unit), length("--zero", words[1], unit)
-
-
-def asked_height(text: str, thickness: float | None, unit: Unit) -> float | Literal["top", "bottom"]:
-    """The height of the program's Z0: a side of the part, or in mm; 0 for the top of a part nobody knows."""
-    if text == "top":
-        return "top" if thickness is not None else 0.0
-    if text == "bottom":
-        return "bottom"
-    return length("--z-zero", text, unit)
-
-
-def asked_rapid(text: str) -> Literal["straight", "box"]:
-    """How rapid moves go."""
-    return "box" if choice("--rapid", text, ("straight", "box")) == "box" else "straight"
+    return two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
 
 
 def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
@@ -291,6 +269,30 @@ def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, 
     return part_zero(workpiece, text, unit).point
 
 
+def asked_reading(
+    words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]
+) -> dict[str, Any]:
+    """Keyword arguments of ``files.program.reader.read_program``; ``thickness`` and ``zero`` are in mm.
+
+    Raises
+    ------
+    InputError
+        For words that mean nothing.
+    """
+    named, height = words.program_unit, words.z_zero
+    if height == "top" and thickness is None:
+        # Of a part that nobody knows the top is where the program begins to count.
+        height = "0"
+    return {
+        "unit": None if named is None else choice("--program-unit", named, ("mm", "inch")),
+        "zero": zero,
+        "z_zero": height if height in ("top", "bottom") else length("--z-zero", height, unit),
+        "thickness": thickness,
+        "rapid": choice("--rapid", words.rapid, ("straight", "box")),
+        "cutting": asked_cutting(words, unit),
+    }
+
+
 @cache
 def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]) -> Program:
     """Reads the program, and prints remarks on it; ``thickness`` of the part and ``zero`` in mm.
@@ -302,68 +304,10 @@ def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tu
     """
     assert words.program is not None
     kept = length("--program-clearance", words.program_clearance, unit)
-    named = (
-        None if words.program_unit is None else choice("--program-unit", words.program_unit, ("mm", "inch"))
-    )
+    asked = asked_reading(words, unit, thickness, zero)
     from workhold.files.program.reader import read_program
 
-    program = read_program(
-        words.program,
-        words.tools,
-        zero=zero,
-        z_zero=asked_height(words.z_zero, thickness, unit),
-        thickness=thickness,
-        clearance=kept,
-        rapid=asked_rapid(words.rapid),
-        unit=named,
-        cutting=asked_cutting(words, unit),
-    )
+    program = read_program(words.program, words.tools, clearance=kept, **asked)
     for note in program.notes:
         print_remark(note)
     return program
-
-
-def passing_data(
-    result: Result, rank: int, jaw_force: float | None = None, jaw: str | float = "screw"
-) -> dict[str, Any]:
-    """Returns where the program's tools come nearest, and which forces they ask for, as plain data.
-
-    Nothing without a program. Jaw force and jaw are as of :func:`passing_words`.
-    """
-    from workhold.statics.program_clearance import passing_of
-    from workhold.statics.program_forces import cutting_need_of
-
-    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
-    names = ("distance", "line", "tool", "element")
-    passing = {} if near is None else {name: getattr(near, name) for name in names}
-    data = {"program_clearance": passing} if passing else {}
-    return data if need is None else data | {"program_forces": need.to_dict()}
-
-
-def passing_words(
-    result: Result, rank: int, unit: Unit, jaw_force: float | None = None, jaw: str | float = "screw"
-) -> list[str]:
-    """Says how near the program's tools come to the fixture of a rank, and which forces they ask for.
-
-    Nothing without a program.
-
-    Parameters
-    ----------
-    jaw_force : in N, instead of the result's.
-    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
-    """
-    from workhold.statics.program_clearance import passing_of
-    from workhold.statics.program_forces import cutting_need_of
-
-    program = result.query.program
-    if program is None:
-        return []
-    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
-    forces = [] if need is None else need.words(result.toolkit.moving.noun, unit, result.toolkit.travels)
-    if near is None:
-        return [f"No tool of {program.name} comes down to where anything holds the part.", *forces]
-    return [
-        f"The tools of {program.name} keep {unit.text(near.distance)} from all that holds the part; "
-        f"T{near.tool} comes nearest in line {near.line}, to the {near.element}.",
-        *forces,
-    ]

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from workhold.cli.commands import flag, option
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import ResultArgument
 from workhold.cli.outputs import (
+    FORCE,
     FORMAT,
+    JSON,
     STANDARD_OUTPUT,
-    ForceOption,
-    JsonOption,
     output_form,
     print_json,
     print_written,
@@ -25,6 +26,7 @@ from workhold.cli.outputs import (
     write_output,
 )
 from workhold.cli.progress import progress_bar, search_progress
+from workhold.cli.table import plural, print_tables
 from workhold.cli.values import optional_count, whole_number
 from workhold.errors import InputError
 
@@ -39,8 +41,8 @@ def convert(
     result_file: ResultArgument,
     out: Annotated[str, typer.Argument(metavar="FILE", help="The file to write; - is the terminal.")],
     format_: str | None = FORMAT,
-    force: ForceOption = False,
-    json_: JsonOption = False,
+    force: bool = FORCE,
+    json_: bool = JSON,
 ) -> None:
     """Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a
     spreadsheet.
@@ -54,7 +56,6 @@ def convert(
     if out != STANDARD_OUTPUT:
         refuse_output(out, (result_file,), force)
 
-    from workhold.cli.tables import plural
     from workhold.files.result.reader import read_result
 
     result = read_result(result_file)
@@ -68,23 +69,14 @@ REFUTED = 2
 
 def verify(
     result_file: ResultArgument,
-    list_: Annotated[
-        str,
-        typer.Option(
-            "--list", metavar="N", help="How many fixtures that are not proven to list on the terminal."
-        ),
-    ] = "5",
-    complete: Annotated[
-        bool,
-        typer.Option(
-            "--complete", help="Also search again, and compare: which fixtures, how many, and the account."
-        ),
-    ] = False,
-    threads: Annotated[
-        str | None,
-        typer.Option(metavar="N", help="Threads of that search; as many as processors if not given."),
-    ] = None,
-    json_: JsonOption = False,
+    list_: str = option(
+        None, "N", "How many fixtures that are not proven to list on the terminal.", "--list", default="5"
+    ),
+    complete: bool = flag(
+        None, "Also search again, and compare: which fixtures, how many, and the account.", "--complete"
+    ),
+    threads: str | None = option(None, "N", "Threads of that search; as many as processors if not given."),
+    json_: bool = JSON,
 ) -> None:
     """Prove or refute every fixture of a result, and every number written with it.
 
@@ -99,7 +91,6 @@ def verify(
     listed = whole_number("--list", list_)
     workers = optional_count("--threads", threads)
 
-    from workhold.cli.table import print_tables
     from workhold.verification.listing import read_listing
     from workhold.verification.verify import verify_listing
 
@@ -107,7 +98,10 @@ def verify(
     from workhold.verification.supports import is_supports_file, verify_supports_file
 
     if is_supports_file(result_file):
-        refuse_complete(complete)
+        if complete:
+            raise InputError(
+                "--complete searches for fixtures again, and this file lists supports: leave it out."
+            )
         found = verify_supports_file(result_file)
         print_supports(found, listed, perf_counter() - start, json_)
         if not found.holds:
@@ -132,20 +126,6 @@ def verify(
         raise typer.Exit(REFUTED)
 
 
-def refuse_complete(complete: bool) -> None:
-    """Refuses to search again for a file of supports.
-
-    Raises
-    ------
-    InputError
-        When that is asked.
-    """
-    if complete:
-        raise InputError(
-            "--complete searches for fixtures again, and this file lists supports: leave it out."
-        )
-
-
 def print_supports(outcome: Verification, count: int, seconds: float, as_json: bool) -> None:
     """Prints what is shown of a file of supports."""
     if as_json:
@@ -153,8 +133,6 @@ def print_supports(outcome: Verification, count: int, seconds: float, as_json: b
 
         print_json(**verification_data(outcome))
         return
-    from workhold.cli.table import print_tables
-    from workhold.cli.tables import plural
 
     words = [sentence.replace("Fixture", "Triple", 1) for sentence in unproven_sentences(outcome, count)]
     tally = f"{outcome.proven} proven, {outcome.refuted} refuted"
@@ -163,14 +141,11 @@ def print_supports(outcome: Verification, count: int, seconds: float, as_json: b
 
 def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
     """Adds to the verification what a search of the same query finds."""
+    from workhold.cli.warming import compile_on_first_run
     from workhold.completeness import completed
-    from workhold.kernels.base.compiling import is_first_run
 
     with ask_to_stop("nothing is compared") as cancel:
-        if is_first_run():
-            from workhold.cli.warming import compile_kernels
-
-            compile_kernels(cancel)
+        compile_on_first_run(cancel)
         with search_progress() as progress:
             return completed(outcome, listing, threads=workers, progress=progress, cancel=cancel)
 
@@ -189,8 +164,6 @@ def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
 
 def summary(outcome: Verification) -> str:
     """Says how many fixtures are proven, refuted and undecided."""
-    from workhold.cli.tables import plural
-
     return (
         f"{plural(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
         f"{outcome.undecided} undecided at {outcome.bits} bits"

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import shlex
 from math import isfinite
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
 from attrs import evolve, frozen
 
-from workhold.cli.commands import option
+from workhold.cli.commands import flag, option
 from workhold.cli.values import (
     length,
+    length_from_zero,
     number,
     optional_count,
     optional_force,
@@ -182,7 +182,7 @@ class QueryWords:
         loads = asked_loads(self.load, self.loads, unit)
         names = None if self.rank_by is None else [word for word in self.rank_by.split(",") if word.strip()]
         return {
-            "contact_margin": asked_contact_margin(self.contact_margin, unit),
+            "contact_margin": length_from_zero("--contact-margin", self.contact_margin, unit),
             "restrictions": Restrictions(
                 avoid=tuple(
                     whole_number("--avoid", word) for words in self.avoid or () for word in words.split(",")
@@ -265,20 +265,6 @@ def angles(text: str) -> tuple[float, float]:
     return least, most
 
 
-def asked_contact_margin(text: str, unit: Unit) -> float:
-    """The contact margin in mm.
-
-    Raises
-    ------
-    InputError
-        For words that are no length, and below zero.
-    """
-    margin = length("--contact-margin", text, unit)
-    if margin < 0:
-        raise InputError(f"--contact-margin {text} is negative: give 0 or more.")
-    return margin
-
-
 def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
     """The tolerance asked for; None where none was typed.
 
@@ -324,14 +310,6 @@ def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[
 
 
 SEATING = "Seating"
-FoolproofOption = Annotated[
-    bool,
-    typer.Option(
-        "--foolproof",
-        help="List only those of them that have no wrong place to rest in, or a caliper shows each.",
-        rich_help_panel=SEATING,
-    ),
-]
 
 
 @frozen
@@ -350,7 +328,11 @@ class SeatingWords:
         "List only those of them that catch the part with the jaws open, or the clamp drawn back, by so "
         "much more than where they hold it; places beyond it do not count.",
     )
-    foolproof: FoolproofOption = False
+    foolproof: bool = flag(
+        SEATING,
+        "List only those of them that have no wrong place to rest in, or a caliper shows each.",
+        "--foolproof",
+    )
 
     def asked(self, unit: Unit) -> dict[str, Any]:
         """Keyword arguments of a query.
@@ -366,4 +348,4 @@ class SeatingWords:
             raise InputError(
                 "--opening and --foolproof need --seating K: of how many fixtures, the first, to look at it."
             )
-        return {"seating": count, "opening": opening, "foolproof": bool(self.foolproof)}
+        return {"seating": count, "opening": opening, "foolproof": self.foolproof}

@@ -20,6 +20,7 @@ from typing import Annotated, Any
 import typer
 import typer.completion
 
+from workhold.cli.commands import flag, option
 from workhold.cli.values import choice, positive_number, whole_number
 from workhold.errors import InputError, lacks_memory
 from workhold.version import __version__
@@ -38,52 +39,39 @@ MOST_SEARCHES = 256
 FIRST_RUN = "workhold: compiling for this machine, which takes half a minute or so the first time."
 
 
-def limit(metavar: str, variable: str, help: str) -> typer.models.OptionInfo:
+def limit(default: str | None, metavar: str, variable: str, help: str) -> Any:
     """Makes an option that is a limit and can come from the environment."""
-    option: typer.models.OptionInfo = typer.Option(
-        metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
+    return typer.Option(
+        default, metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
     )
-    return option
 
 
 def serve(
-    host: Annotated[
-        str, typer.Option(metavar="ADDRESS", help="Where to listen; 0.0.0.0 lets other machines in.")
-    ] = "127.0.0.1",
-    port: Annotated[
-        str, typer.Option(metavar="PORT", help="Port to listen at; 0 takes a free one.")
-    ] = "8000",
-    open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
-    allow_host: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Another name that the server may be called by. May be repeated."),
-    ] = None,
-    trust_proxy: Annotated[
-        list[str] | None,
-        typer.Option(metavar="ADDRESS", help="A reverse proxy that says for whom it asks. May be repeated."),
-    ] = None,
-    allow_origin: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="ORIGIN",
-            help="A site whose pages may use the server, such as https://shop.example. May be repeated.",
-        ),
-    ] = None,
-    ask_token: Annotated[
-        bool, typer.Option("--ask-token", help="Let in only who has the address that is printed.")
-    ] = False,
-    upload_size: Annotated[str, limit("MB", "UPLOAD_SIZE", "Largest file with a part.")] = "20",
-    searches: Annotated[str, limit("N", "SEARCHES", "Searches at the same time.")] = "2",
-    seconds: Annotated[
-        str, limit("S", "SECONDS", "Longest search; what was found by then is shown.")
-    ] = "120",
-    memory: Annotated[
-        str | None, limit("MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine.")
-    ] = None,
-    fixtures: Annotated[
-        str, limit("N", "FIXTURES", "Most fixtures kept of a search, the best ones.")
-    ] = "300000",
-    life: Annotated[str, limit("MINUTES", "LIFE", "How long a search is kept after its last use.")] = "60",
+    host: str = option(
+        None, "ADDRESS", "Where to listen; 0.0.0.0 lets other machines in.", default="127.0.0.1"
+    ),
+    port: str = option(None, "PORT", "Port to listen at; 0 takes a free one.", default="8000"),
+    open_: bool = flag(None, "Open the page in the browser.", "--open"),
+    allow_host: list[str] | None = option(
+        None, "NAME", "Another name that the server may be called by. May be repeated."
+    ),
+    trust_proxy: list[str] | None = option(
+        None, "ADDRESS", "A reverse proxy that says for whom it asks. May be repeated."
+    ),
+    allow_origin: list[str] | None = option(
+        None,
+        "ORIGIN",
+        "A site whose pages may use the server, such as https://shop.example. May be repeated.",
+    ),
+    ask_token: bool = flag(None, "Let in only who has the address that is printed.", "--ask-token"),
+    upload_size: str = limit("20", "MB", "UPLOAD_SIZE", "Largest file with a part."),
+    searches: str = limit("2", "N", "SEARCHES", "Searches at the same time."),
+    seconds: str = limit("120", "S", "SECONDS", "Longest search; what was found by then is shown."),
+    memory: str | None = limit(
+        None, "MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine."
+    ),
+    fixtures: str = limit("300000", "N", "FIXTURES", "Most fixtures kept of a search, the best ones."),
+    life: str = limit("60", "MINUTES", "LIFE", "How long a search is kept after its last use."),
 ) -> None:
     """Serve the page: from a drawing to a setup sheet in the browser.
 
@@ -96,11 +84,11 @@ def serve(
     if not 0 <= at <= HIGHEST_PORT:
         raise InputError(f"--port {port} is no port: give a number from 0 to {HIGHEST_PORT}.")
     figures: dict[str, Any] = {
-        "upload_bytes": int(1e6 * limit_value("--upload-size", upload_size)),
-        "searches": int(limit_value("--searches", searches)),
-        "seconds": limit_value("--seconds", seconds),
-        "fixtures": int(limit_value("--fixtures", fixtures)),
-        "life_seconds": 60 * limit_value("--life", life),
+        "upload_bytes": int(1e6 * positive_number("--upload-size", upload_size)),
+        "searches": int(positive_number("--searches", searches)),
+        "seconds": positive_number("--seconds", seconds),
+        "fixtures": int(positive_number("--fixtures", fixtures)),
+        "life_seconds": 60 * positive_number("--life", life),
     }
     if figures["searches"] < 1 or figures["fixtures"] < 1:
         raise InputError("--searches and --fixtures are counts: give 1 or more.")
@@ -109,12 +97,21 @@ def serve(
             f"--searches {figures['searches']:,} is beyond {MOST_SEARCHES}: one for each processor is best."
         )
     for proxy in trust_proxy or ():
-        refuse_no_address(proxy)
+        try:
+            ip_address(proxy)
+        except ValueError:
+            raise InputError(
+                f"--trust-proxy {proxy!r} is no address: give a number such as 10.0.0.2."
+            ) from None
     from workhold.web.guard import ServerLimits, usual_memory
     from workhold.web.origins import checked_origin
     from workhold.web.serve import is_for_others, run_server
 
-    most = usual_memory(figures["searches"]) if memory is None else int(limit_value("--memory", memory)) << 20
+    most = (
+        usual_memory(figures["searches"])
+        if memory is None
+        else int(positive_number("--memory", memory)) << 20
+    )
 
     def listening(address: str) -> None:
         typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
@@ -129,34 +126,6 @@ def serve(
     token = token_urlsafe(TOKEN_BYTES) if ask_token else None
     limits = ServerLimits(memory_bytes=most, **figures)
     run_server(host, at, limits, allow_host or (), trust_proxy or (), token, listening, prepare, origins)
-
-
-def refuse_no_address(text: str) -> None:
-    """Refuses what is not the numeric address of a proxy.
-
-    Raises
-    ------
-    InputError
-        Naming it.
-    """
-    try:
-        ip_address(text)
-    except ValueError:
-        raise InputError(f"--trust-proxy {text!r} is no address: give a number such as 10.0.0.2.") from None
-
-
-def limit_value(option: str, text: str) -> float:
-    """Reads a positive number.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
-    value = positive_number(option, text)
-    if not value:
-        raise InputError(f"{option} {text!r} leaves nothing: give a positive number.")
-    return value
 
 
 def prepare() -> None:

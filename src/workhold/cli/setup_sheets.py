@@ -5,15 +5,12 @@ Of a sheet there are the one of a design's first choice, and what sheets say of 
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Sequence
 from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
-from workhold.cli.commands import option, print_remark
+from workhold.cli.commands import flag, option, print_remark
 from workhold.cli.outputs import STANDARD_OUTPUT, refuse_output
 from workhold.errors import InputError
 from workhold.units import Unit
@@ -30,17 +27,14 @@ __all__ = [
     "GLB",
     "PART_FILE",
     "STEP",
-    "SupportedOption",
+    "SUPPORTED",
     "asked_models",
     "chosen_of_file",
     "chosen_supports",
     "first_sheet",
     "first_side_of",
-    "is_of_supports",
     "refuse_sheet",
-    "report_sheet",
     "write_bodies",
-    "write_fixture",
 ]
 
 GLB = option(None, "FILE", "Write it in three dimensions into this file, whose name ends in .glb.")
@@ -57,14 +51,11 @@ PART_FILE = option(
     "not a prism.",
     "--part",
 )
-SupportedOption = Annotated[
-    bool,
-    typer.Option(
-        "--supports",
-        help="In the GLB and STEP also the best three supports under the part and a clamp on top, of the "
-        "usual sizes.",
-    ),
-]
+SUPPORTED = flag(
+    None,
+    "In the GLB and STEP also the best three supports under the part and a clamp on top, of the usual sizes.",
+    "--supports",
+)
 PAPER = (".pdf", ".svg", ".png")
 # So many of the best are asked for supports, a millisecond each.
 MOST_ASKED = 200
@@ -100,30 +91,6 @@ def asked_models(
             words = option_name.replace("_", "-")
             raise InputError(f"--{words} is of a file in three dimensions: give --glb or --step too.")
     return paths
-
-
-def write_fixture(
-    result: Result,
-    rank: int,
-    paths: Sequence[Path],
-    wishes: tuple[float | None, Sequence[Load] | None, float | None],
-    part: str | None,
-    *,
-    supported: bool,
-    unit: Unit,
-) -> None:
-    """Writes the fixture of a rank as GLB and STEP files, on the best supports if wanted.
-
-    Parameters
-    ----------
-    wishes : thickness of the part in mm, loads on it and jaw force in N; None where nobody says.
-    part : the STEP file of its own shape.
-    """
-    from workhold.presenting.assembly import Assembly, shape_in
-
-    shape = shape_in(part, result.workpiece)
-    chosen = chosen_supports(result, rank, *wishes) if supported else None
-    write_bodies(Assembly.of(result[rank - 1], result, {"thickness": wishes[0]}, chosen, shape), paths, unit)
 
 
 def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
@@ -162,26 +129,6 @@ def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | Non
     refuse_output(path, inputs, force)
 
 
-def report_sheet(
-    result: Result,
-    sheet: str,
-    out: str | None,
-    thickness: float | None,
-    unit: Unit,
-    before: str | None,
-    supported: Sequence[Supports] = (),
-) -> None:
-    """Writes the sheet of the first choice and says so, or says why there is none."""
-    from workhold.cli.table import print_tables
-
-    stream = sys.stderr if out == STANDARD_OUTPUT else sys.stdout
-    rank = first_sheet(result, sheet, out, thickness, unit, before, supported)
-    if rank is None:
-        print_tables(f"As there is no fixture, {sheet} was not written.", stream=stream)
-    else:
-        print_tables(f"The setup sheet of fixture {rank} was written to {sheet}.", stream=stream)
-
-
 def first_sheet(
     result: Result,
     sheet: str,
@@ -207,13 +154,11 @@ def first_sheet(
     """
     from workhold.presenting.papers import write_paper
 
-    # Fixtures that are alike stand in other holes, which three supports may find room between.
-    ranks = range(1, min(len(result), MOST_ASKED) + 1)
-    if not ranks:
+    if not len(result):
         return None
-    rank, supports = ranks[0], None
+    rank, supports = 1, None
     if thickness is not None:
-        rank, supports = first_supported(result, ranks, thickness, supported)
+        rank, supports = first_supported(result, thickness, supported)
     settings = {
         "day": date.today(),
         "unit": unit,
@@ -221,15 +166,14 @@ def first_sheet(
         "supports": supports,
         "first_side": None if before is None else first_side_of(result, rank, before),
     }
-    result_file = None if out == STANDARD_OUTPUT else out
-    write_paper(sheet, result, rank, result_file, settings)
+    write_paper(sheet, result, rank, None if out == STANDARD_OUTPUT else out, settings)
     return rank
 
 
 def first_supported(
-    result: Result, ranks: Sequence[int], thickness: float, supported: Sequence[Supports]
+    result: Result, thickness: float, supported: Sequence[Supports]
 ) -> tuple[int, ChosenSupports | None]:
-    """The first of some fixtures that three supports hold up, and these; the first one where none has any.
+    """The rank of the best fixture that three supports hold up, and these; the first one where none has any.
 
     Supports that are known already go before others, and larger pads before smaller ones.
     """
@@ -237,37 +181,25 @@ def first_supported(
     from workhold.supports.asking import requests_by_size, supported_by_size
 
     query = result.query
-    # The table is for the jaw force that the loads ask for.
-    known = dict(enumerate(supported, 1)) if query.jaw_force is None else {}
-    for rank in ranks:
-        if rank in known and known[rank].triples:
-            return rank, said_to_be_there(rank, ranks[0], ChosenSupports.of(known[rank]))
-    fixtures, requests = [result[rank - 1] for rank in ranks], requests_by_size(query, thickness)
-    found, _ = supported_by_size(
-        fixtures, query, requests, None, query.jaw_force, first_only=True, drops_weak_force=True
-    )
-    if found[-1].triples:
-        rank = ranks[len(found) - 1]
-        return rank, said_to_be_there(rank, ranks[0], ChosenSupports.of(found[-1]))
+    # What is known is for the jaw force that the loads ask for.
+    found = supported if query.jaw_force is None else ()
+    if not any(one.triples for one in found):
+        # Fixtures that are alike stand in other holes, which three supports may find room between.
+        fixtures = [result[k] for k in range(min(len(result), MOST_ASKED))]
+        requests = requests_by_size(query, thickness)
+        found, _ = supported_by_size(
+            fixtures, query, requests, None, query.jaw_force, first_only=True, drops_weak_force=True
+        )
+    for rank, one in enumerate(found, 1):
+        if one.triples:
+            if rank > 1:
+                print_remark(f"fixture 1 has no such supports: the sheet is of fixture {rank}.")
+            return rank, ChosenSupports.of(one)
     print_remark(
         "no three supports hold the part under any of the best, so the sheet has none: another side up "
         "(--axis) or a finer pitch may help, or parallels under it instead."
     )
-    return ranks[0], None
-
-
-def said_to_be_there(rank: int, first: int, chosen: ChosenSupports) -> ChosenSupports:
-    """Supports under a fixture, with a remark where it is not the first one."""
-    if rank != first:
-        print_remark(f"fixture {first} has no such supports: the sheet is of fixture {rank}.")
-    return chosen
-
-
-def is_of_supports(path: str) -> bool:
-    """Whether a file is one that ``workhold supports`` wrote."""
-    from workhold.verification.supports import is_supports_file
-
-    return is_supports_file(path)
+    return 1, None
 
 
 def chosen_of_file(

@@ -9,18 +9,19 @@ from typing import Annotated, Any
 
 import typer
 
-from workhold.cli.commands import option
+from workhold.cli.commands import flag, option
 from workhold.cli.options import SHOWN_UNIT, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, print_written, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_written, refuse_output
 from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
-from workhold.cli.setup_sheets import chosen_of_file, chosen_supports, first_side_of, is_of_supports
+from workhold.cli.setup_sheets import chosen_of_file, chosen_supports, first_side_of
 from workhold.cli.values import (
     choice,
-    length,
+    length_from_zero,
     length_unit,
     optional_force,
     optional_positive_length,
     positive_number,
+    two_lengths,
 )
 from workhold.errors import InputError
 from workhold.limits import refuse_long
@@ -54,7 +55,7 @@ def sheet(
             help="The file to write; its name ends in .pdf, .svg, .png, .dxf, .step or .csv.",
         ),
     ],
-    force: ForceOption = False,
+    force: bool = FORCE,
     paper: str = option(ON_PAPER, "SIZE", "a4 or letter.", default="a4"),
     unit: str | None = SHOWN_UNIT,
     part_name: str | None = option(ON_PAPER, "NAME", "What to call the part; its own name if not given."),
@@ -89,14 +90,11 @@ def sheet(
     plate_thickness: str | None = option(
         BODIES, "LENGTH", "How far pegs go into the plate; 10 mm is assumed if not given."
     ),
-    supports: Annotated[
-        bool,
-        typer.Option(
-            "--supports",
-            rich_help_panel=SUPPORTS,
-            help="With the best three supports under the part and a clamp on top, of the usual sizes.",
-        ),
-    ] = False,
+    supports: bool = flag(
+        SUPPORTS,
+        "With the best three supports under the part and a clamp on top, of the usual sizes.",
+        "--supports",
+    ),
     support_height: str | None = option(
         SUPPORTS, "LENGTH", "How high the supports lift the part; 10 mm is assumed if not given."
     ),
@@ -105,20 +103,17 @@ def sheet(
         "RESULT",
         "Of a solid's second side: the result of the first, to say which faces it cuts and locates on.",
     ),
-    seating: Annotated[
-        bool,
-        typer.Option(
-            "--seating",
-            rich_help_panel=ON_PAPER,
-            help="Say whether the part ends up there: how far to open, and how it looks where it does not.",
-        ),
-    ] = False,
+    seating: bool = flag(
+        ON_PAPER,
+        "Say whether the part ends up there: how far to open, and how it looks where it does not.",
+        "--seating",
+    ),
     load: list[str] | None = LOAD,
     loads: str | None = LOADS_FILE,
     jaw_force: str | None = JAW_FORCE,
     jaw: str = JAW,
     friction: str | None = FRICTION,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality,
     loads, cautions.
@@ -143,6 +138,7 @@ def sheet(
     shown_unit = length_unit(unit)
 
     from workhold.statics.loads import jaw_stiffness
+    from workhold.verification.supports import is_supports_file
 
     settings: dict[str, Any] = {
         "paper": choice("--paper", paper, ("a4", "letter")),
@@ -150,7 +146,7 @@ def sheet(
         "day": date.today() if day is None else day_of(day),
         "part_name": part_name,
         "jaw_force": optional_force("--jaw-force", jaw_force),
-        "friction": positive_number("--friction", friction),
+        "friction": None if friction is None else positive_number("--friction", friction),
         "jaw": jaw_stiffness(jaw),
         "zero": zero,
         "thickness": optional_positive_length("--thickness", thickness, shown_unit),
@@ -159,16 +155,12 @@ def sheet(
         "dowel": dowel,
         "seating": seating or None,
         "machine_position": None if machine_position is None else position(machine_position, shown_unit),
-    }
-    keep_off = length("--clearance", clearance, shown_unit)
-    if keep_off < 0:
-        raise InputError(f"--clearance {clearance} is negative: give 0 or more.")
-    given = asked_loads(load, loads, shown_unit)
-    on_supports = is_of_supports(result_file)
-    in_space: dict[str, Any] = {
         "support_height": optional_positive_length("--support-height", support_height, shown_unit),
         "plate_thickness": optional_positive_length("--plate-thickness", plate_thickness, shown_unit),
     }
+    keep_off = length_from_zero("--clearance", clearance, shown_unit)
+    given = asked_loads(load, loads, shown_unit)
+    on_supports = is_supports_file(result_file)
     for_cam = ending in MODEL_ENDINGS
     shows_supports = not for_cam or ending in STEP_ENDINGS
     refuse_in_space(for_cam, shows_supports, path, supports or on_supports, support_height, first_setup)
@@ -176,25 +168,25 @@ def sheet(
     if on_supports:
         chosen = chosen_of_file(result_file, rank, settings, given)
         result, rank = chosen.supports.fixture.listing.result, 1
-        in_space |= {"supports": chosen, "listed_as": "Supports"}
-        in_space |= {"number": chosen.number, "count": len(chosen.supports.triples)}
-        given = given or tuple(flat for one in chosen.supports.loads if (flat := one.planar) is not None)
+        settings |= {"supports": chosen, "listed_as": "Supports"}
+        settings |= {"number": chosen.number, "count": len(chosen.supports.triples)}
+        given = tuple(flat for one in chosen.supports.loads if (flat := one.planar) is not None)
     else:
         result = result_with(result_file, rank)
         if supports:
-            in_space["supports"] = chosen_supports(
+            settings["supports"] = chosen_supports(
                 result, rank, settings["thickness"], given or None, settings["jaw_force"]
             )
     if first_setup is not None:
-        in_space["first_side"] = first_side_of(result, rank, first_setup)
+        settings["first_side"] = first_side_of(result, rank, first_setup)
     if seating and result[rank - 1].seating is None and result.toolkit.closes_at_once:
         from workhold.cli.warming import compile_seating
 
         compile_seating(Event())
     if for_cam:
-        write_model(path, result, rank, settings | in_space, keep_off)
+        write_model(path, result, rank, settings, keep_off)
     else:
-        settings |= {"loads": given or result.query.loads, **in_space}
+        settings["loads"] = given or result.query.loads
         write_paper(path, result, rank, result_file, settings)
     print_written(json_, f"Written to {path}.", path)
 
@@ -250,12 +242,8 @@ def position(text: str, unit: Unit) -> tuple[float, float]:
     InputError
         When it is none, or beyond all lengths.
     """
-    parts = text.split(",")
-    if len(parts) != 2:
-        raise InputError(
-            f"--machine-position {text!r} is not a position: give it as X,Y, such as -312.5,-88."
-        )
-    x, y = (length("--machine-position", part, unit) for part in parts)
-    for value in (x, y):
-        refuse_long("--machine-position", value)
-    return x, y
+    option_name = "--machine-position"
+    place = two_lengths(option_name, text, unit, "a position: give it as X,Y, such as -312.5,-88.")
+    for value in place:
+        refuse_long(option_name, value)
+    return place

@@ -11,7 +11,7 @@ from attrs import asdict
 from workhold.cli.commands import option, print_remark
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, refuse_output
+from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.progress import progress_bar
 from workhold.cli.search_options import FRICTION, JAW_FORCE, zone
 from workhold.cli.setup_sheets import PART_FILE, asked_models, write_bodies
@@ -105,9 +105,9 @@ def supports(
         "given.",
     ),
     part: str | None = PART_FILE,
-    force: ForceOption = False,
+    force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Report where three supports hold the part up under fixture N, and where a clamp presses it down.
 
@@ -120,7 +120,7 @@ def supports(
     shown = length_unit(unit)
     count = optional_count("--triples", triples)
     closing = optional_force("--jaw-force", jaw_force)
-    coefficient = positive_number("--friction", friction)
+    coefficient = None if friction is None else positive_number("--friction", friction)
     if out is not None:
         refuse_output(out, (result_file,), force)
     models = asked_models(glb, step, (result_file, part), force, support_height=support_height, part=part)
@@ -145,7 +145,6 @@ def supports(
     request, *smaller = requests_by_size(result.query, high, asked)
     request.refuse_fat_pads(result.toolkit)
     loads = [spatial_load(text, high, shown) for text in load] if load else None
-    every, written = out is not None, [path for path in (out, glb, step) if path is not None]
     with (
         ask_to_stop("the best of what was looked at is kept") as cancel,
         progress_bar("Looking for supports", "of 1 fixture") as show,
@@ -156,7 +155,7 @@ def supports(
             [request, *smaller],
             loads,
             closing,
-            None if every else count,
+            count if out is None else None,
             cancel=cancel,
             progress=lambda fraction: show(fraction, 0),
         )
@@ -180,7 +179,8 @@ def supports(
         best, shape = ChosenSupports.of(found), shape_in(part, result.workpiece)
         assembly = Assembly.of(result[rank - 1], result, {"support_height": raised}, best, shape)
         write_bodies(assembly, models, shown)
-    report(found, count, result, rank, written, shown, json_, coefficient, helped)
+    written = [path for path in (out, glb, step) if path is not None]
+    report(found, count, rank, written, shown, json_, coefficient, helped)
     if found.stopped:
         raise typer.Exit(INTERRUPTED)
 
@@ -260,7 +260,6 @@ def lengths(name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[fl
 def report(
     found: Supports,
     count: int | None,
-    result: Result,
     rank: int,
     written: list[str],
     unit: Unit,
@@ -281,7 +280,7 @@ def report(
 
         print_tables(f"Fixture {rank}: {why_no_set(found, unit)}")
     else:
-        print_sets(found, listed, result, rank, unit)
+        print_sets(found, listed, rank, unit)
         if friction is not None:
             print_tables(friction_words(friction, helped))
     if found.count is not None and found.count > len(listed) and not written:
@@ -292,7 +291,7 @@ def report(
         print_remark("stopped before all sets were looked at: there may be better ones.")
 
 
-def print_sets(found: Supports, listed: Sequence[Triple], result: Result, rank: int, unit: Unit) -> None:
+def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit) -> None:
     """Prints some sets of three as a table, with what is not seen in it."""
     from workhold.supports.words import set_headings, set_row
 

@@ -13,7 +13,7 @@ from attrs import define, field, frozen
 
 from workhold.errors import plain, shortened
 
-__all__ = ["Table", "print_tables", "width_of"]
+__all__ = ["Table", "plural", "print_tables", "sentence_lines", "width_of"]
 
 # Between two columns where there is room, and where there is little.
 GAP, NARROW_GAP = 3, 2
@@ -153,6 +153,15 @@ def narrowed(widths: list[int], least: list[int], over: int) -> list[int]:
 def total(widths: list[int], gap: int) -> int:
     """The width of a table in characters."""
     return sum(widths) + gap * (len(widths) - 1)
+
+
+def plural(count: int, word: str) -> str:
+    """A number and its noun.
+
+    >>> plural(1, "fixture"), plural(2, "fixture")
+    ('1 fixture', '2 fixtures')
+    """
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import degrees, hypot, nan, pi
 from typing import TYPE_CHECKING
 
-from workhold.cli.table import Table
+from workhold.cli.table import Table, plural
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.model.solid import other_way_up
 from workhold.presenting.figure_words import (
@@ -26,13 +26,12 @@ if TYPE_CHECKING:
     from workhold.listing.identity import Entries
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
-    from workhold.model.search_report import Proof, Undecided
+    from workhold.model.search_report import Proof
     from workhold.model.setup import LengthSetting
     from workhold.model.solid import FileSolid, HeightRow
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "Table",
     "band_table",
     "counts_sentence",
     "face_table",
@@ -40,7 +39,6 @@ __all__ = [
     "height_table",
     "jumps_sentence",
     "other_heights",
-    "plural",
     "proof_sentences",
     "quality_table",
     "result_table",
@@ -56,15 +54,6 @@ UNDECIDED = (
     "  Every fixture listed holds; one more may exist at such a place. Nearly equal sizes are the cause: "
     "another peg radius or pitch decides it."
 )
-
-
-def plural(count: int, word: str) -> str:
-    """A number and its noun.
-
-    >>> plural(1, "fixture"), plural(2, "fixture")
-    ('1 fixture', '2 fixtures')
-    """
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def counts_sentence(result: Result) -> str:
@@ -105,11 +94,14 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
     proof = result.proof
     if proof is None:
         return []
-    lost = len(proof.undecided)
-    sentence = f"{proof_head(proof, result.complete)}: {proof_counts(proof)}"
+    lost, sentence = len(proof.undecided), proof_words(proof, result.complete)
     if lost == 0:
         return [f"{sentence}, none undecided."]
-    named = [f"  {undecided_words(item)}." for item in proof.undecided[:MOST_NAMED]]
+    named = [
+        f"  Type {item.type} on faces {', '.join(map(str, item.faces))} at {item.theta_deg:.6f} degrees: "
+        f"{item.reason}."
+        for item in proof.undecided[:MOST_NAMED]
+    ]
     if lost > MOST_NAMED:
         others = "The other one is" if lost == MOST_NAMED + 1 else f"The other {lost - MOST_NAMED} are"
         where = (
@@ -119,29 +111,18 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
     return [f"{sentence}, {lost} undecided:", *named, UNDECIDED]
 
 
-def proof_head(proof: Proof, complete: bool) -> str:
-    """Says what is proven: that all fixtures are listed, or only that those listed are fixtures."""
-    if proof.cells == 0:
-        # The paper's algebra does not go through ranges of orientation: its candidates come from polynomials.
-        return "Proven one by one"
-    if not complete:
-        return "Proven so far"
-    return "Not proven throughout" if proof.undecided else "Proven"
-
-
-def proof_counts(proof: Proof) -> str:
-    """Says how many candidates there were, and what became of them."""
+def proof_words(proof: Proof, complete: bool) -> str:
+    """Says what is proven, all of the list or only each fixture, of how many candidates, and how."""
     settled = max(proof.escalated - len(proof.undecided), 0)
     candidates = "1 candidate" if proof.candidates == 1 else f"{proof.candidates:,} candidates"
     if proof.cells == 0:
-        candidates += " of the polynomials"
-    return f"{candidates}, {proof.verified:,} verified, {settled:,} decided by interval arithmetic"
-
-
-def undecided_words(item: Undecided) -> str:
-    """Says of an undecided candidate where it is and why."""
-    faces = ", ".join(str(face) for face in item.faces)
-    return f"Type {item.type} on faces {faces} at {item.theta_deg:.6f} degrees: {item.reason}"
+        # The paper's algebra does not go through ranges of orientation: its candidates come from polynomials.
+        head, candidates = "Proven one by one", f"{candidates} of the polynomials"
+    elif not complete:
+        head = "Proven so far"
+    else:
+        head = "Not proven throughout" if proof.undecided else "Proven"
+    return f"{head}: {candidates}, {proof.verified:,} verified, {settled:,} decided by interval arithmetic"
 
 
 def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILLIMETRE) -> Table:
@@ -264,14 +245,10 @@ def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
     Where a face ends the next one begins, so that its end is left out where there is little room.
     """
     table = Table((">face", "kind", f"size {unit.abbreviation}", "loop", "from", "to"), spare=1)
-    first = 0
-    loop_of = {}
-    several, pieces = workpiece.pieces > 1, workpiece.pieces
+    loop_of, pieces = list[str](), workpiece.pieces
     for index, loop in enumerate(workpiece.loops):
-        outer = f"piece {index + 1}" if several else "outer"
-        name = outer if index < pieces else f"hole {index - pieces + 1}"
-        loop_of.update(dict.fromkeys(range(first, first + len(loop)), name))
-        first += len(loop)
+        outer = f"piece {index + 1}" if pieces > 1 else "outer"
+        loop_of += [outer if index < pieces else f"hole {index - pieces + 1}"] * len(loop)
     for face in workpiece.faces:
         kind, size, start, end = face_words(face, unit)
         table.add_row(str(face.number), kind, size, loop_of[face.number], start, end)
@@ -342,15 +319,8 @@ def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
     """Tabulates what the part offers to pegs of other heights; nothing where nobody looked."""
     if not rows:
         return []
-    short = unit.abbreviation
-    headings = (
-        f">pegs above {short}",
-        f">up to {short}",
-        f">outline {short}",
-        f">touchable {short}",
-        f">least band {short}",
-    )
-    table = Table(headings)
+    names = ("pegs above", "up to", "outline", "touchable", "least band")
+    table = Table(tuple(f">{name} {unit.abbreviation}" for name in names))
     for row in rows:
         lengths = (row.low, row.high, row.border, row.touchable, row.band)
         table.add_row(*(unit.number(length) for length in lengths))

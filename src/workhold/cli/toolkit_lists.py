@@ -193,7 +193,9 @@ def named_toolkits(
     from workhold.fixels.kinds import table_of
 
     if names is None:
-        loaded = [one for one in map(load_toolkit, preset_names()) if has_all(table_of(one.kind), given)]
+        loaded = [
+            one for one in map(load_toolkit, preset_names()) if not unknown_fields(table_of(one.kind), given)
+        ]
     else:
         loaded = [load_toolkit(name) for words in names for name in words_of("--vise", words)]
         for one in loaded:
@@ -213,10 +215,10 @@ def named_toolkits(
     return bases
 
 
-def has_all(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> bool:
-    """Whether a kind of toolkit has every field that is varied."""
+def unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> list[ToolkitField]:
+    """Lists the fields that are varied and that a kind of toolkit does not have."""
     known = {row.name for row in table.fields}
-    return all(row.name in known for row, _ in given)
+    return [row for row, _ in given if row.name not in known]
 
 
 def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> None:
@@ -229,12 +231,11 @@ def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str
     """
     from workhold.fixels.kinds import owner_of
 
-    for row, _ in given:
-        if not has_all(table, [(row, "")]):
-            raise InputError(
-                f"{row.option} is of {owner_of(row).noun}s: a {table.noun} has no {row.belongs_to}; leave it "
-                "out, or choose another toolkit."
-            )
+    for row in unknown_fields(table, given):
+        raise InputError(
+            f"{row.option} is of {owner_of(row).noun}s: a {table.noun} has no {row.belongs_to}; leave it "
+            "out, or choose another toolkit."
+        )
 
 
 def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[ToolkitField, str]]) -> None:

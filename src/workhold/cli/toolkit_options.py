@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from attrs import evolve, field, frozen
 
 from workhold.cli.commands import option
-from workhold.cli.values import length, optional_length, pitches, whole_number
+from workhold.cli.values import length, optional_length, pitches, two_lengths, whole_number
 from workhold.errors import InputError
 from workhold.fixels.fields import MIN_GAP, NAMES, OPTIONS
 from workhold.fixels.table import TOOLKIT_SECTION
@@ -111,11 +111,8 @@ class ToolkitWords:
         from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, toolkit_of
 
         kind, said = kind_of(USUAL)
-        named = [
-            word
-            for word in (self.vise, self.toolkit)
-            if word is not None and word.lower() not in (*KINDS, *ALIASES)
-        ]
+        words = [word for word in (self.vise, self.toolkit) if word is not None]
+        named = [word for word in words if word.lower() not in (*KINDS, *ALIASES)]
         if len(named) > 1:
             raise InputError(
                 f"--vise {named[0]} and --toolkit {named[1]} name two toolkits: give one of them."
@@ -127,8 +124,8 @@ class ToolkitWords:
             kind, said, tolerance = loaded.kind, loaded.fields, loaded.tolerance
             if fields.get("peg_radius", said["peg_radius"]) != said["peg_radius"]:
                 tolerance = evolve(tolerance, fit=None)
-        for word in (self.vise, self.toolkit):
-            if word is not None and word.lower() in (*KINDS, *ALIASES):
+        for word in words:
+            if word not in named:
                 kind, more = kind_of(word.lower())
                 said = {**said, **more}
         self.refuse_others(KINDS[kind])
@@ -169,11 +166,8 @@ def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
     InputError
         For less or more than two lengths.
     """
-    if text.count(",") != 1:
-        raise InputError(
-            f"{option_name} {text!r} is not two lengths: give the least and the most, such as 10,35."
-        )
-    return lengths(option_name, text, unit)
+    remedy = "two lengths: give the least and the most, such as 10,35."
+    return two_lengths(option_name, text, unit, remedy)
 
 
 def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:

@@ -15,6 +15,7 @@ __all__ = [
     "choice",
     "in_unit",
     "length",
+    "length_from_zero",
     "length_unit",
     "number",
     "optional_count",
@@ -24,6 +25,7 @@ __all__ = [
     "picture_ending",
     "pitches",
     "positive_number",
+    "two_lengths",
     "whole_number",
 ]
 
@@ -76,6 +78,38 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
             "or one with its unit, such as 0.5in."
         )
     return value
+
+
+def length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
+    """A length of 0 or more in mm.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    value = length(option, text, unit)
+    if value < 0:
+        raise InputError(f"{option} {text} is negative: give 0 or more.")
+    return value
+
+
+def two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float]:
+    """Two lengths in mm with a comma between them.
+
+    Parameters
+    ----------
+    remedy : what other words are not, and what to give.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    words = text.split(",")
+    if len(words) != 2:
+        raise InputError(f"{option} {text!r} is not {remedy}")
+    return length(option, words[0], unit), length(option, words[1], unit)
 
 
 def number(text: str) -> float:
@@ -165,16 +199,14 @@ def optional_count(option: str, text: str | None) -> int | None:
     return None if text is None else counting_number(option, whole_number(option, text))
 
 
-def positive_number(option: str, text: str | None) -> float | None:
-    """A finite number above zero, or None where the option is not given.
+def positive_number(option: str, text: str) -> float:
+    """A finite number above zero.
 
     Raises
     ------
     InputError
         For anything else.
     """
-    if text is None:
-        return None
     value = number(text.strip())
     if not (isfinite(value) and value > 0):
         raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")

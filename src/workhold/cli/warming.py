@@ -18,7 +18,13 @@ from time import sleep
 from workhold.cli.progress import progress_bar
 from workhold.kernels.base.compiling import are_stored, cache_folder
 
-__all__ = ["begin_compiling", "compile_kernels", "compile_seating", "is_seating_compiled"]
+__all__ = [
+    "begin_compiling",
+    "compile_kernels",
+    "compile_on_first_run",
+    "compile_seating",
+    "is_seating_compiled",
+]
 
 WORDS = "Compiling the kernels, on the first run only"
 SEATING_WORDS = "Compiling the kernels of seating, on the first run only"
@@ -93,6 +99,14 @@ def compile_kernels(cancel: Event, second: SecondProcess | None = None) -> None:
     second : the process that :func:`begin_compiling` began.
     """
     share("SEARCH", WORDS, cancel, second)
+
+
+def compile_on_first_run(cancel: Event) -> None:
+    """Compiles the kernels of a search where that has not been done on this machine."""
+    from workhold.kernels.base.compiling import is_first_run
+
+    if is_first_run():
+        compile_kernels(cancel)
 
 
 def is_seating_compiled() -> bool:

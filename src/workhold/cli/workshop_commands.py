@@ -9,18 +9,26 @@ import typer
 
 from workhold.cli.commands import option, spread
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, print_json, print_written, refuse_output
+from workhold.cli.outputs import (
+    FORCE,
+    JSON,
+    asked_picture,
+    print_json,
+    print_written,
+    refuse_output,
+    write_picture,
+)
+from workhold.cli.table import Table, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import (
     length,
+    length_from_zero,
     length_unit,
     optional_count,
     optional_positive_length,
-    picture_ending,
     positive_number,
 )
 from workhold.errors import InputError
-from workhold.units import Unit
 
 if TYPE_CHECKING:
     from workhold.family.copies import Packing
@@ -48,9 +56,9 @@ def copies(
     draw: str | None = option(
         None, "FILE", "Draw the plate into this file, whose name ends in .svg or .png."
     ),
-    force: ForceOption = False,
+    force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Report how many copies of fixture N a plate holds at once, and where each stands.
 
@@ -62,13 +70,9 @@ def copies(
     rank = asked_rank(number)
     shown = length_unit(unit)
     asked = optional_count("--columns", columns), optional_count("--rows", rows)
-    apart = length("--gap", gap, shown)
-    if apart < 0:
-        raise InputError(f"--gap {gap} is negative: give 0 or more.")
+    apart = length_from_zero("--gap", gap, shown)
     seconds = positive_number("--time-limit", time_limit)
-    if draw is not None:
-        picture_ending(Path(draw))
-        refuse_output(draw, (result_file,), force)
+    picture = asked_picture(draw, (result_file,), force)
     from workhold.family.copies import copies_of, draw_copies, packing_of
     from workhold.fixels.making import refuse_many_holes
 
@@ -78,12 +82,8 @@ def copies(
     packing = packing_of(result[rank - 1], result.workpiece, result.toolkit, *size, apart, seconds)
     row = result.table.take(slice(rank - 1, rank))
     found = copies_of(row, result.toolkit, result.workpiece, packing)
-    if draw is not None:
-        from workhold.drawing.render import render
-        from workhold.files.atomic import write_bytes
-
-        svg = draw_copies(found, result.workpiece, result.toolkit, size, unit=shown)
-        write_bytes(draw, render(svg, Path(draw).suffix))
+    if picture is not None:
+        write_picture(picture, draw_copies(found, result.workpiece, result.toolkit, size, unit=shown))
     written = [] if draw is None else [draw]
     if json_:
         places = [{"columns": i, "rows": j} for i, j in packing.shifts]
@@ -91,8 +91,6 @@ def copies(
         return
     print_copies(found, packing, result, size, shown)
     if written:
-        from workhold.cli.table import print_tables
-
         print_tables(f"Written to {draw}.")
 
 
@@ -105,20 +103,17 @@ def plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[in
         Where neither says.
     """
     plate = result.toolkit.carriers[0]
-    size = [
-        one if one is not None else own for one, own in zip(asked, (plate.columns, plate.rows), strict=True)
-    ]
-    for name, count in zip(("columns", "rows"), size, strict=True):
-        if count is None:
-            raise InputError(f"how large the plate is, is not known: give --{name}.")
-    return size[0] or 0, size[1] or 0
+    columns, rows = asked[0] or plate.columns, asked[1] or plate.rows
+    if columns is None or rows is None:
+        missing = "columns" if columns is None else "rows"
+        raise InputError(f"how large the plate is, is not known: give --{missing}.")
+    return columns, rows
 
 
 def print_copies(
     found: list[Fixture], packing: Packing, result: Result, size: tuple[int, int], unit: Unit
 ) -> None:
     """Prints how many copies there are, and where each stands."""
-    from workhold.cli.table import Table, print_tables
     from workhold.model.setup import part_zero
 
     zero = part_zero(result.workpiece)
@@ -148,7 +143,7 @@ def drill(
             "--out", "-o", metavar="FILE", help="The file to write; its name ends in .dxf or .step."
         ),
     ],
-    force: ForceOption = False,
+    force: bool = FORCE,
     held_in: ToolkitWords,
     bolts: str | None = option(
         PLATES, "X,Y;X,Y", "Where bolts hold each plate, from the centre of its hole A1: 5,-12;5,112."
@@ -166,7 +161,7 @@ def drill(
         PLATES, "LENGTH", "Thickness of the plates in a .step file; 10 mm if not given."
     ),
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.
 

@@ -16,7 +16,6 @@ too near : a shift is too near when two copies that far apart are not clear of e
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import reduce
 from itertools import combinations, pairwise
 from math import acos, ceil, floor, pi
@@ -27,11 +26,11 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
 from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import Bench, bench_of, draw_part, draw_pegs
+from workhold.drawing.bench import bench_of, draw_part, draw_pegs
 from workhold.drawing.carriers import STILL, draw_clamp, draw_push, draw_wall, labelled
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, LengthUnit, Scene, View, shortened
 from workhold.errors import InputError
-from workhold.family.covering import ROUNDING, load_solver
+from workhold.family.covering import ROUNDING, best_choice, load_solver
 from workhold.family.patterns import shifted
 from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.toolkit import Toolkit
@@ -259,7 +258,7 @@ def crowds(near: set[Shift]) -> list[list[Shift]]:
 
 def solved(places: list[Shift], near: set[Shift], known: list[Shift], seconds: float | None) -> Packing:
     """The most places no two of which are too near."""
-    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.optimize import LinearConstraint
     from scipy.sparse import csr_array
 
     number = {place: k for k, place in enumerate(places)}
@@ -279,28 +278,14 @@ def solved(places: list[Shift], near: set[Shift], known: list[Shift], seconds: f
     index = np.concatenate([[0], np.cumsum([len(members) for members in ordered])])
     inside = np.concatenate([np.array(members) for members in ordered])
     matrix = csr_array((np.ones(len(inside)), inside, index), shape=(len(ordered), len(places)))
-    options: dict[str, float] = {"mip_rel_gap": 0.0}
-    if seconds is not None:
-        options["time_limit"] = max(seconds, 0.0)
     count = len(places)
-    found = milp(
-        -np.ones(count),
-        integrality=np.ones(count),
-        bounds=Bounds(0, 1),
-        constraints=LinearConstraint(matrix, ub=1.0),
-        options=options,
-    )
-    chosen = known if found.x is None else [places[k] for k in np.flatnonzero(found.x > 0.5)]
-    if len(chosen) < len(known) or not is_packing(chosen, near):
+    found, bound = best_choice(-np.ones(count), LinearConstraint(matrix, ub=1.0), seconds)
+    chosen = known if found is None else [places[k] for k in found]
+    is_packing = all((a - c, b - d) not in near for (a, b), (c, d) in combinations(chosen, 2))
+    if len(chosen) < len(known) or not is_packing:
         chosen = known
-    bound = found.mip_dual_bound
-    at_most = count if bound is None or not np.isfinite(bound) else floor(-bound + ROUNDING)
+    at_most = count if bound is None else floor(-bound + ROUNDING)
     return Packing(in_rows(chosen), max(at_most, len(chosen)))
-
-
-def is_packing(places: list[Shift], near: set[Shift]) -> bool:
-    """Whether no two places are too near."""
-    return all((a - c, b - d) not in near for (a, b), (c, d) in combinations(places, 2))
 
 
 EDGE, HEADER, FOOTER, NAMES = 32.0, 74.0, 34.0, 34.0
@@ -326,7 +311,8 @@ def draw_copies(
     plate, (columns, rows) = toolkit.carriers[0], size
     benches = [bench_of(fixture, workpiece, toolkit) for fixture in copies]
     holes = Box(*plate.place(0, 0), *plate.place(columns - 1, rows - 1)).grown(max(plate.pitch) / 2)
-    extent = reduce(Box.union, (box for bench in benches for box in taken_up(bench)), holes)
+    clamps = [clamp.room for bench in benches for clamp in bench.shown.clamps]
+    extent = reduce(Box.union, [*(bench.shown.part for bench in benches), *clamps], holes)
     walls = [Box(holes.x0, wall.bar.y0, holes.x1, wall.bar.y1) for wall in benches[0].shown.walls]
     extent = reduce(Box.union, walls, extent)
     page = LANDSCAPE if extent.width >= 0.8 * extent.height else PORTRAIT
@@ -354,13 +340,6 @@ def draw_copies(
         )
     scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, LengthUnit.suiting(unit, min(plate.pitch)))
     return scene.svg()
-
-
-def taken_up(bench: Bench) -> Iterator[Box]:
-    """What a copy takes up: the boxes of its outline and of its clamps with their arrows."""
-    yield bench.shown.part
-    for clamp in bench.shown.clamps:
-        yield clamp.room
 
 
 def draw_whole_plate(scene: Scene, holes: Box, plate: Carrier, size: tuple[int, int], view: View) -> None:

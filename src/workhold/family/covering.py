@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from math import ceil
 from time import monotonic
+from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
@@ -33,6 +34,7 @@ __all__ = [
     "Point",
     "Search",
     "as_sets",
+    "best_choice",
     "cover",
     "curve_of",
     "first_cover",
@@ -128,32 +130,53 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
     deadline : of the clock ``time.monotonic``; when it comes, the best cover known so far and what is proven
         of the least.
     """
-    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.optimize import LinearConstraint
 
     quick = greedy(sets)
     # Members that share no set need a set each: often that is already as many as there are.
     at_least = packing(sets)
     if at_least == len(quick):
         return Cover(quick, at_least)
-    options: dict[str, float] = {"mip_rel_gap": 0.0}
-    if deadline is not None:
-        options["time_limit"] = max(deadline - monotonic(), 0.0)
     constraint = LinearConstraint(sets.T.astype(np.float64), lb=1.0)
-    count = len(sets)
+    seconds = None if deadline is None else deadline - monotonic()
+    found, bound = best_choice(np.ones(len(sets)), constraint, seconds)
+    if bound is not None:
+        at_least = max(at_least, ceil(bound - ROUNDING))
+    chosen = quick if found is None else tuple(found)
+    if len(quick) <= len(chosen) or not sets[list(chosen)].any(axis=0).all():
+        chosen = quick
+    return Cover(chosen, min(at_least, len(chosen)))
+
+
+def best_choice(
+    costs: NDArray[np.float64], constraint: Any, seconds: float | None
+) -> tuple[list[int] | None, float | None]:
+    """The numbers of the things to choose so that their costs (N,) are least, and a lower bound of the cost.
+
+    Parameters
+    ----------
+    constraint : of SciPy, on whether each of the things is chosen, 0 or 1.
+    seconds : time limit, after which it is the best choice known; None for none.
+
+    Returns
+    -------
+    Each of the two is None where it is not known.
+    """
+    from scipy.optimize import Bounds, milp
+
+    options = (
+        {"mip_rel_gap": 0.0} if seconds is None else {"mip_rel_gap": 0.0, "time_limit": max(seconds, 0.0)}
+    )
     found = milp(
-        np.ones(count),
-        integrality=np.ones(count),
+        costs,
+        integrality=np.ones(len(costs)),
         bounds=Bounds(0, 1),
         constraints=constraint,
         options=options,
     )
     bound = found.mip_dual_bound
-    if bound is not None and np.isfinite(bound):
-        at_least = max(at_least, ceil(bound - ROUNDING))
-    chosen = quick if found.x is None else tuple(np.flatnonzero(found.x > 0.5).tolist())
-    if len(quick) <= len(chosen) or not sets[list(chosen)].any(axis=0).all():
-        chosen = quick
-    return Cover(chosen, min(at_least, len(chosen)))
+    chosen = None if found.x is None else np.flatnonzero(found.x > 0.5).tolist()
+    return chosen, None if bound is None or not np.isfinite(bound) else float(bound)
 
 
 def packing(sets: BoolArray) -> int:

@@ -57,13 +57,8 @@ class Asked:
     digest: str = ""
     zero: PartZero | None = None
 
-    @property
-    def turned_over(self) -> Asked:
-        """The other side of a part that is a drawing."""
-        return self.lying_as(None)
-
     def lying_as(self, read: Workpiece | None) -> Asked:
-        """The other side of the part, of a solid as its file was read for it.
+        """The other side of the part, of a solid as its file was read for it; None of a drawing.
 
         Raises
         ------
@@ -114,11 +109,9 @@ class Family:
     @cached_property
     def plans(self) -> tuple[Plan, ...]:
         """The plan at each point of the curve."""
-        return (
-            ()
-            if self.table is None
-            else tuple(plan_of(point, self.table, self.members) for point in self.points)
-        )
+        if self.table is None:
+            return ()
+        return tuple(plan_of(point, self.table, self.members) for point in self.points)
 
     def plan(self, setups: int | None = None) -> Plan:
         """The plan with the least loss and at most ``setups`` set-ups; None asks for the fewest set-ups.

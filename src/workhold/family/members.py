@@ -93,11 +93,8 @@ def losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
     if len(known) == 0:
         return np.full(len(values), np.inf)
     best = known.max() if figure.more_is_better else known.min()
-    above, below = (
-        (np.full(len(values), best), values)
-        if figure.more_is_better
-        else (values, np.full(len(values), best))
-    )
+    bests = np.full(len(values), best)
+    above, below = (bests, values) if figure.more_is_better else (values, bests)
     usable = (below > 0.0) & np.isfinite(above) & np.isfinite(below)
     ratio = np.full(len(values), np.inf)
     np.divide(above, below, out=ratio, where=usable)

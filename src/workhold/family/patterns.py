@@ -204,12 +204,9 @@ def with_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) 
 def holes_of(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
     """Where every peg of a fixture stands, in order; the ends of a wall are left out."""
     out = []
-    for number, column, row in zip(
-        toolkit.peg_carriers(one.arrangement)[0].tolist(),
-        one.column[0].tolist(),
-        one.row[0].tolist(),
-        strict=True,
-    ):
+    carriers = toolkit.peg_carriers(one.arrangement)
+    places = (rows[0].tolist() for rows in (carriers, one.column, one.row))
+    for number, column, row in zip(*places, strict=True):
         in_column, in_row = toolkit.carriers[number].counted
         if in_column or in_row:
             out.append((number, column if in_column else NOTHING, row if in_row else NOTHING))

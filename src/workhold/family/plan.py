@@ -249,9 +249,9 @@ def together(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
         toolkit = target.member.query.toolkit
         moved = [moved_onto(one.row, target.row, toolkit) for one in holdings]
         tried = [
-            one if row is None else evolve(one, row=row) for one, row in zip(holdings, moved, strict=True)
+            evolve(one, row=one.row if row is None else row, in_place=row is not None)
+            for one, row in zip(holdings, moved, strict=True)
         ]
-        tried = [evolve(one, in_place=row is not None) for one, row in zip(tried, moved, strict=True)]
         if sum(one.in_place for one in tried) > sum(one.in_place for one in best):
             best = tried
         if all(one.in_place for one in best):

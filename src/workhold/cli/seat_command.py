@@ -1,102 +1,25 @@
-"""The commands ``show`` and ``seat``: how one fixture is set up, and whether the part ends up in its pose.
-
-The first also shows what loads do to the fixture, the second where else the part can come to rest.
-"""
+"""The command ``seat``: whether the part ends up in the pose of a fixture, and where else it can rest."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
 from workhold.cli.commands import option, print_remark
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import ForceOption, JsonOption, asked_picture, print_json, write_picture
-from workhold.cli.program_options import passing_data, passing_words
-from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
-from workhold.cli.seat_table import seat_table
-from workhold.cli.setup_sheets import (
-    BODY_THICKNESS,
-    GLB,
-    PART_FILE,
-    STEP,
-    SupportedOption,
-    asked_models,
-    write_fixture,
-)
+from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import (
-    choice,
-    length_unit,
-    optional_force,
-    optional_positive_length,
-    positive_number,
-)
-from workhold.units import MILLIMETRE, Unit
+from workhold.cli.values import choice, length_unit, optional_positive_length
+from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
     from workhold.model.seating import Seat, Seating
     from workhold.seating.clamping import Gauge
-    from workhold.statics.loads import LoadCase
 
-__all__ = ["load_tables", "seat", "show"]
-
-
-def load_tables(
-    cases: Sequence[LoadCase], fixture: Fixture, toolkit: Toolkit, unit: Unit = MILLIMETRE
-) -> tuple[Table | str, ...]:
-    """Tabulates the force that each load needs, and each peg's forces at the closing force that is used."""
-    if not cases:
-        return ()
-    from workhold.statics.loads import jaw_words
-
-    noun = toolkit.moving.noun
-    with_friction = cases[0].needed_with_friction is not None
-    columns = [
-        "load",
-        f">{noun} force needed N",
-        "peg that lets go first",
-        f">worst at {unit.abbreviation}",
-        ">direction deg",
-    ]
-    table = Table((*columns, *([">needed with friction N"] if with_friction else [])))
-    for number, case in enumerate(cases, 1):
-        worst = case.needed
-        row = [
-            case.load.name or f"load {number}",
-            f"{worst.value:.1f}",
-            fixture.pegs[worst.peg].hole,
-            f"({unit.number(worst.point[0])}, {unit.number(worst.point[1])})",
-            f"{worst.direction:.1f}",
-        ]
-        table.add_row(*row, *([f"{case.needed_with_friction:.1f}"] if with_friction else []))
-    forces = Table(("load", *(f">{peg.hole} N" for peg in fixture.pegs), "every peg presses"))
-    for number, case in enumerate(cases, 1):
-        ranges = (f"{low:.1f} to {high:.1f}" for low, high in zip(case.smallest, case.largest, strict=True))
-        holds = "yes" if case.keeps_contact else "no: the part can move"
-        forces.add_row(case.load.name or f"load {number}", *ranges, holds)
-    notes = []
-    if with_friction:
-        notes.append(
-            "With friction the forces are not determined; what is needed with it is the best to be hoped for."
-        )
-    note = (
-        f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md explains both."
-    )
-    return (
-        "",
-        table,
-        *notes,
-        "",
-        f"Forces on the part at a {noun} force of {cases[0].jaw_force:.1f} N:",
-        forces,
-        note,
-    )
-
+__all__ = ["by_hand_words", "seat", "seat_table", "seating_words"]
 
 SIDES = ("both", "drawn", "turned-over")
 
@@ -114,9 +37,9 @@ def seat(
         "given.",
     ),
     draw: str | None = option(None, "FILE", "Draw how the part can rest into this file, .svg or .png."),
-    force: ForceOption = False,
+    force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
+    json_: bool = JSON,
 ) -> None:
     """Report whether the part ends up in the pose of fixture N when the vise or the clamp is tightened.
 
@@ -132,13 +55,12 @@ def seat(
     opened = optional_positive_length("--opening", opening, shown_unit)
     picture = asked_picture(draw, (result_file,), force)
     result = result_with(result_file, rank)
-    fixture = result[rank - 1]
-
-    from workhold.seating.clamping import Gauge
-
+    fixture, written = result[rank - 1], [] if picture is None else [str(picture)]
     if not result.toolkit.closes_at_once:
         print_by_hand(result, rank, picture, shown_unit, json_)
         return
+    from workhold.seating.clamping import Gauge
+
     gauge, seating = Gauge(fixture, result.toolkit), fixture.seating
     if seating is None:
         from workhold.cli.warming import compile_seating
@@ -167,10 +89,10 @@ def seat(
             seats, fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", unit=shown_unit
         )
         write_picture(picture, svg)
-        if not json_:
-            print_tables(f"Drawn in {picture}.")
     if json_:
-        print_json(rank=rank, seating=seating.as_fields(), written=[] if picture is None else [str(picture)])
+        print_json(rank=rank, seating=seating.as_fields(), written=written)
+    else:
+        print_tables(*(f"Drawn in {path}." for path in written))
 
 
 def print_by_hand(result: Result, rank: int, picture: Path | None, unit: Unit, json_: bool) -> None:
@@ -304,97 +226,34 @@ def wrong_words(
     return words
 
 
-def show(
-    result_file: ResultArgument,
-    number: RankArgument,
-    draw: str | None = option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
-    glb: str | None = GLB,
-    step: str | None = STEP,
-    supports: SupportedOption = False,
-    thickness: str | None = BODY_THICKNESS,
-    part: str | None = PART_FILE,
-    force: ForceOption = False,
-    load: list[str] | None = LOAD,
-    loads: str | None = LOADS_FILE,
-    jaw_force: str | None = JAW_FORCE,
-    jaw: str = JAW,
-    friction: str | None = FRICTION,
-    unit: str | None = SHOWN_UNIT,
-    json_: JsonOption = False,
-) -> None:
-    """Show how to set up fixture N of a result: the holes for the pegs, the opening and the part's pose.
+# What stands for kinds of seats in the table.
+KINDS = {
+    "corner": "four pegs, one on a corner",
+    "pocket": "a peg in a corner of the part",
+    "curved": "held by curvature",
+    "loose": "not located",
+    "unsettled": "not settled",
+}
 
-    Its quality is shown as well, and what loads do to it: those of the result, if none are given here. A hole
-    is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
 
-    Example: workhold show part.json 1 --draw setup.png --glb setup.glb
-    """
-    from workhold.statics.loads import jaw_stiffness, load_cases
-
-    rank = asked_rank(number)
-    shown_unit = length_unit(unit)
-    closing_force = optional_force("--jaw-force", jaw_force)
-    coefficient = positive_number("--friction", friction)
-    asked = asked_loads(load, loads, shown_unit)
-    picture = asked_picture(draw, (result_file, loads), force)
-    models = asked_models(
-        glb, step, (result_file, loads, part), force, thickness=thickness, supports=supports, part=part
+def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
+    """Tabulates the seats: what is read, how the part lies, what touches, and how far it is held."""
+    of, fixture = unit.abbreviation, gauge.fixture
+    kinds = {**KINDS, "fixture": gauge.toolkit.setup_words.resting}
+    table = Table(
+        ("seat", f">reads {of}", f">differs {of}", ">turned by", "side", f">held {of}", "how it lies")
     )
-    height = optional_positive_length("--thickness", thickness, shown_unit)
-    stiffness = jaw_stiffness(jaw)
-    result = result_with(result_file, rank)
-    fixture = result[rank - 1]
-    loads_asked = asked or result.query.loads
-    cases = load_cases(
-        fixture, result.workpiece, result.toolkit, loads_asked, closing_force, coefficient, stiffness
-    )
-    if not json_:
-        print_fixture(result, rank, cases, shown_unit, (closing_force, stiffness))
-    if not result.complete:
-        print_remark("the search for this result was interrupted; there may be better fixtures.")
-    if picture is not None:
-        from workhold.drawing.fixture_pictures import draw_fixture
-        from workhold.drawing.path_drawn import planned_path
-
-        path = planned_path(result, rank - 1)
-        held = (fixture, result.workpiece, result.toolkit)
-        svg = draw_fixture(*held, title=f"Fixture {rank}", unit=shown_unit, path=path)
-        write_picture(picture, svg)
-    if models:
-        wishes = (height, asked or None, closing_force)
-        write_fixture(result, rank, models, wishes, part, supported=supports, unit=shown_unit)
-    written = [*([] if picture is None else [picture]), *models]
-    if json_:
-        from workhold.presenting.data import fixture_data, load_case_data
-
-        print_json(
-            fixture=fixture_data(fixture, result.toolkit, rank),
-            **passing_data(result, rank, closing_force, stiffness),
-            listed=len(result),
-            complete=bool(result.complete),
-            loads=[load_case_data(case) for case in cases],
-            written=[str(path) for path in written],
+    for k, one in enumerate(seats):
+        turned = 0.0 if one.is_own else (one.pose.theta_deg - fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
+        pegs = ", ".join(f"{fixture.pegs[c.peg].hole} {c.words}" for c in one.contacts)
+        words = "right" if one.is_own else "same place" if one.same_place else kinds[one.kind]
+        table.add_row(
+            str(k + 1),
+            unit.number(gauge.at(one.jaw_separation)),
+            unit.number(gauge.at(one.jaw_separation) - gauge.setting.length),
+            f"{one.pose.theta_deg:.1f}" if one.mirrored else f"{turned:.1f}",
+            "over" if one.mirrored else "up",
+            "-" if one.depth is None else unit.number(one.depth),
+            f"{words}{': ' if pegs else ''}{pegs}",
         )
-    else:
-        print_tables(*(f"Drawn in {path}." for path in written))
-
-
-def print_fixture(
-    result: Result, rank: int, cases: Sequence[LoadCase], unit: Unit, closing: tuple[float | None, float]
-) -> None:
-    """Prints how to set up the fixture of a rank, its quality and what loads do to it.
-
-    Parameters
-    ----------
-    closing : the jaw force in N, None where it is open, and how stiff the jaw is.
-    """
-    from workhold.cli.tables import fixture_tables, quality_table
-
-    fixture, toolkit = result[rank - 1], result.toolkit
-    quality = quality_table(fixture, toolkit.moving.noun, unit)
-    print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), "", quality)
-    if fixture.seating is not None:
-        print_tables(*seating_words(fixture, result, unit))
-    elif not toolkit.closes_at_once and rank <= (result.query.seating or 0):
-        print_tables(*by_hand_words(rank, result, unit))
-    print_tables(*passing_words(result, rank, unit, *closing), *load_tables(cases, fixture, toolkit, unit))
+    return table

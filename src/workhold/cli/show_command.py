@@ -1,0 +1,230 @@
+"""The command ``show``: how one fixture is set up, its quality, and what loads do to it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from workhold.cli.commands import option, print_remark
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
+from workhold.cli.search_options import FRICTION, JAW, JAW_FORCE, LOAD, LOADS_FILE, asked_loads
+from workhold.cli.seat_command import by_hand_words, seating_words
+from workhold.cli.setup_sheets import (
+    BODY_THICKNESS,
+    GLB,
+    PART_FILE,
+    STEP,
+    SUPPORTED,
+    asked_models,
+    chosen_supports,
+    write_bodies,
+)
+from workhold.cli.table import Table, print_tables
+from workhold.cli.values import length_unit, optional_force, optional_positive_length, positive_number
+from workhold.units import MILLIMETRE, Unit
+
+if TYPE_CHECKING:
+    from workhold.fixels.toolkit import Toolkit
+    from workhold.model.fixture import Fixture
+    from workhold.model.result import Result
+    from workhold.statics.loads import LoadCase
+
+__all__ = ["load_tables", "show"]
+
+
+def show(
+    result_file: ResultArgument,
+    number: RankArgument,
+    draw: str | None = option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
+    glb: str | None = GLB,
+    step: str | None = STEP,
+    supports: bool = SUPPORTED,
+    thickness: str | None = BODY_THICKNESS,
+    part: str | None = PART_FILE,
+    force: bool = FORCE,
+    load: list[str] | None = LOAD,
+    loads: str | None = LOADS_FILE,
+    jaw_force: str | None = JAW_FORCE,
+    jaw: str = JAW,
+    friction: str | None = FRICTION,
+    unit: str | None = SHOWN_UNIT,
+    json_: bool = JSON,
+) -> None:
+    """Show how to set up fixture N of a result: the holes for the pegs, the opening and the part's pose.
+
+    Its quality is shown as well, and what loads do to it: those of the result, if none are given here. A hole
+    is named by jaw, column letter and row number: L-B3 is the left jaw's second column, third row from below.
+
+    Example: workhold show part.json 1 --draw setup.png --glb setup.glb
+    """
+    from workhold.statics.loads import jaw_stiffness, load_cases
+
+    rank = asked_rank(number)
+    shown_unit = length_unit(unit)
+    closing_force = optional_force("--jaw-force", jaw_force)
+    coefficient = None if friction is None else positive_number("--friction", friction)
+    asked = asked_loads(load, loads, shown_unit)
+    picture = asked_picture(draw, (result_file, loads), force)
+    models = asked_models(
+        glb, step, (result_file, loads, part), force, thickness=thickness, supports=supports, part=part
+    )
+    height = optional_positive_length("--thickness", thickness, shown_unit)
+    stiffness = jaw_stiffness(jaw)
+    result = result_with(result_file, rank)
+    fixture = result[rank - 1]
+    loads_asked = asked or result.query.loads
+    cases = load_cases(
+        fixture, result.workpiece, result.toolkit, loads_asked, closing_force, coefficient, stiffness
+    )
+    if not json_:
+        print_fixture(result, rank, cases, shown_unit, (closing_force, stiffness))
+    if not result.complete:
+        print_remark("the search for this result was interrupted; there may be better fixtures.")
+    if picture is not None:
+        from workhold.drawing.fixture_pictures import draw_fixture
+        from workhold.drawing.path_drawn import planned_path
+
+        path = planned_path(result, rank - 1)
+        held = (fixture, result.workpiece, result.toolkit)
+        svg = draw_fixture(*held, title=f"Fixture {rank}", unit=shown_unit, path=path)
+        write_picture(picture, svg)
+    if models:
+        from workhold.presenting.assembly import Assembly, shape_in
+
+        shape = shape_in(part, result.workpiece)
+        chosen = chosen_supports(result, rank, height, asked or None, closing_force) if supports else None
+        write_bodies(Assembly.of(fixture, result, {"thickness": height}, chosen, shape), models, shown_unit)
+    written = [*([] if picture is None else [picture]), *models]
+    if json_:
+        from workhold.presenting.data import fixture_data, load_case_data
+
+        print_json(
+            fixture=fixture_data(fixture, result.toolkit, rank),
+            **passing_data(result, rank, closing_force, stiffness),
+            listed=len(result),
+            complete=bool(result.complete),
+            loads=[load_case_data(case) for case in cases],
+            written=[str(path) for path in written],
+        )
+    else:
+        print_tables(*(f"Drawn in {path}." for path in written))
+
+
+def print_fixture(
+    result: Result, rank: int, cases: Sequence[LoadCase], unit: Unit, closing: tuple[float | None, float]
+) -> None:
+    """Prints how to set up the fixture of a rank, its quality and what loads do to it.
+
+    Parameters
+    ----------
+    closing : the jaw force in N, None where it is open, and how stiff the jaw is.
+    """
+    from workhold.cli.tables import fixture_tables, quality_table
+
+    fixture, toolkit = result[rank - 1], result.toolkit
+    quality = quality_table(fixture, toolkit.moving.noun, unit)
+    print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), "", quality)
+    if fixture.seating is not None:
+        print_tables(*seating_words(fixture, result, unit))
+    elif not toolkit.closes_at_once and rank <= (result.query.seating or 0):
+        print_tables(*by_hand_words(rank, result, unit))
+    print_tables(*passing_words(result, rank, unit, *closing), *load_tables(cases, fixture, toolkit, unit))
+
+
+def load_tables(
+    cases: Sequence[LoadCase], fixture: Fixture, toolkit: Toolkit, unit: Unit = MILLIMETRE
+) -> tuple[Table | str, ...]:
+    """Tabulates the force that each load needs, and each peg's forces at the closing force that is used."""
+    if not cases:
+        return ()
+    from workhold.statics.loads import jaw_words
+
+    noun = toolkit.moving.noun
+    with_friction = cases[0].needed_with_friction is not None
+    columns = [
+        "load",
+        f">{noun} force needed N",
+        "peg that lets go first",
+        f">worst at {unit.abbreviation}",
+        ">direction deg",
+    ]
+    table = Table((*columns, *([">needed with friction N"] if with_friction else [])))
+    for number, case in enumerate(cases, 1):
+        worst = case.needed
+        row = [
+            case.load.name or f"load {number}",
+            f"{worst.value:.1f}",
+            fixture.pegs[worst.peg].hole,
+            f"({unit.number(worst.point[0])}, {unit.number(worst.point[1])})",
+            f"{worst.direction:.1f}",
+        ]
+        table.add_row(*row, *([f"{case.needed_with_friction:.1f}"] if with_friction else []))
+    forces = Table(("load", *(f">{peg.hole} N" for peg in fixture.pegs), "every peg presses"))
+    for number, case in enumerate(cases, 1):
+        ranges = (f"{low:.1f} to {high:.1f}" for low, high in zip(case.smallest, case.largest, strict=True))
+        holds = "yes" if case.keeps_contact else "no: the part can move"
+        forces.add_row(case.load.name or f"load {number}", *ranges, holds)
+    notes = []
+    if with_friction:
+        notes.append(
+            "With friction the forces are not determined; what is needed with it is the best to be hoped for."
+        )
+    note = (
+        f"For {jaw_words(cases[0].jaw_stiffness, toolkit)}, without friction; docs/quality.md explains both."
+    )
+    return (
+        "",
+        table,
+        *notes,
+        "",
+        f"Forces on the part at a {noun} force of {cases[0].jaw_force:.1f} N:",
+        forces,
+        note,
+    )
+
+
+def passing_data(
+    result: Result, rank: int, jaw_force: float | None = None, jaw: str | float = "screw"
+) -> dict[str, Any]:
+    """Returns where the program's tools come nearest, and which forces they ask for, as plain data.
+
+    Nothing without a program. Jaw force and jaw are as of :func:`passing_words`.
+    """
+    from workhold.statics.program_clearance import passing_of
+    from workhold.statics.program_forces import cutting_need_of
+
+    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
+    names = ("distance", "line", "tool", "element")
+    passing = {} if near is None else {name: getattr(near, name) for name in names}
+    data = {"program_clearance": passing} if passing else {}
+    return data if need is None else data | {"program_forces": need.to_dict()}
+
+
+def passing_words(
+    result: Result, rank: int, unit: Unit, jaw_force: float | None = None, jaw: str | float = "screw"
+) -> list[str]:
+    """Says how near the program's tools come to the fixture of a rank, and which forces they ask for.
+
+    Nothing without a program.
+
+    Parameters
+    ----------
+    jaw_force : in N, instead of the result's.
+    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
+    """
+    from workhold.statics.program_clearance import passing_of
+    from workhold.statics.program_forces import cutting_need_of
+
+    program = result.query.program
+    if program is None:
+        return []
+    near, need = passing_of(result, rank - 1), cutting_need_of(result, rank - 1, jaw_force, jaw)
+    forces = [] if need is None else need.words(result.toolkit.moving.noun, unit, result.toolkit.travels)
+    if near is None:
+        return [f"No tool of {program.name} comes down to where anything holds the part.", *forces]
+    return [
+        f"The tools of {program.name} keep {unit.text(near.distance)} from all that holds the part; "
+        f"T{near.tool} comes nearest in line {near.line}, to the {near.element}.",
+        *forces,
+    ]
