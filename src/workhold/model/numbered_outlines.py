@@ -6,7 +6,7 @@ Segments and faces of outlines have numbers that run on.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence, Set
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from attrs import evolve, frozen
@@ -14,31 +14,14 @@ from attrs import evolve, frozen
 from workhold.errors import InputError
 from workhold.geometry.loop import Face, LoopShape, encloses, near_pairs
 from workhold.geometry.segment import Segment
-from workhold.model.solid import Band, SolidOutline
+from workhold.model.solid import Band
+
+if TYPE_CHECKING:
+    from workhold.model.workpiece import Workpiece
 
 __all__ = ["NumberedOutlines", "outer_count", "refuse_misplaced_holes", "unlike"]
 
 Value = TypeVar("Value")
-
-
-class OutlineOfPart(Protocol):
-    """What an outline has, such as a workpiece."""
-
-    @property
-    def segments(self) -> tuple[Segment, ...]:
-        """All segments; their places are their numbers."""
-
-    @property
-    def faces(self) -> tuple[Face, ...]:
-        """All faces, ordered by their numbers."""
-
-    @property
-    def outer_count(self) -> int:
-        """How many segments the outer loops have, which come first."""
-
-    @property
-    def solid(self) -> SolidOutline | None:
-        """The solid that it is of; None for a prism."""
 
 
 @frozen(eq=False)
@@ -63,13 +46,17 @@ class NumberedOutlines:
     inside: frozenset[int]
 
     @classmethod
-    def of(cls, outlines: Sequence[OutlineOfPart]) -> NumberedOutlines:
+    def of(cls, outlines: Sequence[Workpiece]) -> NumberedOutlines:
         """Several outlines, the first of which the others belong to."""
         segments, faces, bands = list[Segment](), list[Face](), list[Band | None]()
         over, inside = list[tuple[int, ...]](), set[int]()
         for one in outlines:
-            inside.update(len(segments) + f.number for f in one.faces if f.number >= one.outer_count)
-            faces += faces_from(one.faces, len(segments))
+            first = len(segments)
+            inside.update(first + face.number for face in one.faces if face.number >= one.outer_count)
+            faces += [
+                evolve(face, number=first + face.number, segments=tuple(first + k for k in face.segments))
+                for face in one.faces
+            ]
             segments += one.segments
             if one.solid is not None:
                 bands += one.solid.bands
@@ -86,16 +73,6 @@ class NumberedOutlines:
     def segments_under(self, faces: Set[int]) -> list[int]:
         """Numbers of the segments with one of these faces of the solid over them."""
         return [segment for segment, over in enumerate(self.over) if not faces.isdisjoint(over)]
-
-
-def faces_from(faces: Sequence[Face], first: int) -> list[Face]:
-    """Faces with numbers that begin at ``first``."""
-    if first == 0:
-        return list(faces)
-    return [
-        evolve(face, number=first + face.number, segments=tuple(first + k for k in face.segments))
-        for face in faces
-    ]
 
 
 def unlike(values: Iterable[Value]) -> Iterator[Value]:

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import real
-
-if TYPE_CHECKING:
-    from workhold.model.requirements import Zone
 
 __all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
 
@@ -128,14 +125,6 @@ class SolidOutline:
             if band is not None and not (isfinite(band[0]) and 0.0 <= band[0] <= band[1] < 1e9):
                 raise InputError(f"the band {band[0]:g} to {band[1]:g} mm is none: give its lower end first.")
 
-    def faces_over(self, segments: Iterable[int]) -> set[int]:
-        """Numbers of the solid's faces over some segments of the workpiece."""
-        return {face for segment in segments for face in self.faces[segment]}
-
-    def segments_under(self, faces: Set[int]) -> list[int]:
-        """Numbers of the segments with one of these faces of the solid over them."""
-        return [segment for segment, over in enumerate(self.faces) if not faces.isdisjoint(over)]
-
     @classmethod
     def of_entries(cls, solid: Mapping[str, Any], workpiece: Mapping[str, Any]) -> SolidOutline:
         """The solid of a file's entries ``solid`` and ``workpiece``; the second has the bands.
@@ -158,21 +147,6 @@ class SolidOutline:
     def lies_on_no_face(self) -> bool:
         """Whether its level faces are known, and none of them is one on which it lies."""
         return bool(self.top) and not self.bottom
-
-    def pads_kept_off(self, bounds: tuple[float, float, float, float]) -> tuple[Zone, ...]:
-        """What pads are kept off of an outline of bounds (x0, y0, x1, y1) in mm: nothing, or all of it."""
-        if not self.lies_on_no_face:
-            return ()
-        from workhold.model.requirements import polygon_zone
-
-        x0, y0, x1, y1 = bounds
-        around = [(x0 - 1, y0 - 1), (x1 + 1, y0 - 1), (x1 + 1, y1 + 1), (x0 - 1, y1 + 1)]
-        return (polygon_zone(around),)
-
-    @property
-    def untouchable(self) -> frozenset[int]:
-        """Numbers of the segments that nothing may touch."""
-        return frozenset(number for number, band in enumerate(self.bands) if band is None)
 
     def for_segments(self, count: int) -> SolidOutline:
         """Checks that there is a band for each of so many segments, and returns itself.

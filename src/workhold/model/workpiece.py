@@ -158,12 +158,12 @@ class Workpiece:
             pieces = outer_count(name, drawn)
         order: list[int] = []
         for index, shape in enumerate(drawn):
-            first, count = len(order), len(used[index])
+            numbers = range(len(order), len(order) + len(used[index]))
             if (signed_area(shape.segments) > 0) != (index < pieces):
                 used[index] = reversed_vertices(used[index])
-                order += reversed_numbers(first, count)
+                order += reversed(numbers)
             else:
-                order += range(first, first + count)
+                order += numbers
         if solid is not None:
             solid = solid.for_segments(len(order)).reordered(order)
         return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure), solid)
@@ -275,8 +275,10 @@ class Workpiece:
     @cached_property
     def untouchable(self) -> frozenset[int]:
         """Numbers of the faces that no peg, clamp or wall may touch, whatever is asked."""
-        segments = frozenset() if self.solid is None else self.solid.untouchable
-        return frozenset(face.number for face in self.faces if not segments.isdisjoint(face.segments))
+        if self.solid is None:
+            return frozenset()
+        bands = self.solid.bands
+        return frozenset(f.number for f in self.faces if any(bands[k] is None for k in f.segments))
 
     @cached_property
     def pieces(self) -> int:
@@ -342,11 +344,6 @@ class Workpiece:
         """Centre of the bounding box, the point that moments are taken about."""
         x0, y0, x1, y1 = self.bounds
         return (x0 + x1) / 2, (y0 + y1) / 2
-
-
-def reversed_numbers(first: int, count: int) -> list[int]:
-    """Numbers of a loop's segments as they follow each other once it is run the other way."""
-    return [first + count - 1 - k for k in range(count)]
 
 
 def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
