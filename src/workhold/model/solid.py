@@ -11,10 +11,12 @@ from attrs import evolve, field, frozen
 from workhold.errors import InputError
 from workhold.limits import real
 
-__all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
+__all__ = ["AXES", "STANDING", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
 
 # The directions of a file that can point up.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
+# What says how a solid stands, as a file of a result has it.
+STANDING = ("axis", "height", "peg_height", "head_room", "least_band")
 Band = tuple[float, float]
 # Loops of vertices x, y (mm) and bulge.
 Loops = tuple[tuple[tuple[float, ...], ...], ...]
@@ -135,7 +137,7 @@ class SolidOutline:
             For entries that lack something, or hold what cannot be.
         """
         return cls(
-            **{key: solid[key] for key in ("axis", "height", "peg_height", "head_room", "least_band")},
+            **{key: solid[key] for key in STANDING},
             bands=workpiece["bands"],
             faces=workpiece.get("solid_faces") or (),
             bottom=workpiece.get("bottom") or (),

@@ -8,8 +8,10 @@ from itertools import count
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
+from attrs import asdict
+
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import outlines_entry, proof_entry, tolerance_entry, toolkit_fields
+from workhold.files.result.writer import outlines_entry, proof_entry, toolkit_fields
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.pegs import standoff
@@ -137,7 +139,7 @@ def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
         "unit": loaded.unit.name,
         "assumed": list(loaded.assumed),
         "fields": {key: value for key, value in given.items() if key in loaded.fields},
-        "tolerance": tolerance_entry(loaded.tolerance),
+        "tolerance": asdict(loaded.tolerance),
     }
 
 

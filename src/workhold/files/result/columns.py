@@ -20,18 +20,20 @@ from numpy.typing import NDArray
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
-from workhold.files.result.fixture_forms import checked_seating, seatings_of
+from workhold.files.result.fixture_forms import checked_seating, seatings_of, with_seating
 from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees, significant
-from workhold.files.result.heads import HEAD, columns_of, columns_said, head_texts, head_value
 from workhold.files.result.parts import (
+    HEAD,
     checked_head,
     checked_query,
+    columns_of,
+    columns_said,
+    head_value,
     refuse_faulty,
     refuse_unknown_types,
     result_with,
-    with_seating,
 )
-from workhold.files.result.writer import FORMAT, head
+from workhold.files.result.writer import FORMAT, head, head_texts
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -76,7 +78,8 @@ class ColumnsSink:
             text["counts"] = {name: counts[name] for name in result.toolkit.types}
             if result.query.seating is not None:
                 text["seatings"] = [one.as_fields() for one in result.seating]
-            archive.close(HEAD, "".join(head_texts(text, result.query.program)), FORMAT)
+            parts = head_texts(text, result.query.program, ", ", is_ascii=False)
+            archive.close(HEAD, "".join(parts) + "}", FORMAT)
 
 
 def write_columns(result: Result, path: str | Path) -> None:
