@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -165,17 +166,11 @@ def refuse_long_numbers(value: Any) -> None:
         raise InputError(f"the file holds a number with more than {MOST_DIGITS} digits: correct it.")
 
 
-DECODER = json.JSONDecoder(
-    parse_constant=refuse_constant, parse_int=whole_number, object_pairs_hook=each_once
-)
-
-
+@cache
 def decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
     """The decoder that makes something else of each object, or of none."""
-    if hook is None:
-        return DECODER
     return json.JSONDecoder(
         parse_constant=refuse_constant,
         parse_int=whole_number,
-        object_pairs_hook=lambda pairs: hook(each_once(pairs)),
+        object_pairs_hook=each_once if hook is None else lambda pairs: hook(each_once(pairs)),
     )

@@ -13,10 +13,9 @@ pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 from step_shapes import box, cut, cylinder, fused, write_step
 
 import workhold
-from glb_reading import read_glb
+from glb_reading import fixture_glb, read_glb
 from solid_truth import fixture_faults, off_region, section_points, segments_of
 from workhold import Fence, FlatJaw, InputError, Plate, Vise, design, load
-from workhold.files.glb import fixture_glb
 from workhold.files.step.heights import standing
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import segment_rows

@@ -313,8 +313,8 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
         notes.append("The program does not say G90 or G91; its places are read as after G90.")
     if not control.changes and control.calls:
         notes.append("The program has no M6; T alone is read as the change to that tool.")
-    if "length" in control.remarked:
-        notes.append(f"{lines_named(control.remarked['length'])}: G43 takes the length of another tool.")
+    if control.other_lengths:
+        notes.append(f"{lines_named(control.other_lengths)}: G43 takes the length of another tool.")
     if listing.optional:
         notes.append(f"{lines_named(listing.optional)}: a line that a switch can leave out (/) is read.")
     unfed = [row[0] for row in control.path.rows if row[2] and row[6] <= 0.0]

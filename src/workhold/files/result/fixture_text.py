@@ -19,15 +19,13 @@ import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from math import isnan, nan
-from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import plain
-from workhold.files.atomic import text_file
 from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
 from workhold.fixels.toolkit import Toolkit
@@ -55,8 +53,6 @@ __all__ = [
     "rounded_degrees",
     "seating_values",
     "significant",
-    "write_result_csv",
-    "write_result_csv_to",
 ]
 
 LENGTH_STEPS = 1e9
@@ -287,27 +283,6 @@ POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y")
 TRAVEL_COLUMNS = {1: ("jaw_separation",), 2: ("travel_1", "travel_2")}
 
 
-def write_result_csv(result: Result, path: str | Path) -> None:
-    """Writes the fixtures of a result as comma-separated values, numbered by rank from 1.
-
-    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the
-    pictures.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
-    with text_file(path) as stream:
-        write_result_csv_to(result, stream)
-
-
-def write_result_csv_to(result: Result, stream: IO[str]) -> None:
-    """Writes the comma-separated values to an open text stream."""
-    for text in result_csv_text(result):
-        stream.write(text)
-
-
 def column_names(result: Result) -> list[str]:
     """The names of the columns."""
     toolkit = result.toolkit
@@ -333,7 +308,11 @@ def seating_values(result: Result) -> list[list[float]]:
 
 
 def result_csv_text(result: Result) -> Iterator[str]:
-    """The comma-separated values, piece by piece."""
+    """The fixtures of a result as comma-separated values, piece by piece, numbered by rank from 1.
+
+    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the
+    pictures.
+    """
     toolkit, carriers = result.toolkit, result.toolkit.carriers
     yield ",".join(column_names(result)) + "\n"
     moved, flats = 3 + toolkit.travels, FLAT_PIN in toolkit.contacts

@@ -14,7 +14,7 @@ import json
 from collections.abc import Iterator, Mapping
 from itertools import islice
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from attrs import asdict
 
@@ -49,7 +49,6 @@ __all__ = [
     "toolkit_fields",
     "workpiece_entry",
     "write_result",
-    "write_result_to",
     "written",
 ]
 
@@ -69,13 +68,7 @@ def write_result(result: Result, path: str | Path) -> None:
         When the file cannot be written.
     """
     with text_file(path) as stream:
-        write_result_to(result, stream)
-
-
-def write_result_to(result: Result, stream: IO[str]) -> None:
-    """Writes a result to an open text stream."""
-    for text in result_text(result):
-        stream.write(text)
+        stream.writelines(result_text(result))
 
 
 def result_text(result: Result) -> Iterator[str]:
