@@ -193,16 +193,7 @@ def moves_of(control: Interpreter, tools: Mapping[int, Tool], shift: np.ndarray[
     """The moves in the part's coordinates; those before any call have the only tool that is given."""
     moves = Moves.of_rows(control.path.rows)
     tool = np.where(moves.tool < 0, min(tools), moves.tool)
-    return Moves(
-        moves.line,
-        tool,
-        moves.cutting,
-        moves.start + shift,
-        moves.end + shift,
-        moves.bulge,
-        moves.feed,
-        moves.spindle,
-    )
+    return evolve(moves, tool=tool, start=moves.start + shift, end=moves.end + shift)
 
 
 def tools_used(
