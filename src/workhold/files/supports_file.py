@@ -87,13 +87,7 @@ def read_supports(path: str | Path) -> Supports:
 def triple_of(
     part: TriplePart, fixture: Fixture, query: Query, point: tuple[float, float] | None, path: Path
 ) -> Triple:
-    """A triple of a file.
-
-    Raises
-    ------
-    InputError
-        When a hole is on no plate of the toolkit.
-    """
+    """A triple of a file; refuses a hole that is on no plate of the toolkit."""
     plates = {plate.name: plate for plate in query.toolkit.plates}
     supports = []
     for name, column, row in part.holes:

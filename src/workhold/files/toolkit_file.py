@@ -226,13 +226,7 @@ def lengths_in_mm(value: Any, unit: Unit) -> Any:
 
 
 def refuse_wide_pads(toolkit: Toolkit) -> None:
-    """Refuses pads of supports that would overlap in neighbouring holes.
-
-    Raises
-    ------
-    InputError
-        With the distance between the holes.
-    """
+    """Refuses pads of supports that would overlap in neighbouring holes."""
     apart = min(pitch for plate in toolkit.plates for pitch in plate.pitch)
     radius = None if toolkit.supports is None else toolkit.supports.pad_radius
     if radius is not None and 2 * radius > apart:
@@ -245,10 +239,7 @@ def refuse_wide_pads(toolkit: Toolkit) -> None:
 def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | None:
     """Pin and hole as the file gives them, or as the standard it names does; None when it gives neither.
 
-    Raises
-    ------
-    InputError
-        For one without the other, and for limits that are not those of the peg.
+    Refuses one without the other, and limits that are not those of the peg.
     """
     limits: dict[str, Limits | None] = {"pin_diameter": None, "hole_diameter": None}
     if "dowel" in entries:
@@ -282,10 +273,7 @@ def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | N
 def tolerance_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Tolerance:
     """The tolerance that the file gives, or that follows from its pin and hole, or else the usual one.
 
-    Raises
-    ------
-    InputError
-        For negative lengths, and as :func:`fit_of`.
+    Refuses negative lengths, and what :func:`fit_of` does.
     """
     usual, fit = Tolerance(), fit_of(entries, unit, peg_radius)
     # Rounded to where a difference of decimal figures is exact again.

@@ -77,13 +77,7 @@ def first_side(fixture: Fixture, query: Query, before: Query, located: Fixture |
 
 
 def solid_of(workpiece: Workpiece) -> SolidOutline:
-    """The solid of a part.
-
-    Raises
-    ------
-    InputError
-        Where it has none, or its faces have no numbers.
-    """
+    """The solid of a part; refuses a part without one, and one whose faces have no numbers."""
     if workpiece.solid is None or not workpiece.solid.faces:
         raise InputError(f"{workpiece.name} has no faces of a solid: read both set-ups from the STEP file.")
     return workpiece.solid

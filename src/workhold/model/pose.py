@@ -82,8 +82,8 @@ class Flush:
     theta : (E,) orientation of the workpiece in radians, in [0, 2 pi), in which each lies on the wall.
     ends : (E, 2, 2) their starts and ends in the workpiece's coordinates, in mm.
     face : (E, 2) numbers of the faces that a table of fixtures names for them: of a corner the lower one.
-    touching : numbers of the faces that touch the wall at the start and at the end of each: one face, or the
-        two that meet at a corner, the lower number first.
+    touching : numbers of the faces that touch the wall at the start and at the end of each. A corner has
+        those of two faces, the lower one first.
     shared : (E, 2) numbers that are equal where one face's error moves several contacts alike: the face's
         number; for a corner a number below zero of its own.
     """

@@ -37,13 +37,7 @@ def bands_of(values: Iterable[Any]) -> tuple[Band | None, ...]:
 
 
 def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
-    """Loops of (x, y, bulge) as tuples of floats.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Loops of (x, y, bulge) as tuples of floats; refuses anything else."""
     loops = tuple(tuple(tuple(real(one) for one in vertex) for vertex in loop) for loop in values)
     if any(len(vertex) != 3 or not all(map(isfinite, vertex)) for loop in loops for vertex in loop):
         raise InputError("a loop of the solid is none: give x, y and bulge of every vertex.")
@@ -51,13 +45,7 @@ def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
 
 
 def reals_of(values: Iterable[Any]) -> tuple[float, ...]:
-    """Finite numbers as a tuple of floats.
-
-    Raises
-    ------
-    InputError
-        For a number that is not finite.
-    """
+    """Numbers as a tuple of floats; refuses one that is not finite."""
     numbers = tuple(real(value) for value in values)
     if not all(map(isfinite, numbers)):
         raise InputError("a height of an upper face of the solid is no length: give it in mm.")

@@ -81,13 +81,7 @@ def loops_of(loops: Iterable[Any]) -> Loops:
 
 
 def rings_of(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, float, float], ...]:
-    """Rings as (x, y, least, most).
-
-    Raises
-    ------
-    InputError
-        For a ring that is none.
-    """
+    """Rings as (x, y, least, most); refuses what is none."""
     rings = [tuple(real(value) for value in ring) for ring in reach]
     for ring in rings:
         if len(ring) != 4 or not all(map(isfinite, ring)) or not 0 <= ring[2] <= ring[3]:

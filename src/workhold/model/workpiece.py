@@ -346,12 +346,8 @@ class Workpiece:
 
 
 def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
-    """(N, 3) vertices of a loop of corners without bulges, checked; a repeated first corner is left out.
-
-    Raises
-    ------
-    InputError
-        For anything but corners that can be used.
+    """(N, 3) vertices of a loop of corners without bulges, a repeated first corner left out; refuses what is
+    none.
     """
     try:
         array = np.array(points, dtype=np.float64)
@@ -368,12 +364,8 @@ def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
 
 
 def departure_of(value: float) -> float:
-    """The departure of an outline in mm, checked; 0 where it is less than a drawing can mean.
-
-    Raises
-    ------
-    InputError
-        When it is no length.
+    """The departure of an outline in mm, 0 where it is less than a drawing can mean; refuses what is no
+    length.
     """
     if not (isfinite(real(value)) and value >= 0):
         raise InputError(f"the departure {value} of the outline is not a length: give 0 or more, in mm.")

@@ -87,13 +87,7 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
 
 
 def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:
-    """The solid of a result file's workpiece; None where it has none.
-
-    Raises
-    ------
-    InputError
-        When the solid or the bands are not of their shape.
-    """
+    """The solid of a result file's workpiece, None where it has none; refuses one that is not complete."""
     workpiece, solid = content.get("workpiece"), content.get("solid")
     if solid is None or not isinstance(workpiece, dict):
         return None
@@ -191,13 +185,7 @@ def drawing_of_object(
 
 
 def geometry_chains(geometry: Any, scale: float) -> Iterator[Chain]:
-    """The rings and lines of a geometry of shapely as chains in mm.
-
-    Raises
-    ------
-    InputError
-        For points, which have no outline.
-    """
+    """The rings and lines of a geometry of shapely as chains in mm; refuses points, which have no outline."""
     kind = geometry.geom_type
     if hasattr(geometry, "geoms"):
         for one in geometry.geoms:

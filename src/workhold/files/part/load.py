@@ -175,13 +175,7 @@ def read_workpiece(
 
 
 def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
-    """A workpiece from an object of another library.
-
-    Raises
-    ------
-    InputError
-        For an object that is none, has no outline, or to which a choice does not apply.
-    """
+    """A workpiece from an object of another library; refuses other objects and choices that do not apply."""
     held = drawing_of_object(part, **options)
     if not isinstance(held.drawing, Drawing):
         return from_heights(held.name, held.drawing)
@@ -191,13 +185,7 @@ def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) ->
 
 
 def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
-    """A workpiece from a file.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be read or used, and choices that do not apply to it.
-    """
+    """A workpiece from a file; refuses one that cannot be used, and choices that do not apply to it."""
     content = read_bytes(path)
     kind = kind_of(path, content)
     part_number, layers, fit = options["part_number"], options["layers"], options["fit"]
@@ -225,12 +213,8 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
 
 
 def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
-    """A workpiece from the bytes of a STEP file.
-
-    Raises
-    ------
-    InputError
-        For wrong content, or choices that do not apply to STEP.
+    """A workpiece from the bytes of a STEP file; refuses wrong content, and choices that do not apply to
+    STEP.
     """
     refuse_layers(options["layers"])
     if options["unit"] is not None:

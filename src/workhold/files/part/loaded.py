@@ -134,13 +134,7 @@ def outline_of(
     fit: float | None,
     layered: bool,
 ) -> Loaded:
-    """The workpiece, see :func:`from_drawing`.
-
-    Raises
-    ------
-    InputError
-        See there.
-    """
+    """The workpiece, or a refusal, see :func:`from_drawing`."""
     clean = cleaned(drawing.chains)
     joined = join(clean.chains, tolerance)
     if not joined.loops:

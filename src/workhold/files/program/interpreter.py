@@ -328,13 +328,7 @@ class Interpreter:
 
 
 def known(place: Reached) -> tuple[float, float, float]:
-    """A place of which all is known.
-
-    Raises
-    ------
-    InputError
-        Where something is not.
-    """
+    """A place of which all is known; refuses one of which something is not."""
     x, y, z = place
     if x is None or y is None or z is None:
         raise InputError(

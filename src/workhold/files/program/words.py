@@ -265,13 +265,7 @@ def numbered(text: str) -> Iterator[tuple[int, str]]:
 
 
 def without_comments(line: int, content: str, comments: list[tuple[int, str]]) -> str:
-    """A line without its comments, which are added to a list.
-
-    Raises
-    ------
-    InputError
-        For a parenthesis without its partner.
-    """
+    """A line without its comments, which are added to a list; refuses a parenthesis without its partner."""
     if "(" not in content and ";" not in content and ")" not in content:
         return content
     for match in COMMENT.finditer(content):

@@ -30,7 +30,7 @@ Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
 def first_fault(error: ValidationError) -> tuple[str, str]:
-    """The key of the first thing that is wrong with a file, and what is, without a capital and a full stop."""
+    """The first key of a file that is wrong, and what is wrong with it, without a capital or a full stop."""
     first = error.errors()[0]
     key = ".".join(str(part) for part in first["loc"] if part not in TAGS)
     return key, MISSING if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
@@ -80,13 +80,7 @@ class SolidPart(FormPart):
     least_band: float
 
     def outline(self, workpiece: WorkpiecePart) -> SolidOutline:
-        """The solid with the bands of its outline.
-
-        Raises
-        ------
-        InputError
-            When there are no bands, or heights that are none.
-        """
+        """The solid with the bands of its outline; refuses one without bands, and heights that are none."""
         if workpiece.bands is None:
             raise InputError("it has a solid, but the workpiece has no bands.")
         return SolidOutline.of_entries(self.model_dump(), workpiece.model_dump())

@@ -285,10 +285,7 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
 def faces_on_wall(workpiece: Workpiece, theta: NDArray[np.float64], path: Path) -> NDArray[np.int32]:
     """The faces (N, 2) at the ends of the contact with a wall, in orientations (N,) in radians.
 
-    Raises
-    ------
-    InputError
-        When there are fixtures, but the workpiece cannot lie flush on a wall.
+    Refuses a workpiece that cannot lie flush on a wall, where there are fixtures.
     """
     if len(theta) and len(workpiece.hull_edges) == 0:
         raise InputError(f"{path}: fixture 1 lies flush on a wall, which {workpiece.name} cannot.")
