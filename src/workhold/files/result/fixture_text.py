@@ -288,17 +288,11 @@ def column_names(result: Result) -> list[str]:
     toolkit = result.toolkit
     pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
     moved = TRAVEL_COLUMNS[toolkit.travels]
+    figures = [figure.key for figure in known_figures(result.table)]
     placed = sum(toolkit.carriers[k].contact.is_placed for k in toolkit.arrangements[0].carriers)
     flats = [f"flat{number}_deg" for number in range(1, 1 + placed * (FLAT_PIN in toolkit.contacts))]
     seating = [figure.key for figure in SEATING_FIGURES] if result.seating else []
-    return [
-        *POSE_COLUMNS,
-        *moved,
-        *(figure.key for figure in known_figures(result.table)),
-        *pegs,
-        *flats,
-        *seating,
-    ]
+    return [*POSE_COLUMNS, *moved, *figures, *pegs, *flats, *seating]
 
 
 def seating_values(result: Result) -> list[list[float]]:
@@ -328,17 +322,8 @@ def result_csv_text(result: Result) -> Iterator[str]:
             fields = [str(number), name, *map(repr, pose), *(f"{value:.12g}" for value in quality)]
             for peg, jaw in enumerate(jaws):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
-                hole = jaw.place_name(column, hole_row)
-                fields += [
-                    hole,
-                    jaw.name,
-                    str(column),
-                    str(hole_row),
-                    repr(peg_x),
-                    repr(peg_y),
-                    str(face),
-                    f"{force:.12g}",
-                ]
+                fields += [jaw.place_name(column, hole_row), jaw.name, str(column), str(hole_row)]
+                fields += [repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]
             fields += ["" if angle is None else repr(angle) for angle in looks]
             if seated:
                 fields += [
