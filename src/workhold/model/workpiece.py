@@ -34,7 +34,7 @@ from workhold.geometry.loop import (
 from workhold.geometry.merged_runs import merged_chords, on_one_circle
 from workhold.geometry.segment import Point, Segment, bounding_box
 from workhold.limits import real
-from workhold.model.own_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
+from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
 from workhold.model.pose import Flush, Pose
 from workhold.model.solid import SolidOutline
 

@@ -1,0 +1,151 @@
+"""The loops of a workpiece, outer ones before holes, and the segments of several outlines of one part.
+
+Segments and faces of outlines have numbers that run on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence, Set
+from typing import Protocol, TypeVar
+
+import numpy as np
+from attrs import evolve, frozen
+
+from workhold.errors import InputError
+from workhold.geometry.loop import Face, LoopShape, encloses, near_pairs
+from workhold.geometry.segment import Segment
+from workhold.model.solid import Band, SolidOutline
+
+__all__ = ["NumberedOutlines", "outer_count", "refuse_misplaced_holes", "unlike"]
+
+Value = TypeVar("Value")
+
+
+class OutlineOfPart(Protocol):
+    """What an outline has, such as a workpiece."""
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """All segments; their places are their numbers."""
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """All faces, ordered by their numbers."""
+
+    @property
+    def outer_count(self) -> int:
+        """How many segments the outer loops have, which come first."""
+
+    @property
+    def solid(self) -> SolidOutline | None:
+        """The solid that it is of; None for a prism."""
+
+
+@frozen(eq=False)
+class NumberedOutlines:
+    """The segments and faces of a workpiece and of the outlines of carriers, numbered on.
+
+    Parameters
+    ----------
+    segments : their places in this tuple are their numbers.
+    faces : ordered by their numbers.
+    bands : for every segment its band; None where it may not be touched, nothing at all without a solid.
+    over : for every segment the numbers of the solid's faces over it; nothing where these are not known.
+    marks : for every face the number of its outline: 0 for the workpiece itself.
+    inside : the numbers of the faces of holes.
+    """
+
+    segments: tuple[Segment, ...]
+    faces: tuple[Face, ...]
+    bands: tuple[Band | None, ...]
+    over: tuple[tuple[int, ...], ...]
+    marks: tuple[int, ...]
+    inside: frozenset[int]
+
+    @classmethod
+    def of(cls, outlines: Sequence[OutlineOfPart]) -> NumberedOutlines:
+        """Several outlines, the first of which the others belong to."""
+        segments, faces, bands = list[Segment](), list[Face](), list[Band | None]()
+        over, inside = list[tuple[int, ...]](), set[int]()
+        for one in outlines:
+            first = len(segments)
+            inside.update(first + face.number for face in one.faces if face.number >= one.outer_count)
+            faces += [
+                evolve(face, number=first + face.number, segments=tuple(first + k for k in face.segments))
+                for face in one.faces
+            ]
+            segments += one.segments
+            if one.solid is not None:
+                bands += one.solid.bands
+                over += one.solid.faces
+        marks = tuple(number for number, one in enumerate(outlines) for _ in one.faces)
+        known = len(over) == len(segments)
+        solids = tuple(over) if known else ()
+        return cls(tuple(segments), tuple(faces), tuple(bands), solids, marks, frozenset(inside))
+
+    def faces_over(self, segments: Iterable[int]) -> set[int]:
+        """Numbers of the solid's faces over some segments."""
+        return {face for segment in segments for face in self.over[segment]} if self.over else set()
+
+    def segments_under(self, faces: Set[int]) -> list[int]:
+        """Numbers of the segments with one of these faces of the solid over them."""
+        return [segment for segment, over in enumerate(self.over) if not faces.isdisjoint(over)]
+
+
+def unlike(values: Iterable[Value]) -> Iterator[Value]:
+    """The values without those that are equal to one before them."""
+    known = list[Value]()
+    for value in values:
+        if value not in known:
+            known.append(value)
+            yield value
+
+
+def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
+    """How many loops lie in no other, or in a hole (loops are known not to meet).
+
+    Raises
+    ------
+    InputError
+        Where they do not come before the others.
+    """
+    boxes = np.array([shape.box for shape in shapes])
+    around = [
+        [
+            other
+            for _, other in near_pairs(boxes[k : k + 1], boxes)
+            if other != k and encloses(shapes[other], one)
+        ]
+        for k, one in enumerate(shapes)
+    ]
+    outer = [len(others) % 2 == 0 for others in around]
+    first_hole = outer.index(False) if False in outer else len(outer)
+    if any(outer[first_hole:]):
+        raise InputError(
+            f"{name}: loop {first_hole} is a hole before an outer loop: give all outer loops first."
+        )
+    return first_hole
+
+
+def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape]) -> None:
+    """Refuses holes outside the outer loop and holes inside one another (loops are known not to meet).
+
+    Raises
+    ------
+    InputError
+        Naming the hole.
+    """
+    boxes = np.array([shape.box for shape in shapes])
+    for index, hole in enumerate(shapes[1:], start=1):
+        x, y = hole.segments[0].start
+        if not encloses(shapes[0], hole):
+            raise InputError(
+                f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies outside the outer loop: the first loop "
+                "must be the outline that encloses all the others."
+            )
+        for _, other in near_pairs(boxes[index : index + 1], boxes):
+            if other not in (0, index) and encloses(shapes[other], hole):
+                raise InputError(
+                    f"{name}: loop {index}, at ({x:.6g}, {y:.6g}), lies inside the hole of loop {other}: "
+                    "holes may not overlap; load the inner piece as a part of its own."
+                )
