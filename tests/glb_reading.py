@@ -11,6 +11,12 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from workhold.files.glb import bodies_glb
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.bodies import BodySizes, fixture_bodies
+from workhold.model.fixture import Fixture
+from workhold.model.workpiece import Workpiece
+
 KINDS = {5126: np.dtype("<f4"), 5125: np.dtype("<u4")}
 WIDTHS = {"VEC3": 3, "SCALAR": 1}
 
@@ -116,3 +122,11 @@ def z_up(vectors: NDArray[Any]) -> NDArray[np.float64]:
     """Vectors of glTF, whose y is up, with z up."""
     x, y, z = vectors.astype(np.float64).T
     return np.stack([x, -z, y], axis=1)
+
+
+def fixture_glb(
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, sizes: BodySizes | None = None
+) -> bytes:
+    """The bytes of a fixture's GLB file; the usual heights if no sizes are given."""
+    bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
+    return bodies_glb(bodies, f"{bodies[0].name} set-up")

@@ -40,7 +40,7 @@ def with_own(part: Workpiece, own: Mapping[str, tuple[tuple[float, float], Any]]
     outlines = []
     for role, ((low, high), loop) in own.items():
         solid = solid_of(len(loop), low, high, bare.get(role, ()))
-        outlines.append((role, Workpiece.from_loops(own_name("part", (low, high)), [loop], solid=solid)))
+        outlines.append((role, Workpiece.from_loops(own_name((low, high)), [loop], solid=solid)))
     return evolve(part, outlines=tuple(outlines))
 
 

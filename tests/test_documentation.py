@@ -17,7 +17,7 @@ import pytest
 import yaml
 
 from workhold.errors import InputError
-from workhold.files.result.heads import COLUMNS, PAIR_COLUMNS
+from workhold.files.result.parts import columns_of
 from workhold.fixels.kinds import KINDS
 from workhold.fixels.vise import OpeningVise
 from workhold.version import __version__
@@ -151,10 +151,10 @@ def test_what_is_to_be_cited_is_this_version() -> None:
 def test_the_columns_listed_are_those_written() -> None:
     """Each has a row with its kind of number and its shape; what a fixture takes is the sum."""
     page = (ROOT / "docs" / "columns.md").read_text()
-    for name, column in COLUMNS.items():
+    for name, column in columns_of(1).items():
         number, shape = np.dtype(column.kind).name, ", ".join(map(str, ("N", *column.shape)))
         assert re.search(rf"^\| .*`{name}.npy`.* \| {number} \| {shape} \|", page, flags=re.M), name
-    one, two = (sum(column.row_bytes for column in columns.values()) for columns in (COLUMNS, PAIR_COLUMNS))
+    one, two = (sum(column.row_bytes for column in columns.values()) for columns in map(columns_of, (1, 2)))
     assert f"{one} bytes a fixture, {two} with two clamps" in page
 
 

@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 
 from fakes import fake_result
+from glb_reading import fixture_glb
 from workhold import __version__
 from workhold import open as open_result
 from workhold.cli.main import COMMANDS, command_of
-from workhold.files.glb import fixture_glb
 from workhold.files.result.writer import write_result
 from workhold.model.bodies import BodySizes
 

@@ -21,7 +21,7 @@ import numpy as np
 from fakes import fake_result
 from workhold.archive import mapped_archive
 from workhold.files.result.columns import write_columns
-from workhold.files.result.heads import COLUMNS, HEAD
+from workhold.files.result.parts import HEAD, columns_of
 from workhold.files.result.writer import result_text
 
 __all__ = ["MAKERS"]
@@ -304,7 +304,7 @@ def written_columns() -> tuple[str, dict[str, Any]]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "result.npz"
         write_columns(fake_result(2), path)
-        text, arrays = mapped_archive(path, COLUMNS, HEAD)
+        text, arrays = mapped_archive(path, columns_of(1), HEAD)
         return text, {name: np.array(array) for name, array in arrays.items()}
 
 

@@ -140,7 +140,7 @@ def test_a_file_in_inches(tmp_path: Path) -> None:
 def test_a_standard_gives_the_pin_and_the_file_the_hole(tmp_path: Path) -> None:
     """ISO 2338 recommends no hole; an entry of the file goes before the standard's; a plain tolerance before both."""
     pin = {**OWN, "dowel": '"iso 2338 H8"', "hole_diameter": "[6.0, 6.012]"}
-    fit = load_toolkit(write(tmp_path, pin)).fit
+    fit = load_toolkit(write(tmp_path, pin)).tolerance.fit
     assert fit is not None and (fit.pin, fit.hole) == ((5.982, 6.0), (6.0, 6.012))
     assert load_toolkit(write(tmp_path, {**pin, "peg_tolerance": "0.5"})).tolerance.peg == 0.5
 

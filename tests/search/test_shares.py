@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from workhold.files.part.load import load
-from workhold.files.result.writer import write_result_to
+from workhold.files.result.writer import result_text
 from workhold.fixels.vise import Vise
 from workhold.model.result import Result
 from workhold.search import shares
@@ -28,7 +28,7 @@ def identity(fixture: Any) -> tuple[Any, ...]:
 def text(result: Result) -> str:
     """The result file."""
     stream = StringIO()
-    write_result_to(result, stream)
+    stream.writelines(result_text(result))
     return stream.getvalue()
 
 

@@ -6,7 +6,6 @@ import csv
 import html
 import json
 import re
-from io import StringIO
 from math import cos, isclose, radians, sin
 from typing import Any
 
@@ -16,8 +15,8 @@ from running_server import LONG, PATIENCE, SQUARE, VISE, WIDGET, RunningServer, 
 from test_parts import refused
 
 from workhold.files.part.load import load
-from workhold.files.result.fixture_text import write_result_csv_to
-from workhold.files.result.writer import write_result_to
+from workhold.files.result.fixture_text import result_csv_text
+from workhold.files.result.writer import result_text
 from workhold.fixels.vise import Vise
 from workhold.model.quality import FIGURES
 from workhold.model.requirements import Load, Tolerance
@@ -74,11 +73,9 @@ def test_a_job_finds_what_the_program_finds(server: RunningServer, job: str, res
 
 
 def test_downloads_are_the_files_the_program_writes(server: RunningServer, job: str, result: Result) -> None:
-    for ending, write in (("json", write_result_to), ("csv", write_result_csv_to)):
+    for ending, text_of in (("json", result_text), ("csv", result_csv_text)):
         answer = server.client.get(f"{job}/result.{ending}")
-        stream = StringIO()
-        write(result, stream)
-        assert answer.text == stream.getvalue()
+        assert answer.text == "".join(text_of(result))
         assert answer.headers["content-disposition"] == f'attachment; filename="widget.{ending}"'
 
 

@@ -15,7 +15,6 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from hashlib import sha256
-from io import StringIO
 from pathlib import Path
 from threading import Event
 from time import perf_counter
@@ -166,7 +165,7 @@ class Answering(Task):
 
     def record(self) -> bytes:
         """The result file; see :meth:`Task.record`."""
-        from workhold.files.result.writer import write_result_to
+        from workhold.files.result.writer import result_text
         from workhold.search.design import answer
 
         query = evolve(self.query, workpiece=workpiece_of(plain_record(self.part)))
@@ -174,10 +173,8 @@ class Answering(Task):
             kept = FirstFixtures(self.best, Path(folder))
             result = answer(query, threads=1, sink=kept)
         table = FixtureTable.empty(query.toolkit) if kept.table is None else kept.table
-        text = StringIO()
-        made = kept.result or result
-        write_result_to(evolve(made, query=evolve(query, best=self.best), table=table), text)
-        return text.getvalue().encode()
+        made = evolve(kept.result or result, query=evolve(query, best=self.best), table=table)
+        return "".join(result_text(made)).encode()
 
 
 @define(eq=False)

@@ -133,14 +133,15 @@ def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
         table.add_row("from a peg's centre to its flat", f"{unit.figure(first.flat.distance, finest)} {of}")
     for words, value in own_figures(loaded, unit):
         table.add_row(words, value)
-    if loaded.fit is not None:
-        table.add_row("pin diameter", limits_words(loaded.fit.pin, unit))
-        table.add_row("hole diameter", limits_words(loaded.fit.hole, unit))
-        assumed = " (assumed: no source says)" if loaded.fit.position_assumed else ""
+    if loaded.tolerance.fit is not None:
+        table.add_row("pin diameter", limits_words(loaded.tolerance.fit.pin, unit))
+        table.add_row("hole diameter", limits_words(loaded.tolerance.fit.hole, unit))
+        assumed = " (assumed: no source says)" if loaded.tolerance.fit.position_assumed else ""
         table.add_row(
-            "hole off its place by at most", f"{unit.figure(loaded.fit.position, finest)} {of}{assumed}"
+            "hole off its place by at most",
+            f"{unit.figure(loaded.tolerance.fit.position, finest)} {of}{assumed}",
         )
-    assumed = " (assumed: no pin and hole are given)" if loaded.fit is None else ""
+    assumed = " (assumed: no pin and hole are given)" if loaded.tolerance.fit is None else ""
     table.add_row(
         "peg's surface off by at most", f"{unit.figure(loaded.tolerance.peg, finest)} {of}{assumed}"
     )

@@ -211,10 +211,10 @@ def write_output(result: Result, out: str, form: str) -> None:
         save(result, out, form)
         return
     if form == "csv":
-        from workhold.files.result.fixture_text import write_result_csv_to as write_to
+        from workhold.files.result.fixture_text import result_csv_text as text_of
     else:
-        from workhold.files.result.writer import write_result_to as write_to
-    write_to(result, sys.stdout)
+        from workhold.files.result.writer import result_text as text_of
+    sys.stdout.writelines(text_of(result))
     sys.stdout.flush()
 
 

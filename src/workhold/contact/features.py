@@ -23,7 +23,6 @@ from workhold.fixels.pegs import Flat
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.model.own_outlines import outline_met
 from workhold.model.requirements import Restrictions, Zone
 from workhold.model.workpiece import Workpiece
 
@@ -76,7 +75,7 @@ def contact_features(
 
 def features_met(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
     """Contact features of a workpiece for the pegs of a carrier, by face, on the outline that it meets."""
-    own, first = outline_met(workpiece, carrier)
+    own, first = workpiece.outline_of(carrier.role)
     features = contact_features(own, carrier.peg_radius, carrier.flat)
     return [evolve(one, face=first + one.face) for one in features] if first else features
 

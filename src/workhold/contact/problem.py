@@ -32,7 +32,7 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.given import Lattice, Limits, Setting
 from workhold.limits import refuse_many_steps
-from workhold.model.own_outlines import outline_diameter, outline_met
+from workhold.model.own_outlines import outline_diameter
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
@@ -255,7 +255,7 @@ class Problem:
         radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
         diameter = outline_diameter(workpiece) + 2 * radius
         carriers = Frame.of(query.toolkit, diameter).carriers
-        met = [outline_met(workpiece, each) for each in carriers]
+        met = [workpiece.outline_of(each.role) for each in carriers]
         one, other = (
             (each.peg_radius, each.body_radius, each.flat, each.heights, first)
             for each, (_, first) in zip(carriers, met, strict=True)

@@ -109,12 +109,8 @@ def python_command(doing: str) -> list[str]:
 
 
 def outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
-    """What a process that has ended answered; its limits are seconds and bytes.
-
-    Raises
-    ------
-    InputError
-        See :func:`run_apart`.
+    """What a process that has ended answered, or its refusal as in :func:`run_apart`; limits are seconds and
+    bytes.
     """
     kind, value = "", ""
     seconds, memory = limits

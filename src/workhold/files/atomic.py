@@ -144,13 +144,7 @@ def remove_unfinished() -> None:
 
 
 def resolved(path: Path) -> Path:
-    """The path without symbolic links.
-
-    Raises
-    ------
-    InputError
-        For names no file can have, and for links that lead in a circle.
-    """
+    """The path without symbolic links; refuses names that no file can have, and links in a circle."""
     try:
         return path.resolve()
     except (OSError, RuntimeError, ValueError) as error:

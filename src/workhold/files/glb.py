@@ -20,14 +20,11 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line, Point, Segment
 from workhold.geometry.triangulation import triangulate
-from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, fixture_bodies
-from workhold.model.fixture import Fixture
-from workhold.model.workpiece import Workpiece
+from workhold.model.bodies import COLOURS, BodyKind, FixtureBody, Slab
 
-__all__ = ["SAGITTA", "Mesh", "bodies_glb", "body_mesh", "fixture_glb", "surface_mesh"]
+__all__ = ["SAGITTA", "Mesh", "bodies_glb", "body_mesh", "surface_mesh"]
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -58,25 +55,13 @@ class Mesh:
     triangles: NDArray[np.uint32]
 
 
-def body_mesh(body: FixtureBody, sagitta: float = SAGITTA) -> Mesh:
-    """The mesh of a body.
-
-    Parameters
-    ----------
-    sagitta : how far a chord may be from its arc, in mm.
-    """
-    positions: list[Array] = []
-    normals: list[Array] = []
-    triangles: list[Triangles] = []
-    count = 0
-    for slab in body.slabs:
-        for part in slab_parts(slab, sagitta):
-            points, outward, numbers = part
-            positions.append(points)
-            normals.append(outward)
-            triangles.append(numbers + count)
-            count += len(points)
-    return surface_mesh(np.concatenate(positions), np.concatenate(normals), np.concatenate(triangles))
+def body_mesh(body: FixtureBody) -> Mesh:
+    """The mesh of a body."""
+    parts = [part for slab in body.slabs for part in slab_parts(slab)]
+    points, outward, triangles = zip(*parts, strict=True)
+    first = np.cumsum([0, *map(len, points[:-1])])
+    numbers = [own + before for own, before in zip(triangles, first, strict=True)]
+    return surface_mesh(np.concatenate(points), np.concatenate(outward), np.concatenate(numbers))
 
 
 def surface_mesh(positions: Array, normals: Array, triangles: Triangles) -> Mesh:
@@ -96,9 +81,9 @@ def as_gltf(vectors: Array) -> NDArray[np.float32]:
     return turned + np.float32(0.0)
 
 
-def slab_parts(slab: Slab, sagitta: float) -> list[tuple[Array, Array, Triangles]]:
+def slab_parts(slab: Slab) -> list[tuple[Array, Array, Triangles]]:
     """Positions in mm, normals and triangles of the caps and the walls of a slab."""
-    loops = [pieces_of(loop, sagitta) for loop in (slab.outer, *slab.holes)]
+    loops = [pieces_of(loop) for loop in (slab.outer, *slab.holes)]
     flat = np.array([piece.start for loop in loops for piece in loop])
     caps = np.array(triangulate([[piece.start for piece in loop] for loop in loops]), dtype=np.int64)
     parts: list[tuple[Array, Array, Triangles]] = []
@@ -118,11 +103,11 @@ class WallPiece:
     normals: tuple[Point, Point]
 
 
-def pieces_of(loop: Sequence[Segment], sagitta: float) -> list[WallPiece]:
+def pieces_of(loop: Sequence[Segment]) -> list[WallPiece]:
     """A closed loop of pieces over the chords of a loop's segments; those too short are left out."""
     places: list[tuple[Point, int, float]] = []
     for number, segment in enumerate(loop):
-        for parameter in chord_ends(segment, sagitta)[:-1]:
+        for parameter in chord_ends(segment)[:-1]:
             point = segment.at(parameter)
             if not places or dist(point, places[-1][0]) > SAME:
                 places.append((point, number, parameter))
@@ -133,16 +118,16 @@ def pieces_of(loop: Sequence[Segment], sagitta: float) -> list[WallPiece]:
         end, following, last = places[(k + 1) % len(places)]
         segment = loop[number]
         if following != number:
-            last = chord_ends(segment, sagitta)[-1]
+            last = chord_ends(segment)[-1]
         out.append(WallPiece(start, end, (segment.normal(first), segment.normal(last))))
     return out
 
 
-def chord_ends(segment: Segment, sagitta: float) -> list[float]:
+def chord_ends(segment: Segment) -> list[float]:
     """Parameters of the ends of a segment's chords in running order."""
     if isinstance(segment, Line):
         return [-segment.half_extent, segment.half_extent]
-    widest = min(2 * acos(max(0.0, 1.0 - sagitta / segment.radius)), LARGEST_TURN)
+    widest = min(2 * acos(max(0.0, 1.0 - SAGITTA / segment.radius)), LARGEST_TURN)
     count = ceil(2 * segment.half_sweep / widest)
     half = segment.sign * segment.half_sweep
     return [half * (2 * k / count - 1.0) for k in range(count + 1)]
@@ -157,24 +142,6 @@ def wall(loop: Sequence[WallPiece], low: float, high: float) -> tuple[Array, Arr
     first = 4 * np.arange(len(loop))[:, None]
     triangles = np.concatenate([first + np.array(corners) for corners in ((0, 2, 3), (0, 3, 1))])
     return points, outward, triangles
-
-
-def fixture_glb(
-    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, sizes: BodySizes | None = None
-) -> bytes:
-    """The bytes of a fixture's GLB file.
-
-    Parameters
-    ----------
-    sizes : heights of the bodies; those of :meth:`BodySizes.of` if None.
-
-    Raises
-    ------
-    InputError
-        For pegs of radius 0, which have no body.
-    """
-    bodies = fixture_bodies(fixture, workpiece, toolkit, sizes)
-    return bodies_glb(bodies, f"{bodies[0].name} set-up")
 
 
 def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = None) -> bytes:

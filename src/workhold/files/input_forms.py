@@ -188,16 +188,11 @@ def toolkit_fault(error: ValidationError, form: type[ToolkitForm], noun: str) ->
     first = error.errors(include_url=False, include_context=False)[0]
     name, kind = str(first["loc"][0]), first["type"]
     if kind == "extra_forbidden":
-        known = get_close_matches(name, [field.alias or key for key, field in form.model_fields.items()], n=1)
         # The fields of the toolkit stand right after what it is.
-        first_ones = [
-            "unit",
-            "kind",
-            *(field for field in form.model_fields if field not in ToolkitForm.model_fields),
-        ]
-        entries = dict.fromkeys(
-            form.model_fields[one].alias or one for one in (*first_ones, *form.model_fields)
-        )
+        own = [field for field in form.model_fields if field not in ToolkitForm.model_fields]
+        order = dict.fromkeys(("unit", "kind", *own, *form.model_fields))
+        entries = [form.model_fields[one].alias or one for one in order]
+        known = get_close_matches(name, entries, n=1)
         meant = f"did you mean {known[0]}?" if known else f"the entries are {', '.join(entries)}."
         return f'"{name[:40]}" is no entry of a {noun}: {meant}'
     if kind == "missing":

@@ -80,13 +80,7 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
 
 
 def parsed(path: Path) -> dict[str, Any]:
-    """The content of a TOML or JSON file.
-
-    Raises
-    ------
-    InputError
-        When it cannot be read.
-    """
+    """The content of a TOML or JSON file; refuses one that cannot be read."""
     try:
         text = read_text(path, LARGEST_FILE, "loads")
         content = json_value(text) if path.suffix.lower() == ".json" else toml_table(text)
@@ -157,13 +151,7 @@ def is_number(value: Any) -> bool:
 
 
 def quantity(value: Any, place: str, units: Mapping[str, float], such_as: str) -> float:
-    """A number with or without a unit, in N or N mm.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A number with or without a unit, in N or N mm; refuses anything else."""
     if is_number(value):
         return float(value)
     found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
@@ -182,13 +170,7 @@ def number(value: Any) -> float | None:
 
 
 def point(value: Any, place: str) -> tuple[float, float]:
-    """A point from ``X,Y`` or [x, y].
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A point from ``X,Y`` or [x, y]; refuses anything else."""
     parts = value.split(",") if isinstance(value, str) else value
     if isinstance(parts, list | tuple) and len(parts) == 2:
         x, y = number(parts[0]), number(parts[1])
@@ -198,13 +180,7 @@ def point(value: Any, place: str) -> tuple[float, float]:
 
 
 def path_points(value: Any, place: str) -> list[tuple[float, float]]:
-    """The corners of a path from ``X,Y;X,Y`` or a list of points.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """The corners of a path from ``X,Y;X,Y`` or a list of points; refuses anything else."""
     parts = value.split(";") if isinstance(value, str) else value
     if not isinstance(parts, list | tuple) or len(parts) < 2:
         raise InputError(
@@ -214,12 +190,8 @@ def path_points(value: Any, place: str) -> list[tuple[float, float]]:
 
 
 def directions(value: Any, place: str) -> tuple[float, float]:
-    """A range of directions in degrees from an angle, ``LOW..HIGH``, [low, high] or ``any``.
-
-    Raises
-    ------
-    InputError
-        For anything else.
+    """A range of directions in degrees from an angle, ``LOW..HIGH``, [low, high] or ``any``; refuses anything
+    else.
     """
     if isinstance(value, str) and value.strip().lower() == "any":
         return ANY_DIRECTION

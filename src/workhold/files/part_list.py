@@ -118,12 +118,8 @@ def is_folder(path: Path) -> bool:
 
 
 def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
-    """The drawings in a folder: its own first, then those of each folder in it.
-
-    Raises
-    ------
-    InputError
-        When the folder, or one in it, cannot be looked into.
+    """The drawings in a folder: its own first, then those of each folder in it; refuses what cannot be looked
+    into.
     """
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: natural(entry.name))

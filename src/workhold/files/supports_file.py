@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +26,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.requirements import Zone
 from workhold.model.result import Result
-from workhold.model.support_request import Loops, SpatialLoad
+from workhold.model.support_request import Loops
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 
 __all__ = ["query_of", "read_supports", "supports_entry", "write_supports"]
@@ -87,13 +86,7 @@ def read_supports(path: str | Path) -> Supports:
 def triple_of(
     part: TriplePart, fixture: Fixture, query: Query, point: tuple[float, float] | None, path: Path
 ) -> Triple:
-    """A triple of a file.
-
-    Raises
-    ------
-    InputError
-        When a hole is on no plate of the toolkit.
-    """
+    """A triple of a file; refuses a hole that is on no plate of the toolkit."""
     plates = {plate.name: plate for plate in query.toolkit.plates}
     supports = []
     for name, column, row in part.holes:
@@ -170,7 +163,7 @@ def supports_entry(supports: Supports) -> dict[str, Any]:
             "reach": None if request.reach is None else [list(ring) for ring in request.reach],
             "point": None if request.point is None else list(request.point),
         },
-        "loads": loads_entry(supports.loads),
+        "loads": [asdict(load) for load in supports.loads],
         "jaw_force": supports.jaw_force,
         "complete": supports.complete,
         "counts": {"positions": supports.positions, "triples": supports.count},
@@ -214,20 +207,12 @@ def zone_entry(zone: Zone) -> dict[str, Any]:
     return {"loop": loop.tolist()}
 
 
-def loads_entry(loads: Iterable[SpatialLoad]) -> list[dict[str, Any]]:
-    """Loads as they are written: N, N mm, mm and degrees."""
-    out = []
-    for load in loads:
-        entry = {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(load).items()}
-        entry["points"] = [list(point) for point in load.points]
-        out.append(entry)
-    return out
-
-
 def triple_entry(triple: Triple) -> dict[str, Any]:
     """A triple as it is written."""
-    best, given = triple.best, triple.given
-    figures = None if given is None else {name: v for name, v in asdict(given).items() if name != "at"}
+    given = None if triple.given is None else known(triple.given)
+    if given is not None:
+        # It is at the point that the request names.
+        del given["at"]
     return {
         "holes": [[one.carrier, one.column, one.row] for one in triple.supports],
         "jaw_separation": triple.travel,
@@ -236,11 +221,11 @@ def triple_entry(triple: Triple) -> dict[str, Any]:
         "overhang": triple.overhang,
         "arm": triple.arm,
         "arm_at": list(triple.arm_at),
-        "best": {**known(asdict(best)), "at": list(best.at)},
-        "given": None if figures is None else known(figures),
+        "best": known(triple.best),
+        "given": given,
     }
 
 
-def known(figures: dict[str, Any]) -> dict[str, Any]:
+def known(figures: ClampFigures) -> dict[str, Any]:
     """Figures that are known."""
-    return {name: value for name, value in figures.items() if value is not None}
+    return asdict(figures, filter=lambda _, value: value is not None)

@@ -32,13 +32,7 @@ class ZonePart(FormPart):
     loop: Loop | None = None
 
     def zone(self) -> Zone:
-        """The zone.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
+        """The zone; refuses what is none."""
         if self.circle is not None:
             return circle_zone(*self.circle)
         if self.polygon is not None:
@@ -87,13 +81,7 @@ class SpatialLoadPart(FormPart):
     tilt: Two = Field(default_factory=lambda: [0.0, 0.0])
 
     def load(self, thickness: float) -> SpatialLoad:
-        """The load with its heights written out.
-
-        Raises
-        ------
-        InputError
-            When it is none.
-        """
+        """The load with its heights written out; refuses what is none."""
         return SpatialLoad(**dict(self)).at_height(thickness)
 
 

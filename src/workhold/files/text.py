@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -120,26 +121,14 @@ def refuse_constant(name: str) -> NoReturn:
 
 
 def whole_number(digits: str) -> int:
-    """A whole number that a float can hold.
-
-    Raises
-    ------
-    InputError
-        For one that is.
-    """
+    """A whole number; refuses one that a float cannot hold."""
     if len(digits) > MOST_DIGITS:
         raise InputError(f"the file holds a number with {len(digits)} digits: correct it.")
     return int(digits)
 
 
 def each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object whose keys are given once.
-
-    Raises
-    ------
-    InputError
-        Naming a key that is given twice.
-    """
+    """A JSON object; refuses one with a key that is given twice."""
     content = dict(pairs)
     if len(content) < len(pairs):
         keys = [key for key, _ in pairs]
@@ -149,13 +138,7 @@ def each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def refuse_long_numbers(value: Any) -> None:
-    """Refuses a whole number too large for a float, wherever in tables and lists it stands.
-
-    Raises
-    ------
-    InputError
-        For the first one.
-    """
+    """Refuses a whole number too large for a float, wherever in tables and lists it stands."""
     if isinstance(value, dict):
         value = list(value.values())
     if isinstance(value, list):
@@ -165,17 +148,11 @@ def refuse_long_numbers(value: Any) -> None:
         raise InputError(f"the file holds a number with more than {MOST_DIGITS} digits: correct it.")
 
 
-DECODER = json.JSONDecoder(
-    parse_constant=refuse_constant, parse_int=whole_number, object_pairs_hook=each_once
-)
-
-
+@cache
 def decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
     """The decoder that makes something else of each object, or of none."""
-    if hook is None:
-        return DECODER
     return json.JSONDecoder(
         parse_constant=refuse_constant,
         parse_int=whole_number,
-        object_pairs_hook=lambda pairs: hook(each_once(pairs)),
+        object_pairs_hook=each_once if hook is None else lambda pairs: hook(each_once(pairs)),
     )

@@ -29,9 +29,9 @@ from attrs import frozen
 from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
 from workhold.files.text import read_text, toml_table
-from workhold.files.toolkit_hardware import hardware_entries, refuse_wide_pads
 from workhold.fixels.fields import COLUMNS, OPTIONS, PEG_RADIUS, PITCH
 from workhold.fixels.kinds import KINDS, USUAL, kind_of, toolkit_of
+from workhold.fixels.support_hardware import HARDWARE, hardware_of
 from workhold.fixels.table import Form
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import DowelSize, Fit, Limits, peg_error, refuse_limits
@@ -140,8 +140,7 @@ class LoadedToolkit:
     unit : in which the file gives its lengths.
     kind : of toolkit, see ``fixels.kinds``.
     fields : keyword arguments of its class, in mm; those not in the file are left out.
-    tolerance : of its pegs and of the faces they touch.
-    fit : what the tolerance of the pegs follows from; None where the file gives no pin or hole.
+    tolerance : of its pegs and of the faces they touch; its fit is None where the file gives no pin or hole.
     assumed : entries for which there is no source, as the file says.
     """
 
@@ -152,7 +151,6 @@ class LoadedToolkit:
     kind: str
     fields: dict[str, Any]
     tolerance: Tolerance
-    fit: Fit | None
     assumed: tuple[str, ...] = ()
 
     @property
@@ -192,10 +190,12 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
         raise InputError('the unit of a toolkit is "mm" or "inch".')
     kind, said = kind_of(entries.get("kind", USUAL))
     given = {row.name: in_mm(row.form, entries[row.name], unit) for row in OPTIONS if row.name in entries}
-    given |= hardware_entries(entries, unit)
     fields: dict[str, Any] = {**said, **given}
+    for key in HARDWARE:
+        if key in entries:
+            figures = {figure: lengths_in_mm(value, unit) for figure, value in entries[key].items()}
+            fields[key] = hardware_of(key, figures)
     refuse_wide_pads(toolkit_of(kind, fields))
-    fit = fit_of(entries, unit, fields[PEG_RADIUS.name])
     return LoadedToolkit(
         name=name,
         title=entries.get("title", ""),
@@ -203,8 +203,7 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
         unit=unit,
         kind=kind,
         fields=fields,
-        tolerance=tolerance_of(entries, unit, fit, fields[PEG_RADIUS.name]),
-        fit=fit,
+        tolerance=tolerance_of(entries, unit, fields[PEG_RADIUS.name]),
         assumed=tuple(entries.get("assumed", ())),
     )
 
@@ -221,13 +220,26 @@ def in_mm(form: Form, value: Any, unit: Unit) -> Any:
     return 2 * lengths if form == "pitch" and len(lengths) == 1 else lengths
 
 
+def lengths_in_mm(value: Any, unit: Unit) -> Any:
+    """A length, or lengths in lists of any depth, in mm."""
+    return [lengths_in_mm(one, unit) for one in value] if isinstance(value, list) else unit.length(value)
+
+
+def refuse_wide_pads(toolkit: Toolkit) -> None:
+    """Refuses pads of supports that would overlap in neighbouring holes."""
+    apart = min(pitch for plate in toolkit.plates for pitch in plate.pitch)
+    radius = None if toolkit.supports is None else toolkit.supports.pad_radius
+    if radius is not None and 2 * radius > apart:
+        raise InputError(
+            f"supports: pads of radius {radius:g} mm would overlap in neighbouring holes {apart:g} mm apart: "
+            "give a smaller pad_radius."
+        )
+
+
 def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | None:
     """Pin and hole as the file gives them, or as the standard it names does; None when it gives neither.
 
-    Raises
-    ------
-    InputError
-        For one without the other, and for limits that are not those of the peg.
+    Refuses one without the other, and limits that are not those of the peg.
     """
     limits: dict[str, Limits | None] = {"pin_diameter": None, "hole_diameter": None}
     if "dowel" in entries:
@@ -258,15 +270,12 @@ def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | N
     return Fit(pin, hole, length, position is None, entries.get("dowel", ""))
 
 
-def tolerance_of(entries: Mapping[str, Any], unit: Unit, fit: Fit | None, peg_radius: float) -> Tolerance:
+def tolerance_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Tolerance:
     """The tolerance that the file gives, or that follows from its pin and hole, or else the usual one.
 
-    Raises
-    ------
-    InputError
-        For negative lengths.
+    Refuses negative lengths, and what :func:`fit_of` does.
     """
-    usual = Tolerance()
+    usual, fit = Tolerance(), fit_of(entries, unit, peg_radius)
     # Rounded to where a difference of decimal figures is exact again.
     peg = usual.peg if fit is None else round(peg_error(peg_radius, fit.pin, fit.hole, fit.position), 9)
     given = {key: unit.length(entries[key]) for key in ("peg_tolerance", "face_tolerance") if key in entries}
@@ -285,12 +294,11 @@ def preset_names() -> tuple[str, ...]:
     >>> preset_names()[0]
     'clamp-plate-20mm'
     """
-    found = [
-        entry.name
+    presets = [
+        preset(entry.name.removesuffix(ENDING))
         for entry in (files("workhold") / "data" / "toolkits").iterdir()
         if entry.name.endswith(ENDING)
     ]
-    presets = [preset(name.removesuffix(ENDING)) for name in found]
     presets.sort(
         key=lambda one: (one.name.split("-")[0], one.fields[PITCH.name], one.fields.get(COLUMNS.name, 0))
     )

@@ -189,12 +189,8 @@ def reason_words(known: CuttingData) -> str:
 def at_periphery(
     moves: Moves, rows: NDArray[np.int64], tool: Tool, known: CuttingData, drilling: bool
 ) -> Floats:
-    """The force (R,) at the periphery of a tool on some moves, in N.
-
-    Raises
-    ------
-    InputError
-        Naming what the tool, or a line of the program, lacks.
+    """The force (R,) at the periphery of a tool on some moves, in N; refuses a tool or a line that lacks
+    something.
     """
     if known.cutting_force is not None:
         return np.full(len(rows), known.cutting_force)
@@ -220,13 +216,7 @@ def at_periphery(
 
 
 def refuse_lacking(tool: Tool, known: CuttingData, drilling: bool) -> None:
-    """Refuses a tool of which too little is known for the force of Kienzle.
-
-    Raises
-    ------
-    InputError
-        Naming what it lacks.
-    """
+    """Refuses a tool of which too little is known for the force of Kienzle."""
     needed = () if drilling else (("teeth", "teeth"), ("cut_depth", "depth of cut"))
     lacking = [(name, words) for name, words in needed if getattr(known, name) is None]
     if lacking:
@@ -240,13 +230,7 @@ def refuse_lacking(tool: Tool, known: CuttingData, drilling: bool) -> None:
 
 
 def refuse_unsaid(moves: Moves, rows: NDArray[np.int64], values: Floats, tool: Tool, what: str) -> None:
-    """Refuses moves on which the program does not say what the force follows from.
-
-    Raises
-    ------
-    InputError
-        Naming the first line.
-    """
+    """Refuses moves on which the program does not say what the force follows from."""
     if not (values > 0.0).all():
         line = int(moves.line[rows[values <= 0.0][0]])
         raise InputError(

@@ -141,13 +141,7 @@ def material_of(value: str | CutMaterial) -> CutMaterial:
 
 
 def direction_of(value: Any) -> CuttingDirection:
-    """The directions in which a force may act, as a word.
-
-    Raises
-    ------
-    InputError
-        For any other word.
-    """
+    """The directions in which a force may act, as a word; refuses any other."""
     for word in DIRECTIONS:
         if word == value:
             return word

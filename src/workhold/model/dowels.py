@@ -282,13 +282,7 @@ def jaw_plates(
 
 
 def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
-    """Refuses bolts that leave a plate or run into a hole.
-
-    Raises
-    ------
-    InputError
-        Naming the bolt and what it runs into.
-    """
+    """Refuses bolts that leave a plate or run into a hole."""
     bolts = plate.bolts
     if bolts is None:
         return

@@ -59,11 +59,10 @@ def first_side(fixture: Fixture, query: Query, before: Query, located: Fixture |
     """
     own, other = solid_of(query.workpiece), solid_of(before.workpiece)
     cut = before.workpiece.numbered.faces_over(before.restrictions.avoid)
-    under = own.segments_under(cut)
     avoided = [
         face.number
         for face in query.workpiece.faces
-        if own.bands[face.number] is not None and face.number in under
+        if own.bands[face.number] is not None and not cut.isdisjoint(own.faces[face.number])
     ]
     here = touched(fixture, query.workpiece)
     there = set[int]() if located is None else touched(located, before.workpiece)
@@ -78,13 +77,7 @@ def first_side(fixture: Fixture, query: Query, before: Query, located: Fixture |
 
 
 def solid_of(workpiece: Workpiece) -> SolidOutline:
-    """The solid of a part.
-
-    Raises
-    ------
-    InputError
-        Where it has none, or its faces have no numbers.
-    """
+    """The solid of a part; refuses a part without one, and one whose faces have no numbers."""
     if workpiece.solid is None or not workpiece.solid.faces:
         raise InputError(f"{workpiece.name} has no faces of a solid: read both set-ups from the STEP file.")
     return workpiece.solid

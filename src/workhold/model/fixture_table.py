@@ -14,9 +14,8 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
 from workhold.model.clamps import ratios, working_forces
 from workhold.model.fixture import Fixture, Listed, Pair, Peg
-from workhold.model.pose import Pose
+from workhold.model.pose import ENDS, Pose
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, known_figures_of
-from workhold.model.wall import ENDS
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -233,7 +232,8 @@ def fixtures_of(
             place, beside = None if carrier.has_lattice else carrier.place_name(column, row), None
             if carrier.contact is WALL_END:
                 end = k - arrangement.carriers.index(number)
-                place, beside = f"{carrier.noun} {ENDS[end]}", workpiece.flush.touching[edges[n]][end].beside
+                place, touched = f"{carrier.noun} {ENDS[end]}", workpiece.flush.touching[edges[n]][end]
+                beside = touched[1] if len(touched) > 1 else None
             at = across[n][k], along[n][k]
             pegs.append(
                 Peg(carrier.name, column, row, *at, faces[n][k], forces[n][k], place, beside, flats[n][k])

@@ -258,24 +258,6 @@ class SweptPiece:
             "heights": list(self.heights),
         }
 
-    @classmethod
-    def of_entries(cls, entries: Mapping[str, Any]) -> SweptPiece:
-        """A piece of a file's entries.
-
-        Raises
-        ------
-        InputError, LookupError, TypeError, ValueError
-            For entries that lack something, or hold what cannot be.
-        """
-        kind = entries["kind"]
-        path = tuple((real(x), real(y), real(bulge)) for x, y, bulge in entries["path"])
-        if kind not in (RAPID, CUT) or not path or (len(path) > 2 and path[0][:2] != path[-1][:2]):
-            raise InputError(f"a piece of line {entries['line']} of the program is none: leave it out.")
-        one, other = (real(value) for value in entries["z"])
-        low, high = (real(value) for value in entries["heights"])
-        line, tool = int(entries["line"]), int(entries["tool"])
-        return cls(line, tool, kind, path, (one, other), real(entries["radius"]), (low, high))
-
 
 def box_path(one: tuple[float, float], other: tuple[float, float]) -> tuple[PathVertex, ...]:
     """The border of the rectangle between two corners, back to the first; there and back where it is flat."""
@@ -292,15 +274,24 @@ def packed_piece(entries: Mapping[str, Any]) -> bytes:
     InputError, LookupError, TypeError, ValueError
         For entries that lack something, or hold what cannot be.
     """
-    one = SweptPiece.of_entries(entries)
-    (x, y, bulge), (to_x, to_y, _) = one.path[0], one.path[len(one.path) // 2]
-    is_box = len(one.path) > 2
-    if (is_box and one.path != box_path((x, y), (to_x, to_y))) or one.line.bit_length() > 62:
-        raise InputError(f"a piece of line {one.line} of the program is none: leave it out.")
-    ends, cutting = (x, y, bulge, to_x, to_y), one.kind == CUT
-    if not all(map(isfinite, (*ends, *one.tip))):
-        raise InputError(f"a move of line {one.line} of the program ends nowhere: correct it.")
-    return PACKED.pack(one.line, one.tool, cutting, len(one.path), *ends, *one.tip, *one.heights, one.radius)
+    line, tool, kind = int(entries["line"]), int(entries["tool"]), entries["kind"]
+    path = tuple((real(x), real(y), real(bulge)) for x, y, bulge in entries["path"])
+    if kind not in (RAPID, CUT) or not path or line.bit_length() > 62:
+        raise InputError(f"a piece of line {line} of the program is none: leave it out.")
+    (x, y, bulge), (to_x, to_y, _) = path[0], path[len(path) // 2]
+    if len(path) > 2 and path != box_path((x, y), (to_x, to_y)):
+        raise InputError(f"a piece of line {line} of the program is none: leave it out.")
+    ends = (x, y, bulge, to_x, to_y, *pair_of(entries["z"]))
+    if not all(map(isfinite, ends)):
+        raise InputError(f"a move of line {line} of the program ends nowhere: correct it.")
+    shape = (*pair_of(entries["heights"]), real(entries["radius"]))
+    return PACKED.pack(line, tool, kind == CUT, len(path), *ends, *shape)
+
+
+def pair_of(values: Any) -> tuple[float, float]:
+    """Two numbers."""
+    one, other = values
+    return real(one), real(other)
 
 
 def moves_of(pieces: Sequence[bytes], tools: Mapping[int, Tool]) -> Moves:

@@ -68,8 +68,12 @@ class NumberedOutlines:
         segments, faces, bands = list[Segment](), list[Face](), list[Band | None]()
         over, inside = list[tuple[int, ...]](), set[int]()
         for one in outlines:
-            inside.update(len(segments) + f.number for f in one.faces if f.number >= one.outer_count)
-            faces += faces_from(one.faces, len(segments))
+            first = len(segments)
+            inside.update(first + face.number for face in one.faces if face.number >= one.outer_count)
+            faces += [
+                evolve(face, number=first + face.number, segments=tuple(first + k for k in face.segments))
+                for face in one.faces
+            ]
             segments += one.segments
             if one.solid is not None:
                 bands += one.solid.bands
@@ -86,16 +90,6 @@ class NumberedOutlines:
     def segments_under(self, faces: Set[int]) -> list[int]:
         """Numbers of the segments with one of these faces of the solid over them."""
         return [segment for segment, over in enumerate(self.over) if not faces.isdisjoint(over)]
-
-
-def faces_from(faces: Sequence[Face], first: int) -> list[Face]:
-    """Faces with numbers that begin at ``first``."""
-    if first == 0:
-        return list(faces)
-    return [
-        evolve(face, number=first + face.number, segments=tuple(first + k for k in face.segments))
-        for face in faces
-    ]
 
 
 def unlike(values: Iterable[Value]) -> Iterator[Value]:

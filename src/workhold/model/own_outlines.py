@@ -37,7 +37,7 @@ import numpy as np
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import Carrier, Heights
+from workhold.fixels.carrier import Heights
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.solid import SolidOutline
@@ -47,7 +47,6 @@ __all__ = [
     "met_by",
     "numbered_solid",
     "outline_diameter",
-    "outline_met",
     "own_name",
     "segments_diameter",
     "with_own_outlines",
@@ -57,14 +56,9 @@ __all__ = [
 ROUNDED = 1e-9
 
 
-def outline_met(workpiece: Workpiece, carrier: Carrier) -> tuple[Workpiece, int]:
-    """The outline that a carrier meets, and the number of its first segment."""
-    return workpiece.outline_of(carrier.role)
-
-
-def own_name(name: str, heights: Heights) -> str:
-    """The name of an outline of a part between two heights, which is the same for all carriers of these."""
-    return f"{name}, {heights[0]:g} to {heights[1]:g} mm"
+def own_name(heights: Heights) -> str:
+    """The name of an outline between two heights, which is the same for all carriers of these."""
+    return f"outline from {heights[0]:g} to {heights[1]:g} mm"
 
 
 def numbered_solid(workpiece: Workpiece) -> SolidOutline | None:
@@ -126,8 +120,8 @@ def with_own_outlines(
             bands, faces = entries[role]["bands"], entries[role].get("solid_faces") or ()
             changed = {"bands": bands, "faces": faces, "bottom": (), "top": (), "top_heights": ()}
             solid = evolve(workpiece.solid, low=low, peg_height=high, **changed)
-            name = own_name(workpiece.name, (low, high))
-            own.append((role, workpiece.from_loops(name, entries[role]["loops"], solid=solid)))
+            outline = workpiece.from_loops(own_name((low, high)), entries[role]["loops"], solid=solid)
+            own.append((role, outline))
     return evolve(workpiece, outlines=tuple(own))
 
 

@@ -64,13 +64,7 @@ KINDS: dict[str, tuple[type, str]] = {
 
 
 def refuse_other_kinds(query: Query) -> None:
-    """Refuses parts of a query whose type is wrong.
-
-    Raises
-    ------
-    InputError
-        Naming the part and what it must be.
-    """
+    """Refuses parts of a query whose type is wrong."""
     for name, (kind, remedy) in KINDS.items():
         if not isinstance(value := getattr(query, name), kind):
             raise InputError(f"the {name} cannot be {value!r}: {remedy}.")
@@ -239,10 +233,7 @@ class Query:
 def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:
     """The height in mm up to which pegs, clamps and walls reach: that of a part's solid, else the one given.
 
-    Raises
-    ------
-    InputError
-        Where neither is known, for what is no height, and for one that is not the solid's.
+    Refuses a part of which neither is known, what is no height, and one that is not the solid's.
     """
     solid = workpiece.solid
     if given is None and solid is None:
@@ -263,13 +254,7 @@ def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:
 
 
 def chosen_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tuple[str, ...]:
-    """Names of arrangements in the toolkit's order; None is all of them.
-
-    Raises
-    ------
-    InputError
-        For a name that the toolkit does not have, and for none at all.
-    """
+    """Names of arrangements in the toolkit's order, None being all; refuses others, and none at all."""
     for name in names or ():
         if name not in known:
             raise InputError(f"type {name} is unknown: choose {' or '.join(known)}.")

@@ -91,13 +91,7 @@ def part_zero(
 
 
 def given_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
-    """The point in mm that two numbers give.
-
-    Raises
-    ------
-    InputError
-        When they are not two finite numbers, or are too large for lengths.
-    """
+    """The point in mm that two numbers give; refuses others than two, infinite ones and too large ones."""
     try:
         x, y = (unit.length(float(number)) for number in numbers)
     except (ValueError, OverflowError):

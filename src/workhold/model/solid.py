@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.limits import real
 
-if TYPE_CHECKING:
-    from workhold.model.requirements import Zone
-
-__all__ = ["AXES", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
+__all__ = ["AXES", "STANDING", "Band", "FileSolid", "HeightRow", "SolidOutline", "other_way_up"]
 
 # The directions of a file that can point up.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
+# What says how a solid stands, as a file of a result has it.
+STANDING = ("axis", "height", "peg_height", "head_room", "least_band")
 Band = tuple[float, float]
 # Loops of vertices x, y (mm) and bulge.
 Loops = tuple[tuple[tuple[float, ...], ...], ...]
@@ -38,13 +37,7 @@ def bands_of(values: Iterable[Any]) -> tuple[Band | None, ...]:
 
 
 def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
-    """Loops of (x, y, bulge) as tuples of floats.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """Loops of (x, y, bulge) as tuples of floats; refuses anything else."""
     loops = tuple(tuple(tuple(real(one) for one in vertex) for vertex in loop) for loop in values)
     if any(len(vertex) != 3 or not all(map(isfinite, vertex)) for loop in loops for vertex in loop):
         raise InputError("a loop of the solid is none: give x, y and bulge of every vertex.")
@@ -52,13 +45,7 @@ def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
 
 
 def reals_of(values: Iterable[Any]) -> tuple[float, ...]:
-    """Finite numbers as a tuple of floats.
-
-    Raises
-    ------
-    InputError
-        For a number that is not finite.
-    """
+    """Numbers as a tuple of floats; refuses one that is not finite."""
     numbers = tuple(real(value) for value in values)
     if not all(map(isfinite, numbers)):
         raise InputError("a height of an upper face of the solid is no length: give it in mm.")
@@ -128,14 +115,6 @@ class SolidOutline:
             if band is not None and not (isfinite(band[0]) and 0.0 <= band[0] <= band[1] < 1e9):
                 raise InputError(f"the band {band[0]:g} to {band[1]:g} mm is none: give its lower end first.")
 
-    def faces_over(self, segments: Iterable[int]) -> set[int]:
-        """Numbers of the solid's faces over some segments of the workpiece."""
-        return {face for segment in segments for face in self.faces[segment]}
-
-    def segments_under(self, faces: Set[int]) -> list[int]:
-        """Numbers of the segments with one of these faces of the solid over them."""
-        return [segment for segment, over in enumerate(self.faces) if not faces.isdisjoint(over)]
-
     @classmethod
     def of_entries(cls, solid: Mapping[str, Any], workpiece: Mapping[str, Any]) -> SolidOutline:
         """The solid of a file's entries ``solid`` and ``workpiece``; the second has the bands.
@@ -146,7 +125,7 @@ class SolidOutline:
             For entries that lack something, or hold what cannot be.
         """
         return cls(
-            **{key: solid[key] for key in ("axis", "height", "peg_height", "head_room", "least_band")},
+            **{key: solid[key] for key in STANDING},
             bands=workpiece["bands"],
             faces=workpiece.get("solid_faces") or (),
             bottom=workpiece.get("bottom") or (),
@@ -158,21 +137,6 @@ class SolidOutline:
     def lies_on_no_face(self) -> bool:
         """Whether its level faces are known, and none of them is one on which it lies."""
         return bool(self.top) and not self.bottom
-
-    def pads_kept_off(self, bounds: tuple[float, float, float, float]) -> tuple[Zone, ...]:
-        """What pads are kept off of an outline of bounds (x0, y0, x1, y1) in mm: nothing, or all of it."""
-        if not self.lies_on_no_face:
-            return ()
-        from workhold.model.requirements import polygon_zone
-
-        x0, y0, x1, y1 = bounds
-        around = [(x0 - 1, y0 - 1), (x1 + 1, y0 - 1), (x1 + 1, y1 + 1), (x0 - 1, y1 + 1)]
-        return (polygon_zone(around),)
-
-    @property
-    def untouchable(self) -> frozenset[int]:
-        """Numbers of the segments that nothing may touch."""
-        return frozenset(number for number, band in enumerate(self.bands) if band is None)
 
     def for_segments(self, count: int) -> SolidOutline:
         """Checks that there is a band for each of so many segments, and returns itself.

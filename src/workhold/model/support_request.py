@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from attrs import Factory, evolve, field, frozen
+from attrs.converters import optional
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -26,8 +27,16 @@ from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.limits import real, refuse_long, refuse_strong
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.requirements import ANY_DIRECTION, Load, Zone, all_zones, direction_range, point_pairs
-from workhold.model.solid import SolidOutline
+from workhold.model.requirements import (
+    ANY_DIRECTION,
+    Load,
+    Zone,
+    all_zones,
+    direction_range,
+    point_pairs,
+    polygon_zone,
+)
+from workhold.model.solid import SolidOutline, reals_of
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["PAD_RADIUS", "TIP_RADIUS", "Loops", "SpatialLoad", "SupportRequest", "loops_of"]
@@ -39,20 +48,10 @@ Loops = tuple[NDArray[np.float64], ...]
 Span = tuple[float, float]
 
 
-def optional_reals(values: Iterable[Any] | None) -> tuple[float, ...] | None:
-    """Numbers as a tuple, or None."""
-    return None if values is None else tuple(real(value) for value in values)
-
-
 def pair_of(values: Any) -> Span:
     """Two numbers in their order."""
     one, other = values
     return real(one), real(other)
-
-
-def optional_pair(values: Any) -> Span | None:
-    """Two numbers in their order, or None."""
-    return None if values is None else pair_of(values)
 
 
 def span_of(value: Any) -> Span:
@@ -64,46 +63,25 @@ def span_of(value: Any) -> Span:
     return number, number
 
 
-def optional_span(value: Any) -> Span | None:
-    """A range of numbers, or None."""
-    return None if value is None else span_of(value)
-
-
-def loops_of(loops: Iterable[Any] | None) -> Loops | None:
-    """Loops of (x, y, bulge) vertices as read-only arrays, or None.
+def loops_of(loops: Iterable[Any]) -> Loops:
+    """Loops of (x, y, bulge) vertices as read-only arrays.
 
     Raises
     ------
     InputError
         For a loop that is none.
     """
-    if loops is None:
-        return None
-    out = []
-    for number, loop in enumerate(loops, 1):
-        checked = checked_vertices(loop, f"face: loop {number}", partial(side_of, number))
-        checked.setflags(write=False)
-        out.append(checked)
-    if not out:
+    checked = tuple(
+        checked_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
+        for number, loop in enumerate(loops, 1)
+    )
+    if not checked:
         raise InputError("a face without loops is nowhere: give its outer loop first.")
-    return tuple(out)
+    return checked
 
 
-def side_of(loop: int, side: int) -> str:
-    """What a side of a loop of a face is called in messages."""
-    return f"face: loop {loop}, side {side}"
-
-
-def rings_of(reach: Iterable[Iterable[float]] | None) -> tuple[tuple[float, float, float, float], ...] | None:
-    """Rings as (x, y, least, most), or None.
-
-    Raises
-    ------
-    InputError
-        For a ring that is none.
-    """
-    if reach is None:
-        return None
+def rings_of(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, float, float], ...]:
+    """Rings as (x, y, least, most); refuses what is none."""
     rings = [tuple(real(value) for value in ring) for ring in reach]
     for ring in rings:
         if len(ring) != 4 or not all(map(isfinite, ring)) or not 0 <= ring[2] <= ring[3]:
@@ -140,7 +118,7 @@ class SpatialLoad:
     points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
     force: float = field(default=0.0, converter=real)
     directions: Span = field(default=ANY_DIRECTION, converter=direction_range)
-    heights: Span | None = field(default=None, converter=optional_span)
+    heights: Span | None = field(default=None, converter=optional(span_of))
     axial: Span = field(default=(0.0, 0.0), converter=span_of)
     moment: float = field(default=0.0, converter=real)
     tilt: Span = field(default=(0.0, 0.0), converter=pair_of)
@@ -221,17 +199,19 @@ class SupportRequest:
     thickness: float = field(converter=real)
     pad_radius: float = field(converter=real)
     tip_radius: float = field(converter=real)
-    band: Span | None = field(default=None, converter=optional_pair)
+    band: Span | None = field(default=None, converter=optional(pair_of))
     bands: tuple[Span | None, ...] | None = None
     pad_margin: float = field(default=0.0, converter=real)
-    bottom: Loops | None = field(default=None, converter=loops_of, eq=False)
-    top: Loops | None = field(default=None, converter=loops_of, eq=False)
+    bottom: Loops | None = field(default=None, converter=optional(loops_of), eq=False)
+    top: Loops | None = field(default=None, converter=optional(loops_of), eq=False)
     bottom_zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
     top_zones: tuple[Zone, ...] = field(default=(), converter=all_zones)
     inside: float = field(default=Factory(lambda self: self.tip_radius, takes_self=True), converter=real)
-    reach: tuple[tuple[float, float, float, float], ...] | None = field(default=None, converter=rings_of)
-    point: Span | None = field(default=None, converter=optional_pair)
-    top_heights: tuple[float, ...] | None = field(default=None, converter=optional_reals)
+    reach: tuple[tuple[float, float, float, float], ...] | None = field(
+        default=None, converter=optional(rings_of)
+    )
+    point: Span | None = field(default=None, converter=optional(pair_of))
+    top_heights: tuple[float, ...] | None = field(default=None, converter=optional(reals_of))
 
     def __attrs_post_init__(self) -> None:
         for name, value in (
@@ -309,7 +289,7 @@ class SupportRequest:
             bottom=None if solid is None else solid.bottom or None,
             top=None if solid is None else solid.top or None,
             top_heights=None if solid is None else solid.top_heights or None,
-            bottom_zones=() if solid is None else solid.pads_kept_off(workpiece.bounds),
+            bottom_zones=() if solid is None or not solid.lies_on_no_face else (all_of(workpiece),),
             pad_margin=0.0 if pads.pad_margin is None else pads.pad_margin,
             inside=tip_radius if clamp.inside is None else clamp.inside,
             reach=clamp.reach,
@@ -375,6 +355,12 @@ class SupportRequest:
                 f"pads of radius {self.pad_radius:g} would overlap {apart:g} mm apart: give a smaller "
                 "pad radius."
             )
+
+
+def all_of(workpiece: Workpiece) -> Zone:
+    """A zone over all of a part, under which no support may stand."""
+    x0, y0, x1, y1 = workpiece.bounds
+    return polygon_zone([(x0 - 1, y0 - 1), (x1 + 1, y0 - 1), (x1 + 1, y1 + 1), (x0 - 1, y1 + 1)])
 
 
 def least_apart(toolkit: Toolkit) -> float:

@@ -35,9 +35,8 @@ from workhold.geometry.merged_runs import merged_chords, on_one_circle
 from workhold.geometry.segment import Point, Segment, bounding_box
 from workhold.limits import real
 from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
-from workhold.model.pose import Pose
+from workhold.model.pose import Flush, Pose
 from workhold.model.solid import SolidOutline
-from workhold.model.wall import Flush
 
 __all__ = ["Workpiece"]
 
@@ -158,12 +157,12 @@ class Workpiece:
             pieces = outer_count(name, drawn)
         order: list[int] = []
         for index, shape in enumerate(drawn):
-            first, count = len(order), len(used[index])
+            numbers = range(len(order), len(order) + len(used[index]))
             if (signed_area(shape.segments) > 0) != (index < pieces):
                 used[index] = reversed_vertices(used[index])
-                order += reversed_numbers(first, count)
+                order += reversed(numbers)
             else:
-                order += range(first, first + count)
+                order += numbers
         if solid is not None:
             solid = solid.for_segments(len(order)).reordered(order)
         return cls(name, tuple(used), remarks_on(straightened, rounded), departure_of(departure), solid)
@@ -275,8 +274,10 @@ class Workpiece:
     @cached_property
     def untouchable(self) -> frozenset[int]:
         """Numbers of the faces that no peg, clamp or wall may touch, whatever is asked."""
-        segments = frozenset() if self.solid is None else self.solid.untouchable
-        return frozenset(face.number for face in self.faces if not segments.isdisjoint(face.segments))
+        if self.solid is None:
+            return frozenset()
+        bands = self.solid.bands
+        return frozenset(f.number for f in self.faces if any(bands[k] is None for k in f.segments))
 
     @cached_property
     def pieces(self) -> int:
@@ -344,18 +345,9 @@ class Workpiece:
         return (x0 + x1) / 2, (y0 + y1) / 2
 
 
-def reversed_numbers(first: int, count: int) -> list[int]:
-    """Numbers of a loop's segments as they follow each other once it is run the other way."""
-    return [first + count - 1 - k for k in range(count)]
-
-
 def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
-    """(N, 3) vertices of a loop of corners without bulges, checked; a repeated first corner is left out.
-
-    Raises
-    ------
-    InputError
-        For anything but corners that can be used.
+    """(N, 3) vertices of a loop of corners without bulges, a repeated first corner left out; refuses what is
+    none.
     """
     try:
         array = np.array(points, dtype=np.float64)
@@ -372,12 +364,8 @@ def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
 
 
 def departure_of(value: float) -> float:
-    """The departure of an outline in mm, checked; 0 where it is less than a drawing can mean.
-
-    Raises
-    ------
-    InputError
-        When it is no length.
+    """The departure of an outline in mm, 0 where it is less than a drawing can mean; refuses what is no
+    length.
     """
     if not (isfinite(real(value)) and value >= 0):
         raise InputError(f"the departure {value} of the outline is not a length: give 0 or more, in mm.")

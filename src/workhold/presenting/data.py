@@ -19,7 +19,7 @@ from attrs.filters import exclude
 
 from workhold.errors import InputError
 from workhold.files.result.fixture_text import column_names, fixture_rows, seating_values
-from workhold.files.result.writer import load_entry, proof_entry, tolerance_entry, toolkit_fields, written
+from workhold.files.result.writer import load_entry, proof_entry, toolkit_fields, written
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.toolkit import Toolkit
@@ -248,7 +248,7 @@ def toolkit_data(loaded: LoadedToolkit) -> dict[str, Any]:
         "source": loaded.source,
         "assumed": list(loaded.assumed),
         "fields": toolkit_fields(loaded.toolkit),
-        "tolerance": tolerance_entry(loaded.tolerance),
+        "tolerance": asdict(loaded.tolerance),
     }
 
 

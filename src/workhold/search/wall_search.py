@@ -318,7 +318,7 @@ def allowed_edges(problem: Problem) -> list[int]:
     for number, (theta, touching) in enumerate(
         zip(part.flush.theta.tolist(), part.flush.touching, strict=True)
     ):
-        if any(avoided.issuperset(end.faces) for end in touching):
+        if any(map(avoided.issuperset, touching)):
             continue
         turned = float(np.degrees(theta))
         off = [

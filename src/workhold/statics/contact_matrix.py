@@ -35,7 +35,7 @@ from workhold.kernels.contact.contact_matrix import contact_matrices_of
 from workhold.model.clamps import LOCATORS, working_forces
 from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import outline_diameter
-from workhold.model.wall import Flush
+from workhold.model.pose import Flush
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import largest
 

@@ -21,8 +21,7 @@ from workhold.archive import is_archive, mapped_archive
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import checked_seating, seatings_of
 from workhold.files.result.forms import Head
-from workhold.files.result.heads import HEAD, columns_said, head_value
-from workhold.files.result.parts import checked_head, read_parts
+from workhold.files.result.parts import HEAD, checked_head, columns_said, head_value, read_parts
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import SILENT

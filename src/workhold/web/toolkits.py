@@ -15,7 +15,7 @@ from typing import Any
 from attrs import asdict, frozen
 
 from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import tolerance_entry, toolkit_fields
+from workhold.files.result.writer import toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit
 from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
 from workhold.fixels.setup_words import PageWords
@@ -155,5 +155,5 @@ def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
         "unit": loaded.unit.name,
         "assumed": list(loaded.assumed),
         "fields": {key: value for key, value in given.items() if key in loaded.fields},
-        "tolerance": tolerance_entry(loaded.tolerance),
+        "tolerance": asdict(loaded.tolerance),
     }

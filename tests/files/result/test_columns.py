@@ -16,7 +16,7 @@ from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.result import columns as in_columns
 from workhold.files.result.columns import significant, write_columns
-from workhold.files.result.heads import COLUMNS, HEAD
+from workhold.files.result.parts import HEAD, columns_of
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
 from workhold.listing.identity import entries
@@ -98,9 +98,9 @@ def test_one_fixture_is_read_and_not_the_others(tmp_path: Path, monkeypatch: pyt
 def rewritten(path: Path, result: Result, head: Callable[[str], str], **changed: Any) -> Path:
     """A file in columns of a result with another head and other columns."""
     write_columns(result, path)
-    text, columns = mapped_archive(path, COLUMNS, HEAD)
+    text, columns = mapped_archive(path, columns_of(1), HEAD)
     with path.with_suffix(".new").open("wb") as stream:
-        archive = ArchiveWriter(stream, COLUMNS, len(result))
+        archive = ArchiveWriter(stream, columns_of(1), len(result))
         archive.add([changed.get(name, values) for name, values in columns.items()])
         archive.close(HEAD, head(text), "mark")
     return path.with_suffix(".new")

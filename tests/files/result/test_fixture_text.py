@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from fakes import fake_result
-from workhold.files.result.fixture_text import write_result_csv
+from workhold.files.result.save import save
 
 
 def test_every_row_is_a_fixture(tmp_path: Path) -> None:
     result = fake_result(5000)
-    write_result_csv(result, tmp_path / "a.csv")
+    save(result, tmp_path / "a.csv")
     with (tmp_path / "a.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert len(rows) == len(result)
@@ -34,6 +34,6 @@ def test_every_row_is_a_fixture(tmp_path: Path) -> None:
 
 
 def test_no_fixtures_leave_the_line_of_names(tmp_path: Path) -> None:
-    write_result_csv(fake_result(0), tmp_path / "a.csv")
+    save(fake_result(0), tmp_path / "a.csv")
     assert (tmp_path / "a.csv").read_text().startswith("number,type,theta_deg,x,y,")
     assert (tmp_path / "a.csv").read_text().count("\n") == 1

@@ -11,9 +11,10 @@ import pytest
 import workhold
 from workhold import Program, Query, Vise, answer, load
 from workhold.errors import InputError
-from workhold.files.result import heads
-from workhold.files.result.heads import head_texts, head_value, program_text
+from workhold.files.result import writer
+from workhold.files.result.parts import head_value
 from workhold.files.result.reader import read_result
+from workhold.files.result.writer import head_texts, program_text
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import SweptPiece, moves_of, packed_piece
 
@@ -31,11 +32,11 @@ def test_text_in_parts_is_that_of_the_whole(
     rapid: str, at_once: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """However many pieces are written at a time, the text is the JSON of the entries, also within a head."""
-    monkeypatch.setattr(heads, "AT_ONCE", at_once)
+    monkeypatch.setattr(writer, "AT_ONCE", at_once)
     one = program(rapid=rapid)
     assert "".join(program_text(one)) == json.dumps(one.to_dict())
     head = {"format": "x", "program": one.head(), "name": "Bügel", "best": None}
-    told = json.loads("".join(head_texts(head, one)))
+    told = json.loads("".join(head_texts(head, one, ", ")) + "}")
     assert told == {**head, "program": one.to_dict()} and list(told) == list(head)
 
 

@@ -20,7 +20,7 @@ from workhold import Vise, design, load
 from workhold.errors import InputError
 from workhold.files.result import fixture_text
 from workhold.files.result.reader import read_result
-from workhold.files.result.writer import write_result, write_result_to
+from workhold.files.result.writer import result_text, write_result
 from workhold.files.toolkit_file import preset
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.requirements import Tolerance
@@ -113,7 +113,7 @@ def test_no_negative_zero_and_no_full_turn_is_written() -> None:
         arrangement=np.array([0], np.int8),
     )
     stream = io.StringIO()
-    write_result_to(attrs.evolve(result, table=table), stream)
+    stream.writelines(result_text(attrs.evolve(result, table=table)))
     assert '"pose": {"theta_deg": 0.0, "x": 0.0, "y": 0.0}' in stream.getvalue()
     assert "-0.0" not in stream.getvalue().replace("-0.0]", "")
 
@@ -127,7 +127,7 @@ def test_fixtures_become_objects_a_block_at_a_time(monkeypatch: pytest.MonkeyPat
         return take(self, order)
 
     monkeypatch.setattr(FixtureTable, "take", recorded)
-    write_result_to(fake_result(9000), io.StringIO())
+    io.StringIO().writelines(result_text(fake_result(9000)))
     assert sizes == [fixture_text.BLOCK] * 3
 
 
@@ -419,7 +419,7 @@ def test_statistics_survive_the_round_trip(tmp_path: Path) -> None:
 
 def test_the_fit_of_the_dowels_survives_the_round_trip(tmp_path: Path) -> None:
     """What a named vise says of its pins and their holes is what the sheet of the result tells; None stays None."""
-    for fit in (preset("plate-20mm").fit, None):
+    for fit in (preset("plate-20mm").tolerance.fit, None):
         result = fake_result(2)
         result = attrs.evolve(
             result, query=attrs.evolve(result.query, tolerance=Tolerance(0.0145, 0.02, fit))

@@ -13,10 +13,9 @@ pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 from step_shapes import box, cut, cylinder, fused, write_step
 
 import workhold
-from glb_reading import read_glb
+from glb_reading import fixture_glb, read_glb
 from solid_truth import fixture_faults, off_region, section_points, segments_of
 from workhold import Fence, FlatJaw, InputError, Plate, Vise, design, load
-from workhold.files.glb import fixture_glb
 from workhold.files.step.heights import standing
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import segment_rows
@@ -129,3 +128,12 @@ def test_the_band_jumps_where_an_opening_reaches_below_the_carrier() -> None:
         (pytest.approx(30.0 - aside), pytest.approx((14.0, 20.0), abs=1e-6)),
         (pytest.approx(30.0 + aside), pytest.approx((8.0, 20.0), abs=1e-6)),
     ]
+
+
+def test_a_part_that_was_given_a_name_is_read_back_as_it_was(tmp_path: Path) -> None:
+    """The outlines of its carriers are called by their heights alone, so its own name makes no difference."""
+    toolkit = HELD["vise"]
+    part = load(SOLID, name="mine", peg_height=7, heights=toolkit.heights)
+    result = design(part, toolkit, best=1)
+    workhold.save(result, tmp_path / "result.json")
+    assert workhold.open(tmp_path / "result.json").workpiece == part

@@ -110,7 +110,7 @@ def test_a_part_is_named_after_its_solid_too(tmp_path: Path) -> None:
     assert load(path, name="mine").name == "mine"
     assert load(write_step(tmp_path / "one.step", BOXES[0])).name == "one"
     own = load(path, part_number="lug", heights={"clamp": (1.0, 4.0)}).outlines
-    assert [one.name for _, one in own] == ["lug of part, 1 to 4 mm"]
+    assert [one.name for _, one in own] == ["outline from 1 to 4 mm"]
 
 
 def test_names_that_choose_nothing_are_refused(tmp_path: Path) -> None:

@@ -17,11 +17,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, Drawing
-from workhold.files.questions import DRAWING_UNIT, by_height, refuse_axis, refuse_layers
+from workhold.files.outline.joining import Loop
+from workhold.files.outline.nesting import as_one, chosen_part
+from workhold.files.part.loaded import Loaded, built, refuse_large
+from workhold.files.questions import DRAWING_UNIT, by_height, refuse_axis, refuse_fit, refuse_layers
 from workhold.files.text import json_value
 from workhold.model.solid import SolidOutline
 from workhold.units import unit_named
@@ -29,61 +33,61 @@ from workhold.units import unit_named
 if TYPE_CHECKING:
     from workhold.files.step.by_height import HeightDrawing
 
-__all__ = ["JsonWorkpiece", "ObjectPart", "drawing_of_object", "read_json"]
+__all__ = ["ObjectPart", "drawing_of_object", "read_json"]
 
 
-@frozen
-class JsonWorkpiece:
-    """A workpiece of a JSON file: its name, loops as rows x, y (mm) and bulge, departure in mm, and solid."""
-
-    name: str | None
-    loops: list[list[tuple[float, float, float]]]
-    departure: float = 0.0
-    solid: SolidOutline | None = None
-
-
-def read_json(text: str, *, own: bool = False) -> JsonWorkpiece:
+def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool) -> Loaded:
     """Reads a workpiece, or the workpiece of a result file.
 
     Parameters
     ----------
-    text : the JSON.
+    path, content : of the JSON file.
+    options : see :func:`workhold.files.part.load.read_workpiece`.
     own : whether it is a file of workhold's own, whose shape needs no check.
 
     Raises
     ------
     InputError
-        For text that is not JSON, or not of this shape, naming the place.
+        For content that is not JSON, or not of this shape, naming the place. Also for choices that do not
+        apply to JSON.
     """
-    content = json_value(text)
+    refuse_fit(options["fit"])
+    refuse_layers(options["layers"])
+    if options["unit"] is not None:
+        raise InputError(f'the JSON file gives its own "units": leave {DRAWING_UNIT} out.')
+    try:
+        data = json_value(content.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8 JSON."
+        ) from error
     solid: SolidOutline | None = None
-    if isinstance(content, dict) and str(content.get("format", "")).startswith("workhold-result"):
-        solid = solid_of(content)
-        content = content.get("workpiece")
-    if not isinstance(content, dict):
+    if isinstance(data, dict) and str(data.get("format", "")).startswith("workhold-result"):
+        solid = solid_of(data)
+        data = data.get("workpiece")
+    if not isinstance(data, dict):
         raise InputError(
             'The file holds no workpiece: it must be {"name": ..., "units": "mm", "loops": [...]}.'
         )
     if not own:
         from workhold.files.input_forms import checked_workpiece
 
-        content = checked_workpiece(content)
-    units: str = content["units"]
+        data = checked_workpiece(data)
+    units: str = data["units"]
     if units not in ("mm", "inch"):
         raise InputError(f'The units "{units[:40]}" are not known: write "mm" or "inch".')
     scale = unit_named(units).millimetres
-    loops = [[(x * scale, y * scale, bulge) for x, y, bulge in loop] for loop in content["loops"]]
-    return JsonWorkpiece(content.get("name"), loops, scale * (content.get("departure") or 0.0), solid)
+    refuse_large(sum(map(len, data["loops"])))
+    loops = [Loop(np.array(loop).reshape(-1, 3) * (scale, scale, 1.0), ()) for loop in data["loops"]]
+    departure = scale * (data.get("departure") or 0.0)
+    workpiece = built(data.get("name") or path.stem, loops, False, departure, solid)
+    part = (as_one([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
+    chosen_part(part, options["part_number"])
+    return Loaded(workpiece, workpiece.remarks, part)
 
 
 def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:
-    """The solid of a result file's workpiece; None where it has none.
-
-    Raises
-    ------
-    InputError
-        When the solid or the bands are not of their shape.
-    """
+    """The solid of a result file's workpiece, None where it has none; refuses one that is not complete."""
     workpiece, solid = content.get("workpiece"), content.get("solid")
     if solid is None or not isinstance(workpiece, dict):
         return None
@@ -182,13 +186,7 @@ def drawing_of_object(
 
 
 def geometry_chains(geometry: Any, scale: float) -> Iterator[Chain]:
-    """The rings and lines of a geometry of shapely as chains in mm.
-
-    Raises
-    ------
-    InputError
-        For points, which have no outline.
-    """
+    """The rings and lines of a geometry of shapely as chains in mm; refuses points, which have no outline."""
     kind = geometry.geom_type
     if hasattr(geometry, "geoms"):
         for one in geometry.geoms:

@@ -15,7 +15,7 @@ from attrs import frozen
 
 from workhold.errors import InputError
 
-__all__ = ["BuiltinPart", "builtin_parts", "builtin_path", "close_names", "found", "kind_of", "read_bytes"]
+__all__ = ["BuiltinPart", "builtin_parts", "builtin_path", "found", "kind_of", "read_bytes"]
 
 
 @frozen
@@ -64,12 +64,6 @@ def builtin_path(name: str) -> Path | None:
     return None
 
 
-def close_names(name: str) -> list[str]:
-    """Built-in names a mistyped one may have meant."""
-    known = {part.name.lower(): part.name for part in PARTS}
-    return [known[n] for n in get_close_matches(name.strip().lower(), list(known), n=3, cutoff=0.5)]
-
-
 # Bytes; a drawing of one part is far smaller, and reading takes about twenty times as much memory.
 LARGEST_FILE = 40_000_000
 
@@ -91,9 +85,11 @@ def found(part: str | PathLike[str]) -> Path:
     builtin = builtin_path(str(part))
     if builtin is not None:
         return builtin
-    names = close_names(str(part)) or [p.name for p in builtin_parts()]
+    known = {one.name.lower(): one.name for one in PARTS}
+    close = get_close_matches(str(part).strip().lower(), known, n=3, cutoff=0.5) or known
+    names = ", ".join(known[one] for one in close)
     raise InputError(
-        f"{str(part)[:200]!r}: file not found, and no built-in part has that name (try {', '.join(names)})."
+        f"{str(part)[:200]!r}: file not found, and no built-in part has that name (try {names})."
     )
 
 

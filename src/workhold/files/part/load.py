@@ -8,24 +8,17 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Drawing
-from workhold.files.outline.curves import (
-    checked_fit,
-)
-from workhold.files.outline.joining import Loop
-from workhold.files.outline.nesting import as_one, chosen_part
-from workhold.files.part.data import drawing_of_object
+from workhold.files.outline.curves import checked_fit
+from workhold.files.part.data import drawing_of_object, read_json
 from workhold.files.part.finding import builtin_parts, builtin_path, found, kind_of, read_bytes
 from workhold.files.part.loaded import (
     Loaded,
-    built,
     from_drawing,
     from_heights,
-    refuse_large,
     with_solid_named,
 )
 from workhold.files.questions import (
@@ -34,7 +27,6 @@ from workhold.files.questions import (
     by_height,
     number_or_name,
     refuse_axis,
-    refuse_fit,
     refuse_layers,
     worded,
 )
@@ -162,10 +154,13 @@ def read_workpiece(
         "layers": layers,
         "part_number": number_or_name(part_number),
         "fit": fit,
+        "axis": axis,
+        "section": section,
+        "peg_height": peg_height,
+        "head_room": head_room,
+        "least_band": least_band,
+        "heights": dict(heights or {}),
     }
-    options |= {"axis": axis, "section": section}
-    options |= {"peg_height": peg_height, "head_room": head_room, "least_band": least_band}
-    options |= {"heights": dict(heights or {})}
     path = found(part) if isinstance(part, str | PathLike) else None
     try:
         if path is None:
@@ -180,13 +175,7 @@ def read_workpiece(
 
 
 def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
-    """A workpiece from an object of another library.
-
-    Raises
-    ------
-    InputError
-        For an object that is none, has no outline, or to which a choice does not apply.
-    """
+    """A workpiece from an object of another library; refuses other objects and choices that do not apply."""
     held = drawing_of_object(part, **options)
     if not isinstance(held.drawing, Drawing):
         return from_heights(held.name, held.drawing)
@@ -196,13 +185,7 @@ def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) ->
 
 
 def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
-    """A workpiece from a file.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be read or used, and choices that do not apply to it.
-    """
+    """A workpiece from a file; refuses one that cannot be used, and choices that do not apply to it."""
     content = read_bytes(path)
     kind = kind_of(path, content)
     part_number, layers, fit = options["part_number"], options["layers"], options["fit"]
@@ -210,8 +193,7 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
         return from_step(path, content, options)
     refuse_axis(options)
     if kind == "json":
-        refuse_fit(fit)
-        return from_json(path, content, options["unit"], layers, part_number, path == builtin_path(path.stem))
+        return read_json(path, content, options, own=path == builtin_path(path.stem))
     units = {"unit": options["unit"], "usual_unit": options["usual_unit"]}
     if kind == "dxf":
         from workhold.files.dxf.reader import read_dxf
@@ -230,50 +212,9 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
     return from_drawing(path, read_svg(content, **units, fit=fit), part_number, join_tolerance, fit)
 
 
-def from_json(
-    path: Path,
-    content: bytes,
-    unit: str | None,
-    layers: Sequence[str] | None,
-    part_number: int | str | None,
-    own: bool,
-) -> Loaded:
-    """A workpiece from JSON bytes, of a file of the user's or of workhold's own.
-
-    Raises
-    ------
-    InputError
-        For wrong content, or choices that do not apply to JSON.
-    """
-    from workhold.files.part.data import read_json
-
-    refuse_layers(layers)
-    if unit is not None:
-        raise InputError(f'the JSON file gives its own "units": leave {DRAWING_UNIT} out.')
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8 JSON."
-        ) from error
-    read = read_json(text, own=own)
-    name = read.name or path.stem
-    rows = [np.array(loop, dtype=np.float64).reshape(-1, 3) for loop in read.loops]
-    refuse_large(sum(len(loop) for loop in rows))
-    loops = [Loop(loop, ()) for loop in rows]
-    workpiece = built(name, loops, with_labels=False, departure=read.departure, solid=read.solid)
-    part = (as_one([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
-    chosen_part(part, part_number)
-    return Loaded(workpiece, workpiece.remarks, part)
-
-
 def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
-    """A workpiece from the bytes of a STEP file.
-
-    Raises
-    ------
-    InputError
-        For wrong content, or choices that do not apply to STEP.
+    """A workpiece from the bytes of a STEP file; refuses wrong content, and choices that do not apply to
+    STEP.
     """
     refuse_layers(options["layers"])
     if options["unit"] is not None:

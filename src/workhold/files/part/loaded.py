@@ -82,7 +82,7 @@ def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
     for one in drawing.own:
         refuse_large(sum(len(loop) for loop in one.loops))
         rows = [Loop(loop, ("",) * len(loop)) for loop in one.loops]
-        between = own_name(name, (one.solid.low, one.solid.peg_height))
+        between = own_name((one.solid.low, one.solid.peg_height))
         own.append((one.role, built(between, rows, with_labels=False, solid=one.solid)))
     if own:
         workpiece = evolve(workpiece, outlines=tuple(own))
@@ -134,13 +134,7 @@ def outline_of(
     fit: float | None,
     layered: bool,
 ) -> Loaded:
-    """The workpiece, see :func:`from_drawing`.
-
-    Raises
-    ------
-    InputError
-        See there.
-    """
+    """The workpiece, or a refusal, see :func:`from_drawing`."""
     clean = cleaned(drawing.chains)
     joined = join(clean.chains, tolerance)
     if not joined.loops:
@@ -250,9 +244,7 @@ def with_solid_named(loaded: Loaded, file: str, chosen: int | str | None) -> Loa
     name = "" if len(loaded.solids) < 2 else name_of_chosen(loaded.solids, chosen)
     if not name or name == file:
         return loaded
-    called = f"{name} of {file}"
-    outlines = tuple((role, between(called, own)) for role, own in loaded.workpiece.outlines)
-    return evolve(loaded, workpiece=evolve(loaded.workpiece, name=called, outlines=outlines))
+    return evolve(loaded, workpiece=evolve(loaded.workpiece, name=f"{name} of {file}"))
 
 
 def name_of_chosen(solids: Sequence[FileSolid], chosen: int | str | None) -> str:
@@ -262,9 +254,3 @@ def name_of_chosen(solids: Sequence[FileSolid], chosen: int | str | None) -> str
     asked = " ".join(chosen.split())
     names = [solid.name for solid in solids]
     return asked if asked in names else next(one for one in names if one.casefold() == asked.casefold())
-
-
-def between(called: str, own: Workpiece) -> Workpiece:
-    """The outline of a carrier with heights of its own, named after the part and these heights."""
-    assert own.solid is not None
-    return evolve(own, name=own_name(called, (own.solid.low, own.solid.peg_height)))

@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping
+from contextlib import suppress
 from math import hypot
 from pathlib import Path
 from typing import Any
@@ -181,24 +182,31 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
     if loaded is not None:
         loaded = evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
     unit = ANY_UNIT if UNIT in sentence else None
-    drawing = drawing_of(path, content, options if unit is None else {**options, "unit": unit})
+    kind = ""
+    with suppress(InputError):
+        kind = kind_of(path, content)
+    drawing = drawing_of(kind, path, content, options if unit is None else {**options, "unit": unit})
     chains = cleaned(drawing.chains).chains
     size = size_of(chains)
     gaps, parts = gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
-    layers = layers_of(path, unit or options.get("unit"))
-    parts = loaded.parts if loaded else parts
-    solids = loaded.solids if loaded else solids_of(path, content)
+    layers = tuple[DrawnLayer, ...]()
+    with suppress(InputError):
+        drawn = drawn_layers(path, unit or options.get("unit"), None)[0] if kind == "dxf" else ()
+        layers = tuple(layer for layer in drawn if layer.chains)
+    if loaded is not None:
+        parts, solids = loaded.parts, loaded.solids
+    else:
+        solids = solids_of(content) if kind == "step" else ()
     return Survey(loaded, worded(sentence, called), asked, size, chains, parts, gaps, layers, solids)
 
 
 MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
 
 
-def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawing:
+def drawing_of(kind: str, path: Path, content: bytes, options: Mapping[str, Any]) -> Drawing:
     """All that is drawn in a DXF or SVG file, nothing where it cannot be read, or holds no drawing."""
     taken = {name: options.get(name) for name in ("unit", "fit")}
-    try:
-        kind = kind_of(path, content)
+    with suppress(InputError):
         if kind == "dxf":
             from workhold.files.dxf.reader import read_dxf
 
@@ -207,29 +215,16 @@ def drawing_of(path: Path, content: bytes, options: Mapping[str, Any]) -> Drawin
             from workhold.files.svg.reader import read_svg
 
             return read_svg(content, **taken)
-    except InputError:
-        pass
     return Drawing(())
 
 
-def solids_of(path: Path, content: bytes) -> tuple[FileSolid, ...]:
-    """The solids of a STEP file whose outline was refused; none of other files, and where it is damaged."""
-    try:
-        if kind_of(path, content) == "step":
-            from workhold.files.step.solids import listed_solids
+def solids_of(content: bytes) -> tuple[FileSolid, ...]:
+    """The solids of a STEP file whose outline was refused; none where it is damaged."""
+    with suppress(InputError):
+        from workhold.files.step.solids import listed_solids
 
-            return listed_solids(content)
-    except InputError:
-        pass
+        return listed_solids(content)
     return ()
-
-
-def layers_of(path: Path, unit: str | None) -> tuple[DrawnLayer, ...]:
-    """The layers of a DXF file with something to read on them; none of other or damaged files."""
-    try:
-        return tuple(layer for layer in drawn_layers(path, unit, None)[0] if layer.chains)
-    except InputError:
-        return ()
 
 
 def gaps_and_parts(

@@ -53,14 +53,14 @@ class Interpreter:
     path : writes the moves.
     skipped : lines with a move to the machine's own places.
     calls : (line, number) of every tool that comes into the spindle.
-    remarked : lines by what is remarkable about them.
+    other_lengths : lines with G43 for another tool than the one in the spindle.
     """
 
     changes: bool
     path: PathWriter = field(factory=PathWriter)
     skipped: list[int] = field(factory=list)
     calls: list[tuple[int, int]] = field(factory=list)
-    remarked: dict[str, list[int]] = field(factory=dict)
+    other_lengths: list[int] = field(factory=list)
     distance_said: bool = False
 
     @property
@@ -161,7 +161,7 @@ class Interpreter:
         modes.back = codes.get("return", modes.back)
         self.distance_said = self.distance_said or "distance" in codes
         if "H" in values and codes.get("length") == "43" and modes.tool not in (None, values["H"]):
-            self.remark("length", self.path.line)
+            self.other_lengths.append(self.path.line)
 
     def change_tool(self) -> None:
         """Puts the tool that was called into the spindle; where it is then is not known."""
@@ -172,10 +172,6 @@ class Interpreter:
             modes.initial = None
             assert modes.called is not None
             self.calls.append((self.path.line, modes.called))
-
-    def remark(self, about: str, line: int) -> None:
-        """Remembers a line."""
-        self.remarked.setdefault(about, []).append(line)
 
     def move(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
         """Makes the move of a block, if it has one, and returns the letters that have a meaning.
@@ -249,25 +245,21 @@ class Interpreter:
                 raise InputError("G53 stands without G0 or G1: write one of them with it.")
             place = list(self.modes.place)
         else:
-            place = self.passing(values)
+            # G28 and G30 pass a place on their way to the machine's own.
+            passed = {
+                letter: values[letter]
+                for axis, letter in enumerate(AXES)
+                if letter in values and not (self.modes.distance == "91" and self.modes.place[axis] is None)
+            }
+            if passed:
+                self.path.move_to(self.path.target(passed), cutting=False)
+            place = list(self.modes.place)
         for axis, letter in enumerate(AXES):
             if letter in axes or (once != "53" and not axes):
                 place[axis] = None
         self.modes.place = place
         self.skipped.append(self.path.line)
         return set(axes)
-
-    def passing(self, values: dict[str, float]) -> Reached:
-        """Goes to the place that G28 and G30 pass on their way to the machine's own, and returns it."""
-        known = {
-            letter: value
-            for axis, letter in enumerate(AXES)
-            if (value := values.get(letter)) is not None
-            and not (self.modes.distance == "91" and self.modes.place[axis] is None)
-        }
-        if known:
-            self.path.move_to(self.path.target(known), cutting=False)
-        return list(self.modes.place)
 
     def move_along_arc(self, clockwise: bool, values: dict[str, float]) -> set[str]:
         """Moves along an arc or a helix about z.
@@ -336,13 +328,7 @@ class Interpreter:
 
 
 def known(place: Reached) -> tuple[float, float, float]:
-    """A place of which all is known.
-
-    Raises
-    ------
-    InputError
-        Where something is not.
-    """
+    """A place of which all is known; refuses one of which something is not."""
     x, y, z = place
     if x is None or y is None or z is None:
         raise InputError(

@@ -271,10 +271,7 @@ def drill(path: PathWriter, values: dict[str, float]) -> set[str]:
 def depths(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
     """Heights of the hole's bottom and of the plane R in mm; those that a block does not give stay in force.
 
-    Raises
-    ------
-    InputError
-        Where one is missing, or they do not follow each other downward.
+    Refuses a cycle where one is missing, or where they do not follow each other downward.
     """
     modes, sticky = path.modes, path.modes.sticky
     if modes.plane != "17":
@@ -315,13 +312,7 @@ def depths(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
 
 
 def repeats(path: PathWriter, values: dict[str, float]) -> int:
-    """How often a block drills: L, or K on other controls.
-
-    Raises
-    ------
-    InputError
-        For both, and a number that is none.
-    """
+    """How often a block drills: L, or K on other controls; refuses both, and a number that is none."""
     given = [values[key] for key in "LK" if key in values]
     if len(given) > 1:
         raise InputError("a drill cycle has both L and K: write one of them.")

@@ -122,10 +122,7 @@ def read_program_with_calls(
 def height_of(z_zero: ZZero, thickness: float | None) -> float:
     """The height of the program's Z0 in mm above the plane on which the part lies.
 
-    Raises
-    ------
-    InputError
-        Where the part's top is meant and nobody knows how high it is.
+    Refuses the part's top where nobody knows how high it is.
     """
     if z_zero == "bottom":
         return 0.0
@@ -143,13 +140,7 @@ def height_of(z_zero: ZZero, thickness: float | None) -> float:
 
 
 def decoded(content: bytes) -> str:
-    """The text of a program; comments may be in an encoding of western languages.
-
-    Raises
-    ------
-    InputError
-        For a file that is no text.
-    """
+    """The text of a program; refuses what is no text. Comments may be in an encoding of western languages."""
     if b"\0" in content:
         raise InputError("the file is no text: give a program of RS-274 (G-code).")
     try:
@@ -159,12 +150,8 @@ def decoded(content: bytes) -> str:
 
 
 def run(listing: ProgramText, unit: Unit | None) -> Interpreter:
-    """Reads all blocks.
-
-    Raises
-    ------
-    InputError
-        Beginning with the line's number; for a program that moves nothing as well.
+    """Reads all blocks; refuses the first that cannot be read with its line, and a program that moves
+    nothing.
     """
     changes = any(
         letter == "M" and code_of(text) == "6" for block in listing.blocks for letter, text in block.words
@@ -193,28 +180,13 @@ def moves_of(control: Interpreter, tools: Mapping[int, Tool], shift: np.ndarray[
     """The moves in the part's coordinates; those before any call have the only tool that is given."""
     moves = Moves.of_rows(control.path.rows)
     tool = np.where(moves.tool < 0, min(tools), moves.tool)
-    return Moves(
-        moves.line,
-        tool,
-        moves.cutting,
-        moves.start + shift,
-        moves.end + shift,
-        moves.bulge,
-        moves.feed,
-        moves.spindle,
-    )
+    return evolve(moves, tool=tool, start=moves.start + shift, end=moves.end + shift)
 
 
 def tools_used(
     path: Path, control: Interpreter, listing: ProgramText, given: ToolsGiven, unit: Unit
 ) -> tuple[dict[int, Tool], list[str]]:
-    """The tools that move, with notes on what is not known of them.
-
-    Raises
-    ------
-    InputError
-        Naming the tools that are called and those of which no diameter is known.
-    """
+    """The tools that move, with notes on what is not known of them; refuses a tool of no known diameter."""
     notes: list[str] = []
     if given is None:
         try:
@@ -250,13 +222,7 @@ def tools_used(
 
 
 def of_python(number: int, value: Any, unit: Unit) -> Tool:
-    """A tool that is one, a diameter in the program's unit, or fields.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
+    """A tool that is one, a diameter in the program's unit, or fields; refuses anything else."""
     if isinstance(value, Tool):
         return value
     fields = value if isinstance(value, Mapping) else {"diameter": value}
@@ -313,8 +279,8 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
         notes.append("The program does not say G90 or G91; its places are read as after G90.")
     if not control.changes and control.calls:
         notes.append("The program has no M6; T alone is read as the change to that tool.")
-    if "length" in control.remarked:
-        notes.append(f"{lines_named(control.remarked['length'])}: G43 takes the length of another tool.")
+    if control.other_lengths:
+        notes.append(f"{lines_named(control.other_lengths)}: G43 takes the length of another tool.")
     if listing.optional:
         notes.append(f"{lines_named(listing.optional)}: a line that a switch can leave out (/) is read.")
     unfed = [row[0] for row in control.path.rows if row[2] and row[6] <= 0.0]

@@ -153,13 +153,7 @@ def is_usable(key: str, value: Any) -> bool:
 
 
 def stack(lengths: Mapping[str, float], place: str) -> list[Cylinder]:
-    """The cylinders of a tool from its lengths in mm.
-
-    Raises
-    ------
-    InputError
-        For a shank or a holder whose place is not said.
-    """
+    """The cylinders of a tool from its lengths in mm; refuses a shank or a holder whose place is not said."""
     flute, reach = lengths.get("flute_length"), lengths.get("stickout")
     radius, shank = lengths["diameter"] / 2, lengths.get("shank_diameter")
     top = ENDLESS if reach is None else reach
@@ -233,13 +227,7 @@ def described(text: str) -> tuple[int | None, dict[str, str]] | None:
 
 
 def checked_number(text: Any, place: str) -> int:
-    """The number of a tool.
-
-    Raises
-    ------
-    InputError
-        For anything but a whole number from 0.
-    """
+    """The number of a tool; refuses anything but a whole number from 0."""
     word = str(text).strip()
     word = word[1:] if word[:1] in ("T", "t") else word
     if not (word.isascii() and word.isdigit() and len(word) <= 6):
@@ -250,13 +238,7 @@ def checked_number(text: Any, place: str) -> int:
 
 
 def collected(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit) -> dict[int, Tool]:
-    """Tools of rows of number, fields and place.
-
-    Raises
-    ------
-    InputError
-        For a tool that is given twice, and none.
-    """
+    """Tools of rows of number, fields and place; refuses a tool that is given twice, and none."""
     tools: dict[int, Tool] = {}
     for number, fields, place in rows:
         if number in tools:
@@ -272,13 +254,7 @@ def collected(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit) ->
 
 
 def of_toml(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Tools of TOML.
-
-    Raises
-    ------
-    InputError
-        For another form.
-    """
+    """Tools of TOML, and whether it says the unit of each; refuses another form."""
     for key in content:
         if key not in ("unit", "tool"):
             raise InputError(
@@ -294,13 +270,7 @@ def of_toml(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, Tool], bo
 
 
 def of_csv(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Tools of a table with a head, separated by commas, semicolons or tabs.
-
-    Raises
-    ------
-    InputError
-        For another form.
-    """
+    """Tools of a table with a head, separated by commas, semicolons or tabs; refuses another form."""
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     head = lines[0] if lines else ""
     mark = next((one for one in (";", "\t") if one in head), ",")
@@ -334,13 +304,7 @@ def is_linuxcnc(text: str) -> bool:
 
 
 def of_linuxcnc(text: str, unit: Unit) -> dict[int, Tool]:
-    """Tools of LinuxCNC's table; those without a diameter are left out.
-
-    Raises
-    ------
-    InputError
-        For a line of another form.
-    """
+    """Tools of LinuxCNC's table, without those that have no diameter; refuses a line of another form."""
     rows = []
     for place, line in enumerate(text.splitlines(), 1):
         code, _, remark = line.partition(";")

@@ -93,7 +93,7 @@ UNITS = {"20": INCH, "21": MILLIMETRE, "inch": INCH, "mm": MILLIMETRE}
 # An unsigned number has a digit before its point or behind it.
 NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 WORD = re.compile(rf"([A-Z])[ \t]*({NUMBER})[ \t]*")
-BLOCK = BLOCK_START = re.compile(rf"[ \t]*(?:[A-Z][ \t]*{NUMBER}[ \t]*)*")
+BLOCK = re.compile(rf"[ \t]*(?:[A-Z][ \t]*{NUMBER}[ \t]*)*")
 COMMENT = re.compile(r"\(([^()]*)\)|;(.*)")
 # Programs have a number on Fanuc and Haas, alone in its block.
 PROGRAM_NUMBER = re.compile(r"[ \t]*(?:O|:)[ \t]*[0-9]+[ \t]*")
@@ -265,13 +265,7 @@ def numbered(text: str) -> Iterator[tuple[int, str]]:
 
 
 def without_comments(line: int, content: str, comments: list[tuple[int, str]]) -> str:
-    """A line without its comments, which are added to a list.
-
-    Raises
-    ------
-    InputError
-        For a parenthesis without its partner.
-    """
+    """A line without its comments, which are added to a list; refuses a parenthesis without its partner."""
     if "(" not in content and ";" not in content and ")" not in content:
         return content
     for match in COMMENT.finditer(content):
@@ -307,7 +301,7 @@ def refusal(code: str, written: str) -> str:
             f"'{excerpt(written)}' reckons with variables or names, or calls a subprogram: post the program "
             "with its moves written out, and tools as numbers."
         )
-    found = BLOCK_START.match(code)
+    found = BLOCK.match(code)
     place = 0 if found is None else found.end()
     letter, rest = code[place : place + 1], excerpt(written[place:])
     if letter in "*%/":

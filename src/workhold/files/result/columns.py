@@ -14,24 +14,26 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.archive import ArchiveWriter, mapped_archive
 from workhold.errors import InputError
 from workhold.files.atomic import binary_file, plain_errors
-from workhold.files.result.fixture_forms import checked_seating, seatings_of
-from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees, significant
-from workhold.files.result.heads import HEAD, columns_of, columns_said, head_texts, head_value
+from workhold.files.result.fixture_forms import checked_seating, seatings_of, with_seating
+from workhold.files.result.fixture_text import as_written, significant
 from workhold.files.result.parts import (
+    HEAD,
     checked_head,
     checked_query,
+    columns_of,
+    columns_said,
+    head_value,
     refuse_faulty,
     refuse_unknown_types,
     result_with,
-    with_seating,
 )
-from workhold.files.result.writer import FORMAT, head
+from workhold.files.result.writer import FORMAT, head, head_texts
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -69,14 +71,15 @@ class ColumnsSink:
                 counts.update(result.toolkit.arrangements_counted(table.arrangement))
                 table = table.with_figures(columns["quality"].shape[0])
                 for start in range(0, len(table), BLOCK):
-                    archive.add(as_written(table.take(slice(start, start + BLOCK))))
+                    archive.add(written_columns(table.take(slice(start, start + BLOCK))))
             if archive.done < listed:
                 result = result.cut_short(archive.done)
             text = head(result, with_pieces=False)
             text["counts"] = {name: counts[name] for name in result.toolkit.types}
             if result.query.seating is not None:
                 text["seatings"] = [one.as_fields() for one in result.seating]
-            archive.close(HEAD, "".join(head_texts(text, result.query.program)), FORMAT)
+            parts = head_texts(text, result.query.program, ", ", is_ascii=False)
+            archive.close(HEAD, "".join(parts) + "}", FORMAT)
 
 
 def write_columns(result: Result, path: str | Path) -> None:
@@ -118,20 +121,11 @@ def answer_to_file(query: Query, path: str | Path, **watching: Any) -> Result:
     return read_columns(path)
 
 
-def as_written(table: FixtureTable) -> tuple[NDArray[Any], ...]:
+def written_columns(table: FixtureTable) -> tuple[NDArray[Any], ...]:
     """The columns of a table, rounded as the JSON form writes them."""
-    return (
-        table.arrangement,
-        table.column,
-        table.row,
-        table.face,
-        np.radians(rounded_degrees(np.degrees(table.theta))),
-        rounded(table.position, LENGTH_STEPS),
-        rounded(table.jaw_separation, LENGTH_STEPS),
-        significant(table.force),
-        significant(table.quality),
-        *([table.pairs] if table.force.ndim == 3 else []),
-    )
+    _, read = as_written(table)
+    *columns, pairs = evolve(read, force=significant(table.force), quality=significant(table.quality)).columns
+    return (*columns, pairs) if table.force.ndim == 3 else tuple(columns)
 
 
 @define(frozen=True, eq=False)

@@ -6,20 +6,30 @@ included, serves its JSON Schema only: a million fixtures are collected into arr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import inf
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+from attrs import evolve
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from workhold.errors import InputError
-from workhold.files.result.forms import FormPart, Head, Pair
+from workhold.files.result.forms import FormPart, Head, Pair, first_fault
 from workhold.model.pose import Pose
 from workhold.model.quality import SEATING_FIGURES
+from workhold.model.result import Result
 from workhold.model.seating import Seating
 
-__all__ = ["FixturePart", "ResultFile", "SeatingPart", "checked_seating", "seating_figures_of", "seatings_of"]
+__all__ = [
+    "FixturePart",
+    "ResultFile",
+    "SeatingPart",
+    "checked_seating",
+    "seating_figures_of",
+    "seatings_of",
+    "with_seating",
+]
 
 SeatingPair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Length = Annotated[float, Field(ge=0)]
@@ -124,13 +134,27 @@ def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
     try:
         SeatingPart.model_validate(data)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in ("seating", *first["loc"]))
-        reason = (
-            "it is missing" if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
-        )
+        key, reason = first_fault(error)
+        key = ".".join(filter(None, ("seating", key)))
         raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
     return Seating.of_fields(data, pose)
+
+
+def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Result:
+    """A result with the seating of its first fixtures.
+
+    Raises
+    ------
+    InputError
+        Where it is given without being asked for, or for more fixtures than it was asked for.
+    """
+    query = result.query
+    if len(seating) > (query.seating or 0) or len(seating) > len(result):
+        raise InputError(
+            f"{path}: the seating of {len(seating)} fixtures is stated, but it is asked of "
+            f"{query.seating or 0} and {len(result)} are listed."
+        )
+    return evolve(result, seating=tuple(one.in_toolkit(query.toolkit, query.opening) for one in seating))
 
 
 def seating_figures_of(data: Mapping[str, Any]) -> dict[str, float]:

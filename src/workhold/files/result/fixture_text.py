@@ -19,15 +19,13 @@ import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from math import isnan, nan
-from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import plain
-from workhold.files.atomic import text_file
 from workhold.fixels.carrier import Carrier, column_letters
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
 from workhold.fixels.toolkit import Toolkit
@@ -55,8 +53,6 @@ __all__ = [
     "rounded_degrees",
     "seating_values",
     "significant",
-    "write_result_csv",
-    "write_result_csv_to",
 ]
 
 LENGTH_STEPS = 1e9
@@ -287,43 +283,16 @@ POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y")
 TRAVEL_COLUMNS = {1: ("jaw_separation",), 2: ("travel_1", "travel_2")}
 
 
-def write_result_csv(result: Result, path: str | Path) -> None:
-    """Writes the fixtures of a result as comma-separated values, numbered by rank from 1.
-
-    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the
-    pictures.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be written.
-    """
-    with text_file(path) as stream:
-        write_result_csv_to(result, stream)
-
-
-def write_result_csv_to(result: Result, stream: IO[str]) -> None:
-    """Writes the comma-separated values to an open text stream."""
-    for text in result_csv_text(result):
-        stream.write(text)
-
-
 def column_names(result: Result) -> list[str]:
     """The names of the columns."""
     toolkit = result.toolkit
     pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
     moved = TRAVEL_COLUMNS[toolkit.travels]
+    figures = [figure.key for figure in known_figures(result.table)]
     placed = sum(toolkit.carriers[k].contact.is_placed for k in toolkit.arrangements[0].carriers)
     flats = [f"flat{number}_deg" for number in range(1, 1 + placed * (FLAT_PIN in toolkit.contacts))]
     seating = [figure.key for figure in SEATING_FIGURES] if result.seating else []
-    return [
-        *POSE_COLUMNS,
-        *moved,
-        *(figure.key for figure in known_figures(result.table)),
-        *pegs,
-        *flats,
-        *seating,
-    ]
+    return [*POSE_COLUMNS, *moved, *figures, *pegs, *flats, *seating]
 
 
 def seating_values(result: Result) -> list[list[float]]:
@@ -333,7 +302,11 @@ def seating_values(result: Result) -> list[list[float]]:
 
 
 def result_csv_text(result: Result) -> Iterator[str]:
-    """The comma-separated values, piece by piece."""
+    """The fixtures of a result as comma-separated values, piece by piece, numbered by rank from 1.
+
+    Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the
+    pictures.
+    """
     toolkit, carriers = result.toolkit, result.toolkit.carriers
     yield ",".join(column_names(result)) + "\n"
     moved, flats = 3 + toolkit.travels, FLAT_PIN in toolkit.contacts
@@ -349,17 +322,8 @@ def result_csv_text(result: Result) -> Iterator[str]:
             fields = [str(number), name, *map(repr, pose), *(f"{value:.12g}" for value in quality)]
             for peg, jaw in enumerate(jaws):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
-                hole = jaw.place_name(column, hole_row)
-                fields += [
-                    hole,
-                    jaw.name,
-                    str(column),
-                    str(hole_row),
-                    repr(peg_x),
-                    repr(peg_y),
-                    str(face),
-                    f"{force:.12g}",
-                ]
+                fields += [jaw.place_name(column, hole_row), jaw.name, str(column), str(hole_row)]
+                fields += [repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]
             fields += ["" if angle is None else repr(angle) for angle in looks]
             if seated:
                 fields += [

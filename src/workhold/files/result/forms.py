@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from workhold.errors import InputError
-from workhold.files.input_forms import forms_by_noun, one_of, optional
+from workhold.files.input_forms import TAGS, forms_by_noun, one_of, optional
 from workhold.fixels.kinds import USUAL, table_of, toolkit_of
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
@@ -21,18 +21,19 @@ from workhold.model.search_report import Proof, Undecided
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
-__all__ = [
-    "Head",
-    "LoadPart",
-    "ProofPart",
-    "RestrictionsPart",
-    "TolerancePart",
-]
+__all__ = ["MISSING", "Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart", "first_fault"]
 
 LONGEST_STANDARD = 40
-
-
+# What is wrong with a key that is not there.
+MISSING = "it is missing"
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
+def first_fault(error: ValidationError) -> tuple[str, str]:
+    """The first key of a file that is wrong, and what is wrong with it, without a capital or a full stop."""
+    first = error.errors()[0]
+    key = ".".join(str(part) for part in first["loc"] if part not in TAGS)
+    return key, MISSING if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
 
 
 class FormPart(BaseModel):
@@ -79,13 +80,7 @@ class SolidPart(FormPart):
     least_band: float
 
     def outline(self, workpiece: WorkpiecePart) -> SolidOutline:
-        """The solid with the bands of its outline.
-
-        Raises
-        ------
-        InputError
-            When there are no bands, or heights that are none.
-        """
+        """The solid with the bands of its outline; refuses one without bands, and heights that are none."""
         if workpiece.bands is None:
             raise InputError("it has a solid, but the workpiece has no bands.")
         return SolidOutline.of_entries(self.model_dump(), workpiece.model_dump())
@@ -150,8 +145,7 @@ class RestrictionsPart(FormPart):
         InputError
             When a zone is none.
         """
-        zones = tuple(zone_of(loop) for loop in self.zones)
-        return Restrictions(tuple(self.avoid), zones, tuple((low, high) for low, high in self.angles))
+        return Restrictions(self.avoid, map(zone_of, self.zones), self.angles)
 
 
 class FitPart(FormPart):
@@ -205,8 +199,7 @@ class LoadPart(FormPart):
         InputError
             When it is none.
         """
-        low, high = self.directions
-        return Load(tuple((x, y) for x, y in self.points), self.force, (low, high), self.moment, self.name)
+        return Load(self.points, self.force, self.directions, self.moment, self.name)
 
 
 Counts = dict[str, Annotated[int, Field(ge=0)]]

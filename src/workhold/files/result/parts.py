@@ -3,50 +3,121 @@
 A file with one fixture per line, as workhold writes it, is read line by line, so that no more than one
 fixture at a time is an object. Any other layout of the same JSON is read as a whole. Whoever reads a result
 file reads it by this module. What the fixtures are held to is the same in whatever form they are written.
+Of a file in columns, the head gives the shape of the columns too (docs/columns.md).
 
 Glossary
 --------
 head : everything but the fixtures, whatever form those have.
+swept piece : a cylinder of a tool on one move of a program. A program has many, so each is packed into bytes
+    as soon as it is read.
 """
 
 from __future__ import annotations
 
+import json
+import struct
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from attrs import evolve
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from workhold.archive import Column, Columns
 from workhold.errors import InputError
-from workhold.files.input_forms import TAGS
-from workhold.files.result.forms import Head, ProofPart
-from workhold.files.result.heads import head_value
+from workhold.files.result.forms import MISSING, Head, ProofPart, first_fault
 from workhold.files.text import json_value
+from workhold.fixels.fields import CLAMPS
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.moves import PIECE_KEYS, packed_piece
+from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.search_report import Proof
-from workhold.model.seating import Seating
 
 __all__ = [
+    "HEAD",
     "LARGEST_LENGTH",
     "LARGEST_NUMBER",
     "checked_head",
     "checked_query",
+    "columns_of",
+    "columns_said",
+    "head_value",
     "read_parts",
     "refuse_faulty",
+    "refuse_rows",
     "refuse_unknown_types",
     "result_with",
-    "with_seating",
 ]
 
 LARGEST_NUMBER = 2**31 - 1
 LARGEST_LENGTH = 1e300
 NOT_FINITE = "cannot be used: a length, an angle or a force is not a finite number"
+
+
+HEAD = "result.json"
+
+
+def columns_of(travels: int, has_program: bool = False) -> Columns:
+    """What each column holds (docs/columns.md), by how many things move in a fixture.
+
+    Parameters
+    ----------
+    has_program : whether the program clearance stands behind the figures of quality.
+    """
+    pegs, several = 3 + travels, (travels,) if travels > 1 else ()
+    return {
+        "arrangement": Column("|i1"),
+        **dict.fromkeys(("column", "row", "face"), Column("<i4", (pegs,))),
+        "theta": Column("<f8"),
+        "position": Column("<f8", (2,)),
+        "jaw_separation": Column("<f8", several),
+        "force": Column("<f8", (pegs, *several)),
+        "quality": Column("<f8", (len(FIGURES) + has_program,)),
+        **({"pairs": Column("<i4")} if travels > 1 else {}),
+    }
+
+
+def without_piece(entries: dict[str, Any]) -> dict[str, Any] | None:
+    """Entries as they are, but for those of a swept piece, which are many."""
+    return None if entries.keys() == PIECE_KEYS else entries
+
+
+def columns_said(head: str) -> Columns:
+    """What the columns hold beside a head, which may be of any kind of file."""
+    try:
+        said = json.loads(head, object_hook=without_piece)
+        toolkit = said.get("toolkit")
+        travels = 2 if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else 1
+        return columns_of(travels, said.get("program") is not None)
+    except (ValueError, AttributeError, RecursionError):
+        return columns_of(1)
+
+
+def piece_or_entries(entries: dict[str, Any]) -> Any:
+    """A swept piece packed, where entries are those of one; all others as they are."""
+    if entries.keys() != PIECE_KEYS:
+        return entries
+    try:
+        return packed_piece(entries)
+    except (InputError, LookupError, TypeError, ValueError, struct.error):
+        # Whoever makes the program says what is wrong.
+        return entries
+
+
+def head_value(text: str) -> Any:
+    """The content of a head's JSON, its swept pieces packed.
+
+    Raises
+    ------
+    InputError
+        As :func:`workhold.files.text.json_value`.
+    """
+    return json_value(text, piece_or_entries)
 
 
 def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit, path: Path) -> None:
@@ -63,6 +134,23 @@ def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit
         raise InputError(f"{path}: fixture {number} cannot be used: its type is not {' or '.join(names)}.")
 
 
+def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequence[int]) -> None:
+    """Refuses fixtures (N,), or (N, P) by their pegs, of which one is faulty.
+
+    Parameters
+    ----------
+    places : where in the file they stand, from 0.
+
+    Raises
+    ------
+    InputError
+        Naming the first of them.
+    """
+    if faulty.any():
+        first = int(np.argwhere(faulty)[0, 0])
+        raise InputError(f"{path}: fixture {places[first] + 1} {reason}.")
+
+
 def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequence[int]) -> None:
     """Refuses fixtures of known types that contradict the toolkit, the workpiece or themselves.
 
@@ -77,13 +165,7 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
     """
     if len(table) == 0:
         return
-    toolkit = query.toolkit
-
-    def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
-        if faulty.any():
-            where = np.flatnonzero(faulty if faulty.ndim == 1 else faulty.any(axis=1))
-            raise InputError(f"{path}: fixture {places[int(where[0])] + 1} {reason}.")
-
+    toolkit, refuse = query.toolkit, partial(refuse_rows, path=path, places=places)
     asked = [number for number, one in enumerate(toolkit.arrangements) if one.name in query.arrangements]
     refuse(~np.isin(table.arrangement, asked), "is of a type that was not asked for")
     jaw = toolkit.peg_carriers(table.arrangement)
@@ -117,11 +199,9 @@ def checked_head(data: Any, path: Path) -> Head:
     try:
         return Head.model_validate(data)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"] if part not in TAGS)
-        if first["type"] == "missing":
+        key, reason = first_fault(error)
+        if reason == MISSING:
             raise InputError(f"{path} is not a complete result file: the key {key} is missing.") from error
-        reason = first["msg"][:1].lower() + first["msg"][1:]
         raise InputError(f"{path}: {key or 'the head'} cannot be used: {reason}.") from error
 
 
@@ -135,27 +215,15 @@ def checked_query(head: Head, path: Path) -> Query:
     """
     try:
         query = head.query()
-        refuse_other_types(head, query.toolkit)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    return query
-
-
-def refuse_other_types(head: Head, toolkit: Toolkit) -> None:
-    """Refuses counts of other types than the toolkit's.
-
-    Raises
-    ------
-    InputError
-        Naming the counts.
-    """
-    names = toolkit.types
-    for key in ("counts", "found", "distinct"):
-        counts = getattr(head, key)
+    names = query.toolkit.types
+    for key, counts in (("counts", head.counts), ("found", head.found), ("distinct", head.distinct)):
         if counts is not None and set(counts) != set(names):
             raise InputError(
-                f"{key} does not give a number for each of the types {', '.join(names)} and no other."
+                f"{path}: {key} does not give a number for each of the types {', '.join(names)} and no other."
             )
+    return query
 
 
 def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
@@ -182,23 +250,6 @@ def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Re
         pairs=head.pairs,
         seats=head.seats,
     )
-
-
-def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Result:
-    """A result with the seating of its first fixtures.
-
-    Raises
-    ------
-    InputError
-        Where it is given without being asked for, or for more fixtures than it was asked for.
-    """
-    query = result.query
-    if len(seating) > (query.seating or 0) or len(seating) > len(result):
-        raise InputError(
-            f"{path}: the seating of {len(seating)} fixtures is stated, but it is asked of "
-            f"{query.seating or 0} and {len(result)} are listed."
-        )
-    return evolve(result, seating=tuple(one.in_toolkit(query.toolkit, query.opening) for one in seating))
 
 
 def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:

@@ -8,6 +8,7 @@ of a file say what it is, not its name. Messages count fixtures and pegs from 1.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -20,16 +21,16 @@ from workhold.archive import is_archive
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.columns import read_columns
-from workhold.files.result.fixture_forms import checked_seating
+from workhold.files.result.fixture_forms import checked_seating, with_seating
 from workhold.files.result.parts import (
     LARGEST_LENGTH,
     LARGEST_NUMBER,
     checked_query,
     read_parts,
     refuse_faulty,
+    refuse_rows,
     refuse_unknown_types,
     result_with,
-    with_seating,
 )
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
@@ -269,15 +270,12 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
         pairs=pairs.astype(np.int32),
     )
 
-    def refuse(faulty: NDArray[np.bool_], reason: str) -> None:
-        where = np.flatnonzero(faulty if faulty.ndim == 1 else faulty.any(axis=1))
-        if where.size:
-            raise InputError(f"{path}: fixture {int(where[0]) + 1} {reason}.")
-
+    rows = range(len(table))
+    refuse = partial(refuse_rows, path=path, places=rows)
     refuse_unknown_types(arrangement, toolkit, path)
     refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")
     refuse(jaw != toolkit.peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
-    refuse_faulty(table, query, path, range(len(table)))
+    refuse_faulty(table, query, path, rows)
     hole_x, hole_y = peg_places(table, toolkit, query.workpiece)
     apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
     refuse(apart, "has a peg whose x, y are not those of its hole")
@@ -287,10 +285,7 @@ def checked_table(columns: Columns, query: Query, path: Path) -> FixtureTable:
 def faces_on_wall(workpiece: Workpiece, theta: NDArray[np.float64], path: Path) -> NDArray[np.int32]:
     """The faces (N, 2) at the ends of the contact with a wall, in orientations (N,) in radians.
 
-    Raises
-    ------
-    InputError
-        When there are fixtures, but the workpiece cannot lie flush on a wall.
+    Refuses a workpiece that cannot lie flush on a wall, where there are fixtures.
     """
     if len(theta) and len(workpiece.hull_edges) == 0:
         raise InputError(f"{path}: fixture 1 lies flush on a wall, which {workpiece.name} cannot.")

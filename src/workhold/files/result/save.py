@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from workhold.errors import InputError
+from workhold.files.atomic import text_file
 from workhold.model.result import Result
 
 __all__ = ["save"]
@@ -32,9 +33,10 @@ def save(result: Result, path: str | Path, form: str | None = None) -> None:
 
         write_result(result, path)
     elif form == "csv":
-        from workhold.files.result.fixture_text import write_result_csv
+        from workhold.files.result.fixture_text import result_csv_text
 
-        write_result_csv(result, path)
+        with text_file(path) as stream:
+            stream.writelines(result_csv_text(result))
     elif form == "npz":
         from workhold.files.result.columns import write_columns
 

@@ -11,15 +11,15 @@ and quality have twelve significant digits. :mod:`workhold.files.result.reader` 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from itertools import islice
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from attrs import asdict
 
 from workhold.files.atomic import text_file
 from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
-from workhold.files.result.heads import program_text
 from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import Flat
@@ -30,31 +30,33 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.program import Program
 from workhold.model.quality import PROGRAM_CLEARANCE
 from workhold.model.query import Query
-from workhold.model.requirements import Load, Tolerance
+from workhold.model.requirements import Load
 from workhold.model.result import Result
 from workhold.model.search_report import Proof
-from workhold.model.seating import Seating
-from workhold.model.solid import SolidOutline
+from workhold.model.solid import STANDING, SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "FORMAT",
     "asked_entry",
     "head",
+    "head_texts",
     "load_entry",
+    "program_text",
     "proof_entry",
     "result_text",
     "solid_entry",
     "toolkit_fields",
     "workpiece_entry",
     "write_result",
-    "write_result_to",
     "written",
 ]
 
 FORMAT = "workhold-result/1"
 # The key of kinds that have one of their own; others stand under "toolkit", with their kind.
 OWN_KEYS = {USUAL: "vise"}
+# Pieces of a program of which the text is made at a time.
+AT_ONCE = 2000
 
 
 def write_result(result: Result, path: str | Path) -> None:
@@ -66,31 +68,19 @@ def write_result(result: Result, path: str | Path) -> None:
         When the file cannot be written.
     """
     with text_file(path) as stream:
-        write_result_to(result, stream)
-
-
-def write_result_to(result: Result, stream: IO[str]) -> None:
-    """Writes a result to an open text stream."""
-    for text in result_text(result):
-        stream.write(text)
+        stream.writelines(result_text(result))
 
 
 def result_text(result: Result) -> Iterator[str]:
     """The text of a result file, piece by piece; in ASCII, so that no name in it steers a terminal."""
-    program = result.query.program
-    yield "{"
-    for key, value in head(result, with_pieces=False).items():
-        yield f"{json.dumps(key)}: "
-        if key == "program" and program is not None:
-            yield from program_text(program)
-        else:
-            yield json.dumps(value)
-        yield ",\n"
-    yield '"fixtures": ['
+    yield from head_texts(head(result, with_pieces=False), result.query.program, ",\n")
+    yield ',\n"fixtures": ['
     separator, count = "\n", 0
     for lines in fixture_lines(result.table, result.toolkit, result.workpiece):
         seatings = result.seating[count : count + len(lines)]
-        lines[: len(seatings)] = map(with_seating, lines, seatings)
+        lines[: len(seatings)] = [
+            with_entry(line, "seating", one.as_fields()) for line, one in zip(lines, seatings, strict=False)
+        ]
         if result.query.passed is not None:
             lines = with_clearances(lines, result, slice(count, count + len(lines)))
         yield separator + ",\n".join(lines)
@@ -98,9 +88,9 @@ def result_text(result: Result) -> Iterator[str]:
     yield "\n]}\n"
 
 
-def with_seating(line: str, seating: Seating) -> str:
-    """The line of a fixture with its seating."""
-    return f'{line[:-1]}, "seating": {json.dumps(seating.as_fields())}}}'
+def with_entry(line: str, key: str, value: dict[str, Any]) -> str:
+    """The line of a fixture with one more key."""
+    return f'{line[:-1]}, "{key}": {json.dumps(value)}}}'
 
 
 def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
@@ -124,7 +114,7 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
                 "tool": int(near.tool[number]),
                 "element": element_name(table, toolkit, number, int(near.contact[number])),
             }
-            line = f'{line[:-1]}, "program_clearance": {json.dumps(said)}}}'
+            line = with_entry(line, "program_clearance", said)
         out.append(line)
     return out if program.forces is None else with_forces(out, table, result, program)
 
@@ -136,7 +126,7 @@ def with_forces(lines: list[str], table: FixtureTable, result: Result, program: 
     jaw_force = result.query.jaw_force
     needs = cutting_needs(table, result.workpiece, result.toolkit, program, jaw_force)
     return [
-        line if need is None else f'{line[:-1]}, "program_forces": {json.dumps(need.to_dict())}}}'
+        line if need is None else with_entry(line, "program_forces", need.to_dict())
         for line, need in zip(lines, needs, strict=True)
     ]
 
@@ -162,6 +152,31 @@ def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
         **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+
+
+def program_text(program: Program) -> Iterator[str]:
+    """The JSON of a program as ``Program.to_dict`` has it, in parts."""
+    start = json.dumps(program.head())
+    yield f'{start[:-1]}, "pieces": ['
+    separator, pieces = "", program.iter_entries()
+    while some := [json.dumps(piece) for piece in islice(pieces, AT_ONCE)]:
+        yield separator + ", ".join(some)
+        separator = ", "
+    yield "]}"
+
+
+def head_texts(
+    entries: Mapping[str, Any], program: Program | None, separator: str, is_ascii: bool = True
+) -> Iterator[str]:
+    """The JSON of a head in parts, with all that a program sweeps and without its last bracket."""
+    before = "{"
+    for key, value in entries.items():
+        yield f"{before}{json.dumps(key)}: "
+        if key == "program" and program is not None:
+            yield from program_text(program)
+        else:
+            yield json.dumps(value, ensure_ascii=is_ascii)
+        before = separator
 
 
 def workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
@@ -190,15 +205,7 @@ def solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
     """How the solid of an outline stands, as it is written; nothing for a prism."""
     if solid is None:
         return {}
-    return {
-        "solid": {
-            "axis": solid.axis,
-            "height": solid.height,
-            "peg_height": solid.peg_height,
-            "head_room": solid.head_room,
-            "least_band": solid.least_band,
-        }
-    }
+    return {"solid": {key: getattr(solid, key) for key in STANDING}}
 
 
 def outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
@@ -216,8 +223,7 @@ def outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
 
 def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
     """What a query asks about a workpiece, as it is written; see :func:`head`."""
-    program = query.program
-    return {
+    asked = {
         **toolkit_entry(query.toolkit),
         "types": list(query.arrangements),
         "contact_margin": float(query.contact_margin),
@@ -227,31 +233,19 @@ def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
             "angles": [[float(low), float(high)] for low, high in query.restrictions.angles],
         },
         "ranking": list(query.ranking),
-        "tolerance": tolerance_entry(query.tolerance),
+        "tolerance": asdict(query.tolerance),
         "loads": [load_entry(load) for load in query.loads],
         "best": query.best,
-        **({} if query.listing is None else {"listing": query.listing}),
-        "jaw_force": query.jaw_force,
-        **(
-            {}
-            if query.seating is None
-            else {"seating": query.seating, "opening": query.opening, "foolproof": query.foolproof}
-        ),
-        **(
-            {}
-            if program is None
-            else {
-                "peg_height": query.peg_height,
-                "program": program.to_dict() if with_pieces else program.head(),
-            }
-        ),
     }
-
-
-def tolerance_entry(tolerance: Tolerance) -> dict[str, Any]:
-    """How far pegs and faces may be off, the fit of the dowels, and the departure among these."""
-    fit = None if tolerance.fit is None else asdict(tolerance.fit)
-    return {"peg": tolerance.peg, "face": tolerance.face, "fit": fit, "departure": tolerance.departure}
+    if query.listing is not None:
+        asked["listing"] = query.listing
+    asked["jaw_force"] = query.jaw_force
+    if query.seating is not None:
+        asked |= {"seating": query.seating, "opening": query.opening, "foolproof": query.foolproof}
+    if query.program is not None:
+        program = query.program.to_dict() if with_pieces else query.program.head()
+        asked |= {"peg_height": query.peg_height, "program": program}
+    return asked
 
 
 def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
@@ -283,13 +277,7 @@ def written(value: Any) -> Any:
 
 def load_entry(load: Load) -> dict[str, Any]:
     """A load as it is written: N, N mm, mm and degrees."""
-    return {
-        "name": load.name,
-        "points": [[float(x), float(y)] for x, y in load.points],
-        "force": load.force,
-        "directions": [float(angle) for angle in load.directions],
-        "moment": load.moment,
-    }
+    return {"name": load.name} | asdict(load)
 
 
 def proof_entry(proof: Proof) -> dict[str, Any]:
