@@ -33,7 +33,7 @@ from workhold.kernels.contact.pair_bounds import (
     bounds_of_pairs,
 )
 from workhold.listing.canonical_form import Candidates, candidates_of
-from workhold.listing.clamp_placement import DIRECTION_NAMES
+from workhold.listing.clamp_placement import DIRECTION_NAMES, direction_number
 from workhold.listing.packed_contacts import PackedContacts
 from workhold.listing.placing import LOCATOR_CONTACTS, TIP
 from workhold.model.clamps import LOCATORS
@@ -83,7 +83,7 @@ def pair_bounds(
         there = np.flatnonzero((order >= edges[number]) & (order < edges[number + 1]))
         some = part.take(order[there] - edges[number])
         forces[there] = clamp_forces(some, candidates_of(some, problem), problem)
-        directions[there] = DIRECTION_NAMES.index(problem.toolkit.arrangements[0].direction or "")
+        directions[there] = direction_number(problem.toolkit)
     kept = np.flatnonzero(forces[:, OFF] >= 0.0)
     ends = np.searchsorted(seat[kept], np.arange(len(starts) + 1))
     asked = np.zeros((len(DIRECTION_NAMES), len(DIRECTION_NAMES)), np.int64)

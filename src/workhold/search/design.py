@@ -42,7 +42,7 @@ from workhold.search.cells import run_blocks
 from workhold.search.in_the_way import has_body_to_pass
 from workhold.search.lattice_shares import LatticeShares
 from workhold.search.seated import Sink, deliver_seated, seated_answer
-from workhold.search.shares import Locating, Preview, Previews, answer_in_shares
+from workhold.search.shares import Preview, Previews, answer_in_shares
 from workhold.search.toolkit_search import ToolkitSearch, contacts_of
 from workhold.statics.judging import unfit
 
@@ -159,7 +159,10 @@ def answer(
     if query.seating is not None:
         return answer_with_seating(query, workers, progress, cancel, preview, sink)
     if WALL_END in query.toolkit.contacts:
-        return deliver(answer_in_shares(shares_beside_wall(query, cancel), progress, cancel), sink)
+        # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
+        from workhold.search.wall_shares import WallShares
+
+        return deliver(answer_in_shares(WallShares.of(query, cancel), progress, cancel), sink)
     if query.toolkit.travels > 1:
         with LatticeShares.of(query, workers, cancel) as shares:
             return deliver(answer_in_shares(shares, progress, cancel, preview), sink)
@@ -171,17 +174,6 @@ def answer(
         share = stage(progress, number / len(ways), (number + 1) / len(ways))
         results.append(answer_of_a_way(evolve(query, toolkit=way), workers, share, cancel, preview))
     return deliver(joined_ways(results, query), sink)
-
-
-def shares_beside_wall(query: Query, cancel: Event | None) -> Locating:
-    """The search beside a wall.
-
-    It is of what slides in holes of its own, or of a locator with clamps in the same holes.
-    """
-    # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
-    from workhold.search.wall_shares import LatticePairShares, WallShares
-
-    return (LatticePairShares if query.toolkit.moving.on is None else WallShares).of(query, cancel)
 
 
 def answer_with_seating(

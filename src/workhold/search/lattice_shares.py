@@ -163,10 +163,9 @@ class LatticeShares:
     def seats_among(self, records: Sequence[Array], within: Ranges) -> Seats:
         """All seats of contacts (N, 19) of each direction."""
         problems = [search.problem for search in self.searches]
-        directions = [search.frame.toolkit.arrangements[0].direction or "" for search in self.searches]
         parts = [
-            contacts_of_candidates(self.proven(some, problem), problem, direction)
-            for some, problem, direction in zip(records, problems, directions, strict=True)
+            contacts_of_candidates(self.proven(some, problem), problem)
+            for some, problem in zip(records, problems, strict=True)
         ]
         return seats_of(parts, problems[0], within)
 
