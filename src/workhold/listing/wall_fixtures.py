@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from attrs import define, field, fields
+from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE
 from workhold.geometry.symmetry import rotated
+from workhold.listing.canonical_form import Rows
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
 from workhold.model.fixture_table import FixtureTable, unknown_quality
 
@@ -26,7 +27,7 @@ BoolArray = NDArray[np.bool_]
 
 
 @define(frozen=True, eq=False)
-class WallFixtures:
+class WallFixtures(Rows):
     """N pairs of locator and clamp that press the part against the wall.
 
     Places are in the wall's frame, in mm: u along the hull edge from its start, v up from it.
@@ -56,20 +57,6 @@ class WallFixtures:
     def none(self) -> Array:
         """No doubt."""
         return np.zeros(len(self.edge))
-
-    def __len__(self) -> int:
-        return len(self.edge)
-
-    def take(self, order: NDArray[np.int64] | BoolArray) -> WallFixtures:
-        """The fixtures of an index array or mask, in its order."""
-        return WallFixtures(*(getattr(self, one.name)[order] for one in fields(WallFixtures)))
-
-    @classmethod
-    def joined(cls, parts: list[WallFixtures]) -> WallFixtures:
-        """All fixtures of several, at least one."""
-        return cls(
-            *(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(WallFixtures))
-        )
 
     def listed_once(self) -> WallFixtures:
         """One of the fixtures that are the same: a contact at a tangent joint is found on both features that

@@ -24,10 +24,16 @@ from workhold.model.requirements import Restrictions
 from workhold.model.result import Result
 from workhold.model.search_report import Explanation, Help, NearestMiss, Removal
 from workhold.model.workpiece import Workpiece
-from workhold.search.broken_rules import SECOND_CLAMP, Removals, removals_of
+from workhold.search.broken_rules import (
+    SECOND_CLAMP,
+    Removals,
+    line_in_the_way,
+    program_rule,
+    removals_of,
+    stroke_rule,
+)
 from workhold.search.design import answer
 from workhold.search.flush_search import FlushSearch
-from workhold.search.in_the_way import line_in_the_way, program_rule, stroke_rule
 from workhold.search.wall_search import WallSearch
 from workhold.search.wall_shares import LatticePairSearch
 from workhold.units import MILLIMETRE, Unit

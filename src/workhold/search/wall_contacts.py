@@ -41,6 +41,7 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.rules import ROUNDING
+from workhold.listing.canonical_form import Rows
 from workhold.search.flush_search import PartOnWall
 
 __all__ = [
@@ -63,7 +64,7 @@ TOGETHER = 1 << 19
 
 
 @define(frozen=True, eq=False)
-class PinContacts:
+class PinContacts(Rows):
     """M contacts of pegs on lines.
 
     Parameters
@@ -85,20 +86,6 @@ class PinContacts:
     reach: Array
     swing: Array
     branch: Array
-
-    def __len__(self) -> int:
-        return len(self.line)
-
-    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> PinContacts:
-        """The contacts of an index array or mask, in its order."""
-        return PinContacts(*(getattr(self, one.name)[order] for one in fields(PinContacts)))
-
-    @classmethod
-    def joined(cls, parts: list[PinContacts]) -> PinContacts:
-        """All contacts of several."""
-        return cls(
-            *(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(PinContacts))
-        )
 
 
 def pin_contacts_on(

@@ -29,9 +29,8 @@ from workhold.model.query import Query
 from workhold.model.search_report import AT_AN_EDGE, Undecided, no_fixture_notes, no_pair_note, no_place_note
 from workhold.proof.deciding import Account
 from workhold.search.flush_search import FlushSearch
-from workhold.search.in_the_way import has_body_to_pass
 from workhold.search.lattice_pairs import LatticePairs, are_pressed, closure_of, pairs_on
-from workhold.search.shares import one_clamp
+from workhold.search.shares import has_body_to_pass, one_clamp
 from workhold.search.wall_search import fixtures_on, searches_of
 
 __all__ = ["LatticePairSearch", "WallShares"]

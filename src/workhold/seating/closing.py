@@ -17,7 +17,7 @@ descent cache : descent paths that are kept, as a function's values are: D. Mich
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from threading import Lock
 from typing import Any
@@ -28,10 +28,13 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import close_jaws, reach_out
 from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
     CONFIG,
     CONTACTS,
     DOUBT,
     NODE_LENGTH,
+    PEG,
+    PIECE,
     SECOND,
     DescentWorkSpace,
     Obstacles,
@@ -41,7 +44,16 @@ from workhold.kernels.seating.free_space import RANGES, leave
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
 
-__all__ = ["LONGEST_STEP", "Closing", "DescentCache", "DescentPaths", "descent_starts", "filled", "with_room"]
+__all__ = [
+    "LONGEST_STEP",
+    "Closing",
+    "DescentCache",
+    "DescentPaths",
+    "candidate_of",
+    "descent_starts",
+    "filled",
+    "with_room",
+]
 
 
 def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -> NDArray[np.float64]:
@@ -61,6 +73,16 @@ def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
     out = np.empty((2 * (count + more), *rows.shape[1:]), rows.dtype)
     out[:count] = rows[:count]
     return out
+
+
+def candidate_of(config: Iterable[float], contacts: Sequence[tuple[int, int]]) -> NDArray[np.float64]:
+    """A candidate (24,) without forces: theta, x, y and S, and the pegs that touch, each with its piece."""
+    row = np.zeros(CANDIDATE_LENGTH)
+    row[CONFIG] = config
+    row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(contacts), -1.0, -1.0
+    for at, (peg, piece) in enumerate(contacts):
+        row[PEG + at], row[PIECE + at] = peg, piece
+    return row
 
 
 Array = NDArray[np.float64]
@@ -176,13 +198,6 @@ class Closing:
 
         It is false of configurations that are not asked for (N,).
         """
-        return ~np.isnan(self.directions_away(configs, asked))
-
-    def directions_away(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> Array:
-        """The directions (N,) in radians, of pegs on the part, in which it can be taken away.
-
-        NaN where there is none, and of configurations that are not asked for (N,).
-        """
         out, obstacles = np.zeros(len(configs)), self.obstacles
         if asked is not None:
             out[~asked] = np.nan
@@ -190,7 +205,7 @@ class Closing:
             room = RANGES * len(obstacles.pegs) * len(obstacles.rows) + 1
             axes, ranges = np.empty(len(obstacles.rows)), np.empty((room, 2))
             leave(np.ascontiguousarray(configs), obstacles, axes, ranges, out)
-        return out
+        return ~np.isnan(out)
 
     def leaves(self, starts: Array, ends: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether a part can be taken away where paths ended that met the stop (N,), or where they began.
