@@ -240,14 +240,14 @@ class RankedTable:
         return is_out
 
     def together(self) -> FixtureTable:
-        """What is kept, in the order of identities."""
+        """What is kept of all that was added, in the order of identities."""
+        self.measure()
         everything = FixtureTable.joined(self.tables)
         self.tables = [everything.take(identity_order(everything))]
         return self.tables[0]
 
     def result(self, account: Account, work: Work) -> Result:
         """The result of all."""
-        self.measure()
         query, table = self.query, self.together()
         order = rank(table.quality, query.ranking, query.tolerance)[: query.best]
         table, count, notes = table.take(order), self.count, list[str]()

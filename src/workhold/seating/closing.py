@@ -17,7 +17,7 @@ descent cache : descent paths that are kept, as a function's values are: D. Mich
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from threading import Lock
 from typing import Any
@@ -75,7 +75,9 @@ def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
     return out
 
 
-def candidate_of(config: Iterable[float], contacts: Sequence[tuple[int, int]]) -> NDArray[np.float64]:
+def candidate_of(
+    config: NDArray[np.float64] | tuple[float, ...], contacts: Sequence[tuple[int, int]]
+) -> NDArray[np.float64]:
     """A candidate (24,) without forces: theta, x, y and S, and the pegs that touch, each with its piece."""
     row = np.zeros(CANDIDATE_LENGTH)
     row[CONFIG] = config

@@ -97,7 +97,11 @@ class Solver:
         InputError
             As ``Pattern.of``.
         """
-        return self.in_pattern(fixture, Pattern.of(fixture, self.toolkit)).seating(with_cage)
+        return self.read(fixture, Pattern.of(fixture, self.toolkit), with_cage)
+
+    def read(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
+        """The seating of a fixture of a pattern."""
+        return self.in_pattern(fixture, pattern).seating(with_cage)
 
     def in_pattern(self, fixture: Fixture, pattern: Pattern) -> FixtureInPattern:
         """A fixture in its pattern, which is solved once and has the fixture among its seats from then on."""
@@ -162,9 +166,7 @@ class Solver:
             # All fixtures that stand on the pegs are known before the seating of any is made.
             for number in numbers[1:]:
                 self.in_pattern(*given[number])
-            for number, one in [
-                (number, self.in_pattern(*given[number]).seating(with_cage)) for number in numbers
-            ]:
+            for number, one in [(number, self.read(*given[number], with_cage)) for number in numbers]:
                 made[number] = one
             return len(numbers)
 
