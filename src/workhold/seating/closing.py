@@ -200,6 +200,13 @@ class Closing:
 
         It is false of configurations that are not asked for (N,).
         """
+        return ~np.isnan(self.directions_away(configs, asked))
+
+    def directions_away(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> Array:
+        """The directions (N,) in radians, of pegs on the part, in which it can be taken away.
+
+        NaN where there is none, and of configurations that are not asked for (N,).
+        """
         out, obstacles = np.zeros(len(configs)), self.obstacles
         if asked is not None:
             out[~asked] = np.nan
@@ -207,7 +214,7 @@ class Closing:
             room = RANGES * len(obstacles.pegs) * len(obstacles.rows) + 1
             axes, ranges = np.empty(len(obstacles.rows)), np.empty((room, 2))
             leave(np.ascontiguousarray(configs), obstacles, axes, ranges, out)
-        return ~np.isnan(out)
+        return out
 
     def leaves(self, starts: Array, ends: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether a part can be taken away where paths ended that met the stop (N,), or where they began.
