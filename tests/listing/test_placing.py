@@ -1,15 +1,19 @@
-"""Where fixtures stand on the jaws: nearest the opening, and moved outward in the order the model says."""
+"""Where fixtures stand: on jaws nearest the opening and then outward in order, clamps in the nearest hole that will do."""
 
 from __future__ import annotations
 
 from math import ceil
+from typing import Any
 
 import numpy as np
 import pytest
 from attrs import evolve
 
 from candidate_examples import candidates
+from toolkit_results import NOTCHED, part
+from workhold import Fence, Plate, Result, design
 from workhold.contact.problem import Frame
+from workhold.fixels.plate import Plate as AnyPlate
 from workhold.fixels.vise import Vise
 from workhold.listing.placing import outward_moves, placed_as_is
 
@@ -42,3 +46,33 @@ def test_ways_outward_are_tried_with_the_fewest_columns_first_and_most_of_them_o
         (1, 2),
         (2, 2),
     ]
+
+
+def holes(result: Result) -> set[tuple[Any, ...]]:
+    """Fixtures by their holes, with orientations."""
+    return {
+        (
+            f.direction,
+            round(f.pose.theta_deg, 4),
+            *((peg.column, peg.row) for peg in f.pegs),
+            round(f.pegs[-1].x, 4),
+        )
+        for f in result
+    }
+
+
+@pytest.mark.parametrize(
+    "toolkit",
+    [
+        Plate((14, 12), 2, columns=7, rows=7, directions=["-x", "+y"]),
+        Fence((10, 8), 2, wall_offset=5, columns=8, rows=8),
+    ],
+    ids=["plate", "wall"],
+)
+def test_a_longer_stroke_leaves_clamps_where_a_shorter_one_has_them(toolkit: AnyPlate) -> None:
+    """And some have several holes within the longer one."""
+    short, long = (design(part(NOTCHED), toolkit.changed({"travel": (4.0, most)})) for most in (12.0, 44.0))
+    assert holes(short) <= holes(long) and len(short) > 20
+    without = design(part(NOTCHED), toolkit.changed({"travel": (14.0, 44.0)}))
+    farther = {key[:-3] for key in holes(without)}
+    assert any(key[:-3] in farther for key in holes(short))

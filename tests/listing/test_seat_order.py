@@ -23,13 +23,12 @@ from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact import record
 from workhold.kernels.contact.seat_numbers import ASIDE
 from workhold.listing import seat_order
-from workhold.listing.packed_contacts import PackedContacts
+from workhold.listing.contact_groups import PackedContacts, SeatGroups
 from workhold.listing.ranking import is_worse, ranking_keys
-from workhold.listing.seat_groups import SeatGroups
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.search_report import best_note
-from workhold.search import best_first, lattice_shares
+from workhold.search import lattice_shares, shares
 from workhold.verification import verify_file
 
 OF_LOADS = {FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key}
@@ -163,7 +162,7 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(monkeypatch: pytest.M
 
 def contacts_of(query: Query, monkeypatch: pytest.MonkeyPatch) -> tuple[list[Any], list[Any]]:
     """Contacts of three locators and a clamp of each direction, and the searches that found them."""
-    monkeypatch.setattr(best_first, "SQUARE_FIRST", inf)
+    monkeypatch.setattr(shares, "SQUARE_FIRST", inf)
     found: list[Any] = []
     ordered = lattice_shares.ordered_groups
 

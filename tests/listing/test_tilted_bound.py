@@ -15,8 +15,8 @@ from workhold import OpeningVise, Plate, Query, Result, Vise, Workpiece, answer,
 from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
+from workhold.listing.bounds import square_angles, tilted_keys
 from workhold.listing.ranking import is_worse, ranking_keys
-from workhold.listing.tilted_bound import square_angles, tilted_keys
 from workhold.model.quality import LOCATION_ERROR, PREFERENCES, TILT
 from workhold.model.requirements import Tolerance
 

@@ -10,7 +10,8 @@ from workhold.contact.problem import Problem
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.flush import Candidate, pressing
 from workhold.search import wall_contacts
-from workhold.search.wall_search import WallSearch, lying_on
+from workhold.search.flush_search import part_on_wall
+from workhold.search.wall_search import WallSearch
 
 KITE = [[0, 0, 0], [56, 6, 0], [48, 44, 0], [10, 37, 0.2]]
 ARCH = [[0, 0, 0], [40, 0, 0], [40, 20, 1], [0, 20, 0]]
@@ -78,7 +79,7 @@ def test_a_row_that_just_grazes_an_arc_is_decided_in_balls() -> None:
         ]
         assert all(abs(v - 42.0) > 1e-9 for _, v in tops)
         assert not search.undecided
-        laid, standing = lying_on(search.problem, 0), search.problem.standing
+        laid, standing = part_on_wall(search.problem, 0), search.problem.standing
         places = search.on_rows(0, laid, standing, search.rows_of(laid, standing))
         top = places.point[:, 1] > 41.9
         assert top.any() and (np.abs(places.normal[top, 0]) < 1e-12).all() and (places.reach < 1e-6).all()

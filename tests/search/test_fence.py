@@ -16,7 +16,7 @@ import workhold
 from slow_fence import slow_fence
 from toolkit_results import NOTCHED, check_and_read_back, checked, part
 from workhold import Fence, InputError, Query, Result, Workpiece, answer, design
-from workhold.listing import wall_fixtures
+from workhold.listing import results
 from workhold.listing.ranking import ranking_keys
 from workhold.model.requirements import Restrictions, circle_zone
 from workhold.search import wall_search
@@ -295,7 +295,7 @@ def test_listing_a_few_at_a_time_lists_the_same(monkeypatch: pytest.MonkeyPatch)
         whole = answer(query)
         with monkeypatch.context() as patched:
             patched.setattr(wall_search, "TOGETHER", 60)
-            patched.setattr(wall_fixtures, "WAITING", 0)
+            patched.setattr(results, "WAITING", 0)
             again = answer(query)
         assert again == whole and len(whole) > 8
         assert again.distinct["edge"] == whole.distinct["edge"] == whole.found["edge"] / 3

@@ -12,9 +12,9 @@ from toolkit_results import NOTCHED, part
 from workhold import FlatJaw, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.proof.lattice_pair import verdict_on_pair
+from workhold.search.flush_search import part_on_wall
 from workhold.search.lattice_pairs import are_pressed, closure_of, pairs_on
-from workhold.search.wall_search import lying_on
-from workhold.search.wall_shares import LatticePairSearch, LatticePairShares
+from workhold.search.wall_shares import LatticePairSearch, WallShares
 
 KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
 ROCKER = [(0, 0, 0), (14, 0, 0), (20, 8, 0), (40, 8, 0), (46, 0, 0), (60, 0, 0.5), (60, 40, 0.2), (0, 40, 0)]
@@ -34,7 +34,7 @@ def test_balls_find_the_same_places_forces_and_verdicts(loop: list[tuple[float, 
     problem = problem_of(part(loop), margin)
     looked = sharp_ones = 0
     for edge in range(len(problem.workpiece.hull_edges)):
-        lying = lying_on(problem, edge)
+        lying = part_on_wall(problem, edge)
         for pairs in pairs_on(lying, (8.0, 8.0), (inf, inf), margin):
             closed, held, open_ = closure_of(pairs, lying, problem)
             for k in range(0, len(pairs), 3):
@@ -54,7 +54,7 @@ def test_where_curves_only_graze_no_bound_is_known_and_balls_decide() -> None:
     problem = problem_of(part(BOSSES), pitch=15.0)
     unknown = 0
     for edge in range(len(problem.workpiece.hull_edges)):
-        lying = lying_on(problem, edge)
+        lying = part_on_wall(problem, edge)
         for pairs in pairs_on(lying, (15.0, 15.0), (inf, inf), 0.0):
             unknown += int(np.isinf(pairs.reach).sum())
             good, undecided, sharpened = are_pressed(pairs, edge, lying, problem)
@@ -68,7 +68,7 @@ def test_what_doubles_are_too_coarse_for_is_taken_from_balls() -> None:
     """Forced to be coarse: every pair is decided again, and the same fixtures are found."""
     search = LatticePairSearch(problem_of(part(ROCKER)))
     for edge in search.edges:
-        lying = lying_on(search.problem, edge)
+        lying = part_on_wall(search.problem, edge)
         for pairs in pairs_on(lying, (8.0, 8.0), (inf, inf), 0.0):
             fine, _, _ = are_pressed(pairs, edge, lying, search.problem)
             coarse = pairs.take(np.arange(len(pairs)))
@@ -84,7 +84,7 @@ def test_what_doubles_are_too_coarse_for_is_taken_from_balls() -> None:
 def test_places_that_are_told_too_coarsely_are_taken_from_balls() -> None:
     """Also where the verdict is clear: with a bound above what one place is, the ball's place stands in the list."""
     problem = problem_of(part(KITE))
-    lying = lying_on(problem, 0)
+    lying = part_on_wall(problem, 0)
     (pairs,) = pairs_on(lying, (8.0, 8.0), (inf, inf), 0.0)
     fine, _, _ = are_pressed(pairs, 0, lying, problem)
     pairs.point[:] += 1e-8
@@ -96,7 +96,7 @@ def test_places_that_are_told_too_coarsely_are_taken_from_balls() -> None:
 def test_a_search_that_is_cancelled_within_a_hull_edge_says_so() -> None:
     """What was found in it so far is kept."""
     cancel = Event()
-    shares = LatticePairShares.of(Query(part(KITE), FlatJaw(pitch=8, peg_radius=2)), cancel)
+    shares = WallShares.of(Query(part(KITE), FlatJaw(pitch=8, peg_radius=2)), cancel)
     _, whole = shares.look(0, None)
     assert whole
     cancel.set()

@@ -17,11 +17,10 @@ from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.files.result.writer import write_result
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.tilted_bound import square_angles
+from workhold.listing.bounds import square_angles
 from workhold.model.quality import TILT
 from workhold.model.requirements import Restrictions
 from workhold.model.search_report import best_note
-from workhold.search import best_first
 from workhold.search.lattice_shares import LatticeShares, square_first
 from workhold.search.toolkit_search import ToolkitSearch
 from workhold.verification import verify_file
@@ -51,7 +50,7 @@ RANKINGS: dict[str, dict[str, Any]] = {
 @pytest.fixture(autouse=True)
 def searches_of_any_size_begin_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """Not only those that take long."""
-    monkeypatch.setattr(best_first, "SQUARE_FIRST", 0.0)
+    monkeypatch.setattr("workhold.search.shares.SQUARE_FIRST", 0.0)
 
 
 @pytest.mark.sampled(3)
@@ -158,7 +157,7 @@ def test_small_searches_and_whole_lists_begin_anywhere(monkeypatch: pytest.Monke
     with LatticeShares.of(query, 1, None) as shares:
         assert shares.bound is not None
         assert len(shares.ranges[0]) >= 4
-    monkeypatch.setattr(best_first, "SQUARE_FIRST", 1e12)
+    monkeypatch.setattr("workhold.search.shares.SQUARE_FIRST", 1e12)
     for asked in (query, Query(part(NOTCHED), CLAMPS)):
         with LatticeShares.of(asked, 1, None) as shares:
             assert shares.bound is None and shares.shares == 1

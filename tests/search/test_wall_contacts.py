@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row
-from workhold.search.wall_contacts import PartOnWall, half_angles, heights, pin_contacts_on
+from workhold.search.flush_search import PartOnWall
+from workhold.search.wall_contacts import half_angles, heights, pin_contacts_on
 
 
 @pytest.mark.parametrize("upright", [False, True])

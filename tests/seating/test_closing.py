@@ -16,10 +16,9 @@ from workhold.kernels.seating.descent_paths import OUTSIDE, STOP
 from workhold.kernels.seating.linear_program import add_normal, shortest_out
 from workhold.kernels.seating.obstacles import clearances
 from workhold.seating.closing import descent_starts
-from workhold.seating.closing_frame import ClosingFrame
 from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
-from workhold.seating.pattern import Pattern
+from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
 
 # In which a part is moved that is said not to get away.

@@ -24,11 +24,10 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.parallel_and_concentric import about_one_center
 from workhold.seating.closing import filled
-from workhold.seating.equilibria import equilibria
+from workhold.seating.equilibria import equilibria, in_balance
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import Solver
-from workhold.seating.subset_equilibria import in_balance
 from workhold.seating.two_contact_curves import TwoContactCurves
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)

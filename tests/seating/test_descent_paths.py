@@ -25,7 +25,6 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.descent_paths import free_until
 from workhold.kernels.seating.free_space import RANGES, leave
 from workhold.kernels.seating.obstacles import clearances
-from workhold.seating import subset_equilibria
 from workhold.seating.closing import Closing, DescentCache, descent_starts
 from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import free_paths, pass_descents, shifts_of
@@ -173,7 +172,7 @@ def test_nodes_say_how_far_their_way_has_come(ways):
 
 def test_nothing_depends_on_what_was_followed_before(ways, monkeypatch):
     """Nor on what is forgotten: to the last bit."""
-    monkeypatch.setattr(subset_equilibria, "MOST_NODES", 0)
+    monkeypatch.setattr("workhold.seating.equilibria.MOST_NODES", 0)
     for number in (2, 1):
         again = followed(Solver(STEP, VISE), PATTERNS[number])[3]
         assert [part.tobytes() for part in again] == [part.tobytes() for part in ways[2 * number][3]]
@@ -221,7 +220,10 @@ def test_all_passes_of_pegs_that_have_no_group_of_their_own_are_told(ways):
             group, down = found.subsets[number]
             there = down.candidates[own - down.first]
             assert there[CONFIG] + group.shift == pytest.approx(row[CONFIG], abs=1e-9)
-            assert row[PEG:PIECE].tolist() == group.names[there[PEG:PIECE].astype(int)].tolist()
+            assert (
+                row[PEG:PIECE].tolist()
+                == np.array([*group.numbers, -1.0])[there[PEG:PIECE].astype(int)].tolist()
+            )
             assert (
                 row[[CONTACTS, *range(PIECE, FORCE)]].tolist()
                 == there[[CONTACTS, *range(PIECE, FORCE)]].tolist()

@@ -27,9 +27,9 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.obstacles import clearances
 from workhold.kernels.seating.slides import slides_blocked
-from workhold.seating import subset_equilibria, two_contact_curves
+from workhold.seating import two_contact_curves
 from workhold.seating.closing import filled
-from workhold.seating.equilibria import Equilibria, equilibria
+from workhold.seating.equilibria import Equilibria, SubsetCache, equilibria, equilibria_of_subset
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern, PegSubset, subsets_of
 from workhold.seating.solver import Solver
@@ -78,7 +78,7 @@ def test_nothing_depends_on_what_was_solved_before():
         count += len(subsets_of(patterns()[number]))
     [boundary] = solver.boundaries.values()
     assert (
-        len(boundary.once(subset_equilibria.SubsetCache.empty).found) < 0.8 * count
+        len(boundary.once(SubsetCache.empty).found) < 0.8 * count
         and len(boundary.once(two_contact_curves.curves_of_jaws)) < count
     )
 
@@ -86,17 +86,13 @@ def test_nothing_depends_on_what_was_solved_before():
 def test_what_is_forgotten_is_found_again(monkeypatch):
     """With room for three groups, which one pattern has more of, and the cells of one or two jaws, the same; and no more are
     kept than those of a pattern."""
-    monkeypatch.setattr(subset_equilibria, "MOST_KEPT", 3)
+    monkeypatch.setattr("workhold.seating.equilibria.MOST_KEPT", 3)
     monkeypatch.setattr(two_contact_curves, "MOST_KEPT", 1500)
     solver = Solver(STEP, VISE)
     for pattern, known in zip(patterns()[:2], by_themselves()[:2], strict=True):
         assert [byte for one in solve(solver, pattern) for byte in told(one)] == known
     for boundary in (one for drawn in solver.boundaries.values() for one in (drawn, drawn.turned_over)):
-        assert (
-            0
-            < len(boundary.once(subset_equilibria.SubsetCache.empty).found)
-            <= len(subsets_of(patterns()[1]))
-        )
+        assert 0 < len(boundary.once(SubsetCache.empty).found) <= len(subsets_of(patterns()[1]))
         assert (
             0
             < sum(len(one.cells) for one in boundary.once(two_contact_curves.curves_of_jaws).values())
@@ -184,8 +180,8 @@ def test_slides_end_where_a_third_peg_of_the_jaw_touches():
     held = two_contact_curves.TwoContactCurves.of(boundary, group.pattern)
     stopped = filled(CANDIDATE_LENGTH, 256, slides_blocked, held.slides, held.given)
     assert len(stopped) > 2
-    kept = subset_equilibria.SubsetCache()
-    own = subset_equilibria.equilibria_of_subset(kept, boundary, group, size)
+    kept = SubsetCache()
+    own = equilibria_of_subset(kept, boundary, group, size)
     every, told = np.split(kept.candidates[own.first : own.end], [-len(stopped)])
     assert np.array_equal(told, stopped)
     for row in stopped:

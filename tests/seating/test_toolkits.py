@@ -17,12 +17,11 @@ from workhold.kernels.base.distance import outline_distances
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.model.result import Result
 from workhold.model.seating import Seating
-from workhold.seating.closing_frame import ClosingFrame
 from workhold.seating.closing_simulation import simulate_closing
 from workhold.seating.contact_forces import contact_normals
 from workhold.seating.equilibria import equilibria
 from workhold.seating.join_tree import JoinTree
-from workhold.seating.pattern import Pattern
+from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
 from workhold.seating.wall_equilibria import WallEquilibria
 

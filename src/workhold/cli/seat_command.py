@@ -64,7 +64,7 @@ def seat(
     gauge, seating = Gauge(fixture, result.toolkit), fixture.seating
     if seating is None:
         from workhold.cli.warming import compile_seating
-        from workhold.seating.closing_frame import refuse_unseated
+        from workhold.seating.pattern import refuse_unseated
         from workhold.seating.solver import Solver
 
         refuse_unseated(result.toolkit)

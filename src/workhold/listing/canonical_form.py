@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, Self
 
 import numpy as np
 from attrs import define, fields
@@ -18,11 +19,11 @@ from workhold.proof.deciding import peg_integers
 
 __all__ = [
     "Candidates",
+    "Rows",
     "candidates_of",
     "canonical_form",
     "changes",
     "clusters",
-    "joined",
     "listed_once",
     "most_holes",
     "packed",
@@ -39,7 +40,25 @@ MOST_PEGS = 4
 
 
 @define(frozen=True, eq=False)
-class Candidates:
+class Rows:
+    """Arrays of as many rows each: the fields of a class."""
+
+    def __len__(self) -> int:
+        return len(getattr(self, fields(type(self))[0].name))
+
+    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Self:
+        """The rows of an index array or mask, in its order."""
+        indices = np.flatnonzero(order) if order.dtype == np.bool_ else order
+        return type(self)(*(getattr(self, one.name).take(indices, axis=0) for one in fields(type(self))))
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """The rows of several, at least one."""
+        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
+
+
+@define(frozen=True, eq=False)
+class Candidates(Rows):
     """N fixtures on their way to a table; standing pegs first, (N, 4) unless said otherwise.
 
     Parameters
@@ -63,14 +82,6 @@ class Candidates:
     null: Array
     force: Array
 
-    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Candidates:
-        """The candidates of an index array or mask, in its order."""
-        indices = np.flatnonzero(order) if order.dtype == np.bool_ else order
-        return Candidates(*(getattr(self, name).take(indices, axis=0) for name in CANDIDATE_FIELDS))
-
-
-CANDIDATE_FIELDS = tuple(a.name for a in fields(Candidates))
-
 
 def candidates_of(records: Array, problem: Problem) -> Candidates:
     """Proven records as candidates."""
@@ -81,11 +92,6 @@ def candidates_of(records: Array, problem: Problem) -> Candidates:
     contacts_of(records, problem.rows, problem.setting, point, gap, null, force, *work)
     standing = records[:, record.STANDING].astype(np.int64)
     return Candidates(standing, feature, column, row, -records[:, record.PSI], point, gap, null, force)
-
-
-def joined(parts: list[Candidates]) -> Candidates:
-    """All candidates of several lists as one."""
-    return Candidates(*(np.concatenate([getattr(p, name) for p in parts]) for name in CANDIDATE_FIELDS))
 
 
 def canonical_form(c: Candidates, swapped: int) -> Candidates:

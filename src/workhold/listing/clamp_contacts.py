@@ -21,7 +21,7 @@ from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_POSE
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.listing.canonical_form import Candidates
-from workhold.listing.clamp_placement import DIRECTION_NAMES, axis_of
+from workhold.listing.clamp_placement import axis_of, direction_number
 from workhold.listing.placing import LOCATOR_CONTACTS, TIP, clamp_placement
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.deciding import BALLS
@@ -91,7 +91,7 @@ class ClampContacts:
         )
 
 
-def contacts_on_wall(found: WallFixtures, problem: Problem, direction: str) -> ClampContacts:
+def contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
     """The contacts of a wall, a locator and a clamp that the search of one direction proved."""
     found = found.listed_once()
     found = found.take(is_one_of_two(found.null[:, :3], found.push))
@@ -101,7 +101,7 @@ def contacts_on_wall(found: WallFixtures, problem: Problem, direction: str) -> C
     flush, plate, line = problem.workpiece.flush, problem.toolkit.carriers[0], found.line[hole_of]
     height = found.row * plate.pitch[1] + plate.offset[1]
     return ClampContacts(
-        direction=np.full(len(found), DIRECTION_NAMES.index(direction)),
+        direction=np.full(len(found), direction_number(problem.toolkit)),
         feature=found.feature[:, :1],
         column=np.zeros((len(found), 1), np.int64),
         row=found.row[:, None],
@@ -121,7 +121,7 @@ def contacts_on_wall(found: WallFixtures, problem: Problem, direction: str) -> C
     )
 
 
-def contacts_of_candidates(c: Candidates, problem: Problem, direction: str) -> ClampContacts:
+def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
     """The contacts of three locators and a clamp that the search of one direction proved."""
     frame = problem.frame
     rows = problem.rows[c.feature]
@@ -157,7 +157,7 @@ def contacts_of_candidates(c: Candidates, problem: Problem, direction: str) -> C
     taken = np.take_along_axis(taken, order, axis=1)[kept]
     there = kept[index]
     return ClampContacts(
-        direction=np.full(kept.sum(), DIRECTION_NAMES.index(direction)),
+        direction=np.full(kept.sum(), direction_number(problem.toolkit)),
         feature=feature,
         column=column,
         row=row,

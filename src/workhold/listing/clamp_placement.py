@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import BODY_SLACK, GAP_SLACK
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.toolkit import Carrier, Travel
+from workhold.fixels.toolkit import Carrier, Toolkit, Travel
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.distance import piece_distances
 
@@ -29,6 +29,7 @@ __all__ = [
     "OPENING",
     "ClampPlacement",
     "axis_of",
+    "direction_number",
     "is_bolted",
     "is_upright",
     "last_holes",
@@ -43,6 +44,11 @@ FAR = 1 << 30
 # Clamps are listed in this order of directions; unit vectors along which the travel of each is counted.
 DIRECTION_NAMES = tuple(DIRECTIONS)
 OPENING = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values()])
+
+
+def direction_number(toolkit: Toolkit) -> int:
+    """The number of the direction of a toolkit's only clamp."""
+    return DIRECTION_NAMES.index(toolkit.arrangements[0].direction or "")
 
 
 def is_upright(direction: IntArray) -> BoolArray:

@@ -29,7 +29,6 @@ from workhold.listing.canonical_form import (
     Candidates,
     candidates_of,
     canonical_form,
-    joined,
     listed_once,
     most_holes,
     packed_holes,
@@ -65,7 +64,7 @@ def finish(records: list[Array], problem: Problem, cancel: Event | None = None) 
     """
     course = Course(sum(map(len, records)), cancel=cancel)
     parts, accounts = zip(*(listed_form(block, problem, course) for block in blocks_of(records)), strict=True)
-    return listed_once(joined(list(parts))), Account.together(list(accounts))
+    return listed_once(Candidates.joined(parts)), Account.together(list(accounts))
 
 
 def blocks_of(records: Iterable[Array]) -> Iterator[Array]:
@@ -162,8 +161,8 @@ class BestFixtures:
             fresh += len(part.standing)
             # Measured a share at a time, so that one who asks to stop does not wait for all.
             if fresh >= max(BLOCK, self.most):
-                parts, fresh = [self.cut(listed_once(joined(parts)), ties=True)], 0
-        self.kept = self.cut(listed_once(joined(parts)), ties=True)
+                parts, fresh = [self.cut(listed_once(Candidates.joined(parts)), ties=True)], 0
+        self.kept = self.cut(listed_once(Candidates.joined(parts)), ties=True)
 
     def cut(self, everything: Candidates, ties: bool) -> Candidates:
         """The best ``most`` of fixtures that are listed once, and those that tie with the last."""

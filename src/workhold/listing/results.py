@@ -49,6 +49,8 @@ __all__ = [
 
 # The shares of the work, as progress reports it, that are done when all is decided and when all is measured.
 DECIDED, MEASURED = 0.5, 0.8
+# Fixtures that wait to be measured together.
+WAITING = 1 << 14
 
 
 @frozen
@@ -182,11 +184,13 @@ class RankedTable:
     ----------
     query : what is asked.
     problem : the search of one direction of the clamp, for what all have in common.
+    waiting : fixtures that are not measured yet.
     has_dropped : whether some that cannot be among the best were left out, so that nobody counted all.
     """
 
     query: Query
     problem: Problem
+    waiting: list[FixtureTable] = field(factory=list, init=False)
     touched: Touched = field(init=False)
     count: SetCount = field(init=False)
     tables: list[FixtureTable] = field(init=False)
@@ -199,11 +203,20 @@ class RankedTable:
         self.tables = [FixtureTable.empty(toolkit)]
 
     def __len__(self) -> int:
-        return int(self.count.found.sum())
+        return int(self.count.found.sum()) + sum(map(len, self.waiting))
 
     def add(self, table: FixtureTable) -> None:
-        """Takes fixtures; where only the best are asked for, keeps those that may be among them."""
-        query, most = self.query, self.query.best
+        """Takes fixtures."""
+        self.waiting.append(table)
+        if sum(map(len, self.waiting)) > WAITING:
+            self.measure()
+
+    def measure(self) -> None:
+        """Measures what waits; where only the best are asked for, keeps what may be among them."""
+        if not self.waiting:
+            return
+        query, most, table = self.query, self.query.best, FixtureTable.joined(self.waiting)
+        self.waiting = []
         self.count.add(table)
         self.tables.append(measured_as(table, query, self.touched))
         if most is not None:
@@ -214,6 +227,7 @@ class RankedTable:
     @property
     def last(self) -> NDArray[np.float64] | None:
         """The keys of the last of the best, infinite for NaN, once there are as many as are asked for."""
+        self.measure()
         table, query = self.tables[0], self.query
         if query.best is None or len(table) < query.best:
             return None
@@ -226,7 +240,8 @@ class RankedTable:
         return is_out
 
     def together(self) -> FixtureTable:
-        """What is kept, in the order of identities."""
+        """What is kept of all that was added, in the order of identities."""
+        self.measure()
         everything = FixtureTable.joined(self.tables)
         self.tables = [everything.take(identity_order(everything))]
         return self.tables[0]

@@ -17,7 +17,7 @@ may stop once as many fixtures are kept as are asked for, and the next bound is 
 Then no further seat holds one that is listed. Seats of equal bounds are looked at, for what ranks alike is
 listed in the order of holes.
 
-What pairs of clamps bound (``listing.pair_bounds``) takes longer. So it is asked only of groups that are next
+What pairs of clamps bound (``listing.bounds``) takes longer. So it is asked only of groups that are next
 to be looked at, or as good as these by all figures before the first of those.
 
 Seats are taken whole, with all contacts that may be theirs. A group is one of holes and orientation. Contacts
@@ -43,11 +43,10 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.seat_numbers import numbers_of_seats
+from workhold.listing.bounds import BOUNDED, first_of_clamps, pair_bounds
 from workhold.listing.canonical_form import candidates_of
-from workhold.listing.packed_contacts import PackedContacts
-from workhold.listing.pair_bounds import BOUNDED, first_of_clamps, pair_bounds
+from workhold.listing.contact_groups import PackedContacts, SeatGroups, in_order_of_bounds
 from workhold.listing.ranking import best_possible, ranking_keys
-from workhold.listing.seat_groups import SeatGroups, in_order_of_bounds
 from workhold.model.clamps import LOCATORS
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,

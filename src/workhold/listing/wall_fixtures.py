@@ -9,31 +9,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from attrs import define, evolve, field, fields
+from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE
 from workhold.geometry.symmetry import rotated
+from workhold.listing.canonical_form import Rows
 from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
-from workhold.listing.results import RankedTable, Work
 from workhold.model.fixture_table import FixtureTable, unknown_quality
-from workhold.model.query import Query
-from workhold.model.result import Result
-from workhold.proof.deciding import Account
 
-__all__ = ["WallCollector", "WallFixtures", "first_of_each", "placed_on_wall", "turned", "wall_table"]
+__all__ = ["WallFixtures", "first_of_each", "placed_on_wall", "turned", "wall_table"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Fixtures that wait to be listed and measured together.
-WAITING = 1 << 14
-
 
 @define(frozen=True, eq=False)
-class WallFixtures:
+class WallFixtures(Rows):
     """N pairs of locator and clamp that press the part against the wall.
 
     Places are in the wall's frame, in mm: u along the hull edge from its start, v up from it.
@@ -63,20 +57,6 @@ class WallFixtures:
     def none(self) -> Array:
         """No doubt."""
         return np.zeros(len(self.edge))
-
-    def __len__(self) -> int:
-        return len(self.edge)
-
-    def take(self, order: NDArray[np.int64] | BoolArray) -> WallFixtures:
-        """The fixtures of an index array or mask, in its order."""
-        return WallFixtures(*(getattr(self, one.name)[order] for one in fields(WallFixtures)))
-
-    @classmethod
-    def joined(cls, parts: list[WallFixtures]) -> WallFixtures:
-        """All fixtures of several, at least one."""
-        return cls(
-            *(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(WallFixtures))
-        )
 
     def listed_once(self) -> WallFixtures:
         """One of the fixtures that are the same: a contact at a tangent joint is found on both features that
@@ -169,47 +149,3 @@ def placed_on_wall(found: WallFixtures, problem: Problem) -> FixtureTable:
     found = found.listed_once()
     hole, fits = found.placement(problem).nearest(problem)
     return wall_table(found.take(fits), hole[fits], problem)
-
-
-@define(eq=False)
-class WallCollector:
-    """The fixtures of a wall with one clamp found so far, or the best of them.
-
-    Parameters
-    ----------
-    query : what is asked.
-    problems : the searches of all directions of the clamp.
-    waiting : fixtures of each direction that are not listed yet.
-    """
-
-    query: Query
-    problems: Sequence[Problem]
-    ranked: RankedTable = field(init=False)
-    waiting: list[list[WallFixtures]] = field(init=False)
-
-    def __attrs_post_init__(self) -> None:
-        self.ranked = RankedTable(self.query, self.problems[0])
-        self.waiting = [[] for _ in self.problems]
-
-    def __len__(self) -> int:
-        return len(self.ranked) + sum(len(part) for parts in self.waiting for part in parts)
-
-    def add(self, found: Sequence[WallFixtures | None]) -> None:
-        """Takes the fixtures of each direction, where there are some."""
-        for parts, part in zip(self.waiting, found, strict=True):
-            parts += [] if part is None else [part]
-        if sum(len(part) for parts in self.waiting for part in parts) > WAITING:
-            self.list_waiting()
-
-    def list_waiting(self) -> None:
-        """Lists what waits."""
-        for number, (parts, problem) in enumerate(zip(self.waiting, self.problems, strict=True)):
-            if parts:
-                table = placed_on_wall(WallFixtures.joined(parts), problem)
-                self.ranked.add(evolve(table, arrangement=table.arrangement + np.int8(number)))
-                parts.clear()
-
-    def result(self, account: Account, work: Work) -> Result:
-        """The result of all."""
-        self.list_waiting()
-        return self.ranked.result(account, work)

@@ -15,9 +15,12 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
+from workhold.contact.beside import keeps_of
 from workhold.contact.features import end_distances
 from workhold.contact.problem import Frame, Problem
+from workhold.contact.trimming import most_in_the_way
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
+from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
@@ -31,12 +34,21 @@ from workhold.model.requirements import Restrictions
 from workhold.model.search_report import NearestMiss, Removal
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks
-from workhold.search.in_the_way import body_rule, has_body_to_pass, program_rule
+from workhold.search.shares import has_body_to_pass
 from workhold.search.toolkit_search import ToolkitSearch, contacts_of
 from workhold.statics.contact_matrix import outward_normals
 from workhold.units import Unit
 
-__all__ = ["SECOND_CLAMP", "Removals", "all_contacts", "removals_of"]
+__all__ = [
+    "Removals",
+    "SECOND_CLAMP",
+    "all_contacts",
+    "body_rule",
+    "line_in_the_way",
+    "program_rule",
+    "removals_of",
+    "stroke_rule",
+]
 
 # What is asked last of locators and a clamp, where two clamps are needed.
 SECOND_CLAMP = "a second clamp that holds the part together with the first, and is needed for it"
@@ -343,3 +355,42 @@ def nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Problem)
     part = evolve(problem, query=evolve(problem.query, toolkit=toolkit, restrictions=None))
     table = placed(contacts.candidates.take(np.array([index])), part)
     return NearestMiss(fixture_at(table, toolkit, 0, problem.workpiece), words)
+
+
+def line_in_the_way(query: Query) -> int | None:
+    """The line of a query's program whose tool passes the longest stretch of places for pegs.
+
+    None without a program, and where it passes none.
+    """
+    if query.program is None:
+        return None
+    try:
+        problem = Problem.of(query.without_program)
+    except InputError:
+        return None
+    carriers = Frame.of(query.toolkit, problem.diameter).carriers
+    for locus, carrier in zip(problem.loci, carriers, strict=True):
+        pieces, beyond = keeps_of(query, carrier)[0]
+        line = most_in_the_way([feature.segment for feature in locus], pieces, beyond)
+        if line is not None:
+            return line
+    return None
+
+
+def program_rule(query: Query) -> str:
+    """What a program asks, as the rule that takes contacts away.
+
+    It reads such as "tools of the program, most in line 7".
+    """
+    line = line_in_the_way(query)
+    return "tools of the program" + ("" if line is None else f", most in line {line}")
+
+
+def body_rule(query: Query) -> str:
+    """What a program asks of the bodies of clamps, from the tip back to the hole."""
+    return f"body of the {query.toolkit.moving.noun} clear of the program's tools"
+
+
+def stroke_rule(query: Query, rule: str) -> str:
+    """The rule on a clamp's stroke, with what a program asks of the body that the clamp then has."""
+    return f"{rule}, {body_rule(query)}" if has_body_to_pass(query) else rule

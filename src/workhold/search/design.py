@@ -37,12 +37,10 @@ from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
 from workhold.model.search_report import no_fixture_notes, no_place_note
 from workhold.model.workpiece import Workpiece
-from workhold.search.best_first import best_first, work_of
 from workhold.search.cells import run_blocks
-from workhold.search.in_the_way import has_body_to_pass
 from workhold.search.lattice_shares import LatticeShares
-from workhold.search.seated import Sink, deliver_seated, seated_answer
-from workhold.search.shares import Locating, Preview, Previews, answer_in_shares
+from workhold.search.seated import Sink, seated_answer
+from workhold.search.shares import Preview, Previews, answer_in_shares, best_first, has_body_to_pass, work_of
 from workhold.search.toolkit_search import ToolkitSearch, contacts_of
 from workhold.statics.judging import unfit
 
@@ -157,9 +155,13 @@ def answer(
     """
     workers = thread_count(counting_number("threads", threads))
     if query.seating is not None:
-        return answer_with_seating(query, workers, progress, cancel, preview, sink)
+        search = partial(answer, threads=workers, preview=preview)
+        return seated_answer(query, search, threads=workers, progress=progress, cancel=cancel, sink=sink)
     if WALL_END in query.toolkit.contacts:
-        return deliver(answer_in_shares(shares_beside_wall(query, cancel), progress, cancel), sink)
+        # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
+        from workhold.search.wall_shares import WallShares
+
+        return deliver(answer_in_shares(WallShares.of(query, cancel), progress, cancel), sink)
     if query.toolkit.travels > 1:
         with LatticeShares.of(query, workers, cancel) as shares:
             return deliver(answer_in_shares(shares, progress, cancel, preview), sink)
@@ -171,32 +173,6 @@ def answer(
         share = stage(progress, number / len(ways), (number + 1) / len(ways))
         results.append(answer_of_a_way(evolve(query, toolkit=way), workers, share, cancel, preview))
     return deliver(joined_ways(results, query), sink)
-
-
-def shares_beside_wall(query: Query, cancel: Event | None) -> Locating:
-    """The search beside a wall.
-
-    It is of what slides in holes of its own, or of a locator with clamps in the same holes.
-    """
-    # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
-    from workhold.search.wall_shares import LatticePairShares, WallShares
-
-    return (LatticePairShares if query.toolkit.moving.on is None else WallShares).of(query, cancel)
-
-
-def answer_with_seating(
-    query: Query,
-    threads: int,
-    progress: Progress | None,
-    cancel: Event | None,
-    preview: Preview | None,
-    sink: Sink | None,
-) -> Result:
-    """The answer with the seating of the first fixtures, see :func:`answer`."""
-    search = partial(answer, threads=threads, preview=preview)
-    if sink is None:
-        return seated_answer(query, search, threads=threads, progress=progress, cancel=cancel)
-    return deliver_seated(query, search, sink, threads=threads, progress=progress, cancel=cancel)
 
 
 def answer_of_a_way(

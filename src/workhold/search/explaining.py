@@ -23,9 +23,17 @@ from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.result import Result
 from workhold.model.search_report import Explanation, Help, NearestMiss, Removal
-from workhold.search.broken_rules import SECOND_CLAMP, Removals, removals_of
+from workhold.model.workpiece import Workpiece
+from workhold.search.broken_rules import (
+    SECOND_CLAMP,
+    Removals,
+    line_in_the_way,
+    program_rule,
+    removals_of,
+    stroke_rule,
+)
 from workhold.search.design import answer
-from workhold.search.in_the_way import line_in_the_way, program_rule, stroke_rule
+from workhold.search.flush_search import FlushSearch
 from workhold.search.wall_search import WallSearch
 from workhold.search.wall_shares import LatticePairSearch
 from workhold.units import MILLIMETRE, Unit
@@ -52,7 +60,7 @@ def removals_beside_wall(query: Query, alone: bool) -> Removals:
         before = after
     search, nearest = searched(query) if alone else None, None
     if search is not None and search.verified == 0 and search.nearest is not None:
-        nearest = miss_of(*search.nearest_alone())
+        nearest = miss_of(search.nearest[1], search.alone, query.workpiece)
     return Removals(first, removals, nearest)
 
 
@@ -91,7 +99,7 @@ def left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
         )
 
 
-def search_of(query: Query, explains: bool = False) -> WallSearch | LatticePairSearch | None:
+def search_of(query: Query, explains: bool = False) -> FlushSearch | None:
     """The search of a query; None where nothing is left to touch."""
     kind = LatticePairSearch if query.toolkit.moving.on is None else WallSearch
     try:
@@ -100,7 +108,7 @@ def search_of(query: Query, explains: bool = False) -> WallSearch | LatticePairS
         return None
 
 
-def searched(query: Query) -> WallSearch | LatticePairSearch | None:
+def searched(query: Query) -> FlushSearch | None:
     """The search of a query, done; None where nothing is left to touch."""
     search = search_of(query, explains=True)
     for edge in [] if search is None else search.edges:
@@ -118,12 +126,14 @@ def examined(query: Query) -> int:
 def placed(query: Query) -> int:
     """How many pairs have a place."""
     search = search_of(query)
-    return 0 if search is None else sum(len(part) for edge in search.edges for part in search.tables(edge))
+    if search is None:
+        return 0
+    return sum(len(search.placed([part], edge)) for edge in search.edges for part in search.fixtures(edge))
 
 
-def miss_of(table: FixtureTable, problem: Problem) -> NearestMiss:
+def miss_of(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NearestMiss:
     """The pair that comes nearest to pressing the part, as it would stand."""
-    fixture = fixture_at(table, problem.toolkit, 0, problem.workpiece)
+    fixture = fixture_at(table, toolkit, 0, workpiece)
     pulls = sum(peg.force < 0 for peg in fixture.pegs)
     if pulls == 0:
         words = "one of its contacts would not press at all."

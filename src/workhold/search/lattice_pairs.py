@@ -21,7 +21,7 @@ from collections.abc import Iterator
 from math import inf
 
 import numpy as np
-from attrs import evolve, field, fields, frozen
+from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
@@ -39,8 +39,9 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.rules import ROUNDING
+from workhold.listing.canonical_form import Rows
 from workhold.proof.lattice_pair import LatticePair, verdict_on_pair
-from workhold.search.wall_contacts import PartOnWall
+from workhold.search.flush_search import PartOnWall
 
 __all__ = ["LatticePairs", "are_pressed", "pairs_on"]
 
@@ -57,7 +58,7 @@ STEEP = 10.0
 
 
 @frozen(eq=False)
-class LatticePairs:
+class LatticePairs(Rows):
     """N pairs of pegs of one lattice that touch a part on a wall.
 
     Parameters
@@ -89,22 +90,10 @@ class LatticePairs:
     def _unknown(self) -> Array:
         return np.zeros((len(self.branch), 4))
 
-    def __len__(self) -> int:
-        return len(self.branch)
-
-    def take(self, order: IntArray | BoolArray) -> LatticePairs:
-        """The pairs of an index array or mask, in its order."""
-        return LatticePairs(*(getattr(self, one.name)[order] for one in fields(LatticePairs)))
-
     def candidate(self, number: int, edge: int) -> LatticePair:
         """A pair on a hull edge as balls decide it."""
         features, step = (tuple(values[number].tolist()) for values in (self.feature, self.step))
         return LatticePair(edge, features, step, int(self.branch[number]))
-
-    @classmethod
-    def joined(cls, parts: list[LatticePairs]) -> LatticePairs:
-        """All pairs of several, at least one."""
-        return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
 
 
 def pairs_on(

@@ -23,21 +23,20 @@ from workhold.contact.problem import Problem, Progress
 from workhold.conventions import SAME_POSE
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.limits import refuse_much_work
-from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, joined, listed_once
+from workhold.listing.bounds import square_angles
+from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
 from workhold.listing.clamp_contacts import contacts_of_candidates
 from workhold.listing.collector import blocks_of
-from workhold.listing.packed_contacts import PackedContacts
+from workhold.listing.contact_groups import PackedContacts
 from workhold.listing.placing import at_angle
 from workhold.listing.results import Work, stage, summed
 from workhold.listing.seat_order import ordered_groups
 from workhold.listing.seats import ClampedSeats, Seats, seats_of
-from workhold.listing.tilted_bound import square_angles
 from workhold.model.query import Query
 from workhold.model.search_report import no_pair_note
 from workhold.proof.deciding import Account, Course, decided
-from workhold.search.best_first import tilted_bound
 from workhold.search.cells import Block, cost_of, run_blocks
-from workhold.search.shares import one_clamp
+from workhold.search.shares import one_clamp, tilted_bound
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
 __all__ = ["LatticeShares"]
@@ -163,10 +162,9 @@ class LatticeShares:
     def seats_among(self, records: Sequence[Array], within: Ranges) -> Seats:
         """All seats of contacts (N, 19) of each direction."""
         problems = [search.problem for search in self.searches]
-        directions = [search.frame.toolkit.arrangements[0].direction or "" for search in self.searches]
         parts = [
-            contacts_of_candidates(self.proven(some, problem), problem, direction)
-            for some, problem, direction in zip(records, problems, directions, strict=True)
+            contacts_of_candidates(self.proven(some, problem), problem)
+            for some, problem in zip(records, problems, strict=True)
         ]
         return seats_of(parts, problems[0], within)
 
@@ -183,7 +181,7 @@ class LatticeShares:
 
         parts, accounts = zip(*self.pool.map(work, blocks), strict=True)
         self.accounts += accounts
-        return listed_once(joined(list(parts)))
+        return listed_once(Candidates.joined(parts))
 
     def account(self) -> Account:
         """What became of all contacts so far."""

@@ -28,10 +28,10 @@ from workhold.model.query import SEATING_KEYS, Query
 from workhold.model.result import Result
 from workhold.model.search_report import best_note, by_hand_note, cut_note, seated_note
 from workhold.model.seating import Seating
-from workhold.seating.closing_frame import refuse_unseated
 from workhold.seating.part_features import refuse_own_outlines
+from workhold.seating.pattern import refuse_unseated
 
-__all__ = ["Sink", "deliver_seated", "refuse_unasked", "seated_answer"]
+__all__ = ["Sink", "refuse_unasked", "seated_answer"]
 
 # The share of the work, as progress reports it, that is the search.
 SEARCHED = 0.3
@@ -82,13 +82,16 @@ def seated_answer(
     threads: int = 1,
     progress: Progress | None = None,
     cancel: Event | None = None,
+    sink: Sink | None = None,
 ) -> Result:
     """Answers a query, and finds the seating of the first fixtures if it asks for that.
 
     Parameters
     ----------
-    search : answers a query without seating, watched by ``progress`` and ``cancel``.
+    search : answers a query without seating, watched by ``progress`` and ``cancel``; if there is a sink here, a
+        ``sink`` takes its fixtures.
     threads, progress, cancel : see ``search.design.answer``.
+    sink : takes the fixtures; the result that is returned has none then.
 
     Raises
     ------
@@ -98,44 +101,17 @@ def seated_answer(
     if query.seating is None:
         return search(query, progress=progress, cancel=cancel)
     refuse_unasked(query)
-    if is_put_in_by_hand(query):
-        return put_in_by_hand(search(query.without_seating, progress=progress, cancel=cancel), query)
-    result = search(query.without_seating, progress=stage(progress, 0.0, SEARCHED), cancel=cancel)
-    return seated(result, SeatingWork(query, threads, stage(progress, SEARCHED, 1.0), cancel))
-
-
-def deliver_seated(
-    query: Query,
-    search: Callable[..., Result],
-    sink: Sink,
-    *,
-    threads: int,
-    progress: Progress | None,
-    cancel: Event | None,
-) -> Result:
-    """Delivers what :func:`seated_answer` finds; the result that is returned has no fixtures.
-
-    Parameters
-    ----------
-    search : answers a query without seating, watched by ``progress`` and ``cancel``; a ``sink`` takes its
-        fixtures.
-
-    Raises
-    ------
-    InputError
-        As :func:`seated_answer`.
-    """
-    refuse_unasked(query)
-    if is_put_in_by_hand(query):
-        by_hand = SeatedSink(sink, SeatingWork(query, threads, None, cancel))
-        return put_in_by_hand(
-            search(query.without_seating, progress=progress, cancel=cancel, sink=by_hand), query
-        )
-    whole = None if progress is None else rising(progress)
-    work = SeatingWork(query, threads, stage(whole, SEARCHED, 1.0), cancel)
-    share, taker = stage(whole, 0.0, SEARCHED), SeatedSink(sink, work)
-    result = search(query.without_seating, progress=share, cancel=cancel, sink=taker)
-    return evolve(result, query=query)
+    by_hand, rest = is_put_in_by_hand(query), None
+    if not by_hand:
+        # A sink takes fixtures while the search still reports its end.
+        whole = progress if sink is None or progress is None else rising(progress)
+        progress, rest = stage(whole, 0.0, SEARCHED), stage(whole, SEARCHED, 1.0)
+    work = SeatingWork(query, threads, rest, cancel)
+    taker = {} if sink is None else {"sink": SeatedSink(sink, work)}
+    result = search(query.without_seating, progress=progress, cancel=cancel, **taker)
+    if by_hand:
+        return put_in_by_hand(result, query)
+    return seated(result, work) if sink is None else evolve(result, query=query)
 
 
 def is_put_in_by_hand(query: Query) -> bool:

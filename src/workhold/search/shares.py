@@ -5,11 +5,16 @@ Locators fix the pose in one of two ways. On a lattice of holes they are sought 
 each share the contacts of locators with one clamp are found. With one clamp they are the fixtures; of two
 clamps they make seats, whose clamps are paired (``listing.seats``). A preview shows a part of what was found,
 decided ahead of the rest.
+
+Where only the best are asked for and tilt counts, a bound of all tilted fixtures is known beforehand
+(``listing.bounds``). So what lies square is one share, and all else the other. If the last of the best square
+ones ranks before the bound, no other orientation is searched.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from threading import Event
 from time import perf_counter
 from typing import Any, Protocol
@@ -20,14 +25,29 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.canonical_form import Candidates, joined, listed_once
-from workhold.listing.collector import finish
+from workhold.kernels.curves.block_work import CANDIDATES
+from workhold.listing.bounds import square_angles, tilted_keys
+from workhold.listing.canonical_form import Candidates, listed_once
+from workhold.listing.collector import BestFixtures, finish
 from workhold.listing.results import Work, result_of, stage
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.proof.deciding import Account
+from workhold.search.cells import Block, cost_of, run_blocks
+from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
-__all__ = ["Collector", "Locating", "Preview", "Previews", "answer_in_shares", "one_clamp"]
+__all__ = [
+    "Collector",
+    "Locating",
+    "Preview",
+    "Previews",
+    "answer_in_shares",
+    "best_first",
+    "has_body_to_pass",
+    "one_clamp",
+    "tilted_bound",
+    "work_of",
+]
 
 Preview = Callable[[Result], None]
 
@@ -77,7 +97,7 @@ class Previews:
             return
         fresh, account = finish([self.newest], self.problem, self.hurry)
         self.newest = None
-        together = fresh if self.shown is None else listed_once(joined([self.shown, fresh]))
+        together = fresh if self.shown is None else listed_once(Candidates.joined([self.shown, fresh]))
         if len(fresh.standing):
             self.shown = together
             work = Work(complete=False, statistics={})
@@ -155,3 +175,59 @@ def answer_in_shares(
 def one_clamp(query: Query, way: Toolkit) -> Query:
     """A query with one clamp of those that are needed together, in one direction."""
     return evolve(query, toolkit=way, arrangements=None, ranking=None, best=None, listing=None)
+
+
+def has_body_to_pass(query: Query) -> bool:
+    """Whether a clamp has a body, which its stroke gives it, that a program's tools may come too near to."""
+    return query.program is not None and query.toolkit.moving.on is not None
+
+
+Array = NDArray[np.float64]
+
+# Searches that cost more begin with what lies square, see ``cells.Block``: those of a tenth of a second.
+SQUARE_FIRST = 1e6
+
+
+def best_first(
+    search: ToolkitSearch,
+    kept: BestFixtures,
+    threads: int,
+    progress: Progress | None,
+    cancel: Event | None,
+    look: Callable[[Array], None] | None,
+) -> Work:
+    """Hands what may be among the best to those kept, see ``search.design.answer``."""
+    query, problem = search.problem.query, search.problem
+    # Smaller blocks learn earlier what margin is to be reached.
+    blocks_in = partial(search.blocks, query.arrangements, 4 * LEAST_BLOCKS)
+    parts = [blocks_in()]
+    total = cost_of(parts[0])
+    bound = tilted_bound(query, problem, total)
+    if bound is not None:
+        parts = [blocks_in(first=square_angles(query), rest=rest) for rest in (False, True)]
+    begun, done = list[Block](), list[Block]()
+    for part in parts:
+        if begun and bound is not None and kept.rules_out(bound):
+            break
+        before, begun = cost_of(begun) / total if begun else 0.0, begun + part
+        share = stage(progress, before, 1.0 if part is parts[-1] else cost_of(begun) / total)
+        done += run_blocks(part, threads, share, cancel, kept.add, look, search.stop)[1]
+    return work_of(search, begun, done)
+
+
+def tilted_bound(query: Query, problem: Problem, cost: float) -> Array | None:
+    """Keys (R,) that no tilted fixture ranks before, where a search of a cost begins with square ones.
+
+    None where it does not.
+    """
+    return tilted_keys(query, problem) if query.best is not None and cost > SQUARE_FIRST else None
+
+
+def work_of(search: ToolkitSearch, blocks: Sequence[Block], done: Sequence[Block]) -> Work:
+    """How a search went."""
+    return Work(
+        complete=len(done) == len(blocks),
+        statistics=search.statistics,
+        cells=sum(block.cells for block in done),
+        examined=int(search.totals[CANDIDATES]),
+    )

@@ -41,14 +41,14 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.rules import ROUNDING
+from workhold.listing.canonical_form import Rows
+from workhold.search.flush_search import PartOnWall
 
 __all__ = [
     "ContactPairs",
-    "PartOnWall",
     "PinContacts",
     "closure",
     "may_oppose",
-    "part_on_wall",
     "pin_contacts_on",
     "seating",
 ]
@@ -56,8 +56,6 @@ __all__ = [
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Half a unit in the last place of a double.
-UNIT_ROUNDOFF = 1.2e-16
 # mm and radians. What lies further past the end of an arc is no contact, however it is rounded: where a line
 # does not graze the arc, its place is off by less.
 PAST_END = 1e-4
@@ -65,41 +63,8 @@ PAST_END = 1e-4
 TOGETHER = 1 << 19
 
 
-@frozen(eq=False)
-class PartOnWall:
-    """Features of a part that lies on a hull edge.
-
-    Parameters
-    ----------
-    rows : (F, 12) kernel rows in the wall's frame.
-    length : of the hull edge, in mm.
-    turn : by how many radians its direction may be off.
-    off : by how many mm lengths may be off.
-    """
-
-    rows: Array
-    length: float
-    turn: float
-    off: float
-
-
-def part_on_wall(rows: Array, start: Array, end: Array) -> PartOnWall:
-    """Features (F, 12) of a part lying on the hull edge from a start to an end (2,), all about the same
-    point."""
-    step = end - start
-    length = float(np.hypot(*step))
-    (tx, ty), out = step / length, rows.copy()
-    dx, dy = rows[:, X] - start[0], rows[:, Y] - start[1]
-    out[:, X], out[:, Y] = dx * tx + dy * ty, dy * tx - dx * ty
-    out[:, AXIS_X] = rows[:, AXIS_X] * tx + rows[:, AXIS_Y] * ty
-    out[:, AXIS_Y] = rows[:, AXIS_Y] * tx - rows[:, AXIS_X] * ty
-    size = float(np.abs(out[:, [X, Y, RADIUS]]).max(initial=length) + np.abs([start, end]).max())
-    turn = 8 * UNIT_ROUNDOFF * (1.0 + size / length)
-    return PartOnWall(out, length, turn, 16 * UNIT_ROUNDOFF * size + turn * size)
-
-
 @define(frozen=True, eq=False)
-class PinContacts:
+class PinContacts(Rows):
     """M contacts of pegs on lines.
 
     Parameters
@@ -121,20 +86,6 @@ class PinContacts:
     reach: Array
     swing: Array
     branch: Array
-
-    def __len__(self) -> int:
-        return len(self.line)
-
-    def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> PinContacts:
-        """The contacts of an index array or mask, in its order."""
-        return PinContacts(*(getattr(self, one.name)[order] for one in fields(PinContacts)))
-
-    @classmethod
-    def joined(cls, parts: list[PinContacts]) -> PinContacts:
-        """All contacts of several."""
-        return cls(
-            *(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(PinContacts))
-        )
 
 
 def pin_contacts_on(
@@ -346,14 +297,13 @@ def closure(
     one: PinContacts,
     two: PinContacts,
     locator: IntArray,
-    push: tuple[float, float] | None,
+    push: tuple[float, float],
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
     """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled, and what follows from them.
 
-    From them follow how much (M,) of its force the clamp passes on in its direction, which pairs (M,) press
-    the part, and of which that is open. Where both pegs move towards the wall, ``push`` is None: they pass
-    on what the wall takes up, in parts of the second one's force.
+    From them follow how much (M,) of its force the clamp passes on in its direction ``push``, which pairs
+    (M,) press the part, and of which that is open.
 
     Let a, b be the normals and m, M the moments of locator and clamp about the start of the hull edge of
     length l, lengths in parts of L. With p = -b_u sign a_u, q = |a_u| and t = p m + q M, the null vector is
@@ -372,12 +322,12 @@ def closure(
     reach = np.maximum(one.reach[locator], two.reach)
     swing = np.maximum(one.swing[locator], two.swing)
     with np.errstate(divide="ignore", invalid="ignore"):
-        pushes = (both / (across * wall)) if push is None else -(b[:, 0] * push[0] + b[:, 1] * push[1])
+        pushes = -(b[:, 0] * push[0] + b[:, 1] * push[1])
         band = 20.0 * swing + 4.0 * (reach + lying.off) / length + ROUNDING
         size = sum(map(np.abs, forces))
         smallest = np.minimum(np.minimum(*forces[:2]), np.minimum(*forces[2:]))
         least = np.minimum(smallest - LEAST_CLOSURE * size, size - LEAST_SPAN)
-        force = (both if push is None else null[:, 3] * pushes) - LEAST_CLAMPING * size
+        force = null[:, 3] * pushes - LEAST_CLAMPING * size
         slack = np.minimum(one.slack[locator], two.slack) - problem.contact_margin
         worst = np.minimum(least / band, force / (3.0 * band + size * swing))
         worst = np.minimum(worst, slack / np.maximum(1.2 * reach, 1e-300))

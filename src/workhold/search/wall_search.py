@@ -13,45 +13,36 @@ from collections.abc import Iterator, Sequence
 from math import ceil, floor, inf
 
 import numpy as np
-from attrs import define, evolve, field
+from attrs import define, evolve
 from numpy.typing import NDArray
 
-from workhold.contact.features import avoided_faces
 from workhold.contact.problem import Problem
 from workhold.conventions import (
-    ANGLE_SLACK,
-    CLEARANCE,
     FORCES_OFF,
     GAP_SLACK,
     LEAST_CLAMPING,
-    LEAST_SPAN,
-    PARALLEL,
     SAME_PLACE,
 )
-from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Carrier, Toolkit
-from workhold.geometry.segment import bounding_box
-from workhold.geometry.symmetry import rotated
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.contact.rules import ROUNDING
 from workhold.listing.clamp_placement import axis_of
 from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_table
 from workhold.model.fixture_table import FixtureTable
-from workhold.model.pose import Pose
 from workhold.model.query import Query
+from workhold.model.search_report import AT_AN_EDGE, Undecided
 from workhold.proof.flush import Candidate, pressing, reactions_on_fence, sharp_contacts, sharp_place
+from workhold.search.flush_search import FlushSearch, PartOnWall
 from workhold.search.wall_contacts import (
     ContactPairs,
-    PartOnWall,
     PinContacts,
     closure,
     may_oppose,
-    part_on_wall,
     pin_contacts_on,
     seating,
 )
 
-__all__ = ["WallSearch", "allowed_edges", "faces_are_square", "fixtures_on", "lying_on", "searches_of"]
+__all__ = ["WallSearch", "fixtures_on", "searches_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -65,61 +56,42 @@ TOGETHER = 1 << 17
 
 
 @define(eq=False)
-class WallSearch:
-    """The pairs of locator and clamp that press a part against a wall, with one direction of the clamp.
-
-    Parameters
-    ----------
-    problem : what is searched.
-    explains : whether it is to say what comes nearest.
-    plate, clamp : in whose holes the locator stands, and the clamp.
-    push : unit vector along which the clamp moves as it clamps.
-    locators, examined, verified, escalated : how many contacts of the locator and pairs there were, how many
-        pairs were proven to press the part, and how many needed balls.
-    undecided : the pairs that not even they decide, with the number of their hull edge.
-    is_square : whether every face that was offered is parallel or square to the wall.
-    nearest : the smallest share of the four contacts in the pair in which it is the largest, and that pair.
-        It is known where it is asked for, and as long as none is proven.
-    """
-
-    problem: Problem
-    explains: bool = False
-    plate: Carrier = field(init=False)
-    clamp: Carrier = field(init=False)
-    push: tuple[float, float] = field(init=False)
-    locators: int = field(default=0, init=False)
-    examined: int = field(default=0, init=False)
-    verified: int = field(default=0, init=False)
-    escalated: int = field(default=0, init=False)
-    undecided: list[Candidate] = field(factory=list, init=False)
-    is_square: bool = field(default=True, init=False)
-    nearest: tuple[float, WallFixtures] | None = field(default=None, init=False)
-
-    def __attrs_post_init__(self) -> None:
-        toolkit = self.problem.toolkit
-        self.plate, self.clamp = toolkit.carriers[0], toolkit.moving
-        x, y = toolkit.moving_axis
-        self.push = 0.0 - x, 0.0 - y
+class WallSearch(FlushSearch):
+    """The pairs of locator and clamp that press a part against a wall, with one direction of the clamp."""
 
     @property
-    def edges(self) -> list[int]:
-        """The numbers of the hull edges on which the part may lie."""
-        return allowed_edges(self.problem)
+    def plate(self) -> Carrier:
+        """In whose holes the locator stands."""
+        return self.problem.toolkit.carriers[0]
+
+    @property
+    def clamp(self) -> Carrier:
+        """What moves."""
+        return self.problem.toolkit.moving
+
+    @property
+    def push(self) -> tuple[float, float]:
+        """Unit vector along which the clamp moves as it clamps."""
+        x, y = self.problem.toolkit.moving_axis
+        return 0.0 - x, 0.0 - y
+
+    @property
+    def alone(self) -> Toolkit:
+        """The toolkit with a clamp that is its tip alone."""
+        return self.problem.toolkit.changed({"travel": None})
+
+    @property
+    def touches(self) -> bool:
+        """Whether the locator can touch the part."""
+        return self.locators > 0
 
     def fixtures(self, edge: int) -> Iterator[WallFixtures]:
         """The pairs that press the part as it lies on a hull edge, some at a time."""
         return (part for _, part in fixtures_on([self], edge))
 
-    def tables(self, edge: int) -> Iterator[FixtureTable]:
-        """Tables of the fixtures whose clamps have a place, some at a time."""
-        return (placed_on_wall(part, self.problem) for part in self.fixtures(edge))
-
-    def nearest_alone(self) -> tuple[FixtureTable, Problem]:
-        """The pair that comes nearest, with a clamp that is its tip alone, and the search of such clamps."""
-        assert self.nearest is not None
-        toolkit = self.problem.toolkit.changed({"travel": None})
-        problem = evolve(self.problem, query=evolve(self.problem.query, toolkit=toolkit))
-        return wall_table(self.nearest[1], np.zeros(1, np.int64), problem), problem
+    def placed(self, parts: list[WallFixtures], edge: int) -> FixtureTable:
+        """The table of those pairs whose clamps have a place, each once."""
+        return placed_on_wall(WallFixtures.joined(parts), self.problem)
 
     def on_rows(self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array) -> PinContacts:
         """Contacts of pegs in rows of holes; balls decide those where a row grazes an arc."""
@@ -199,7 +171,7 @@ class WallSearch:
             verdict = pressing(candidate, self.problem, self.plate, self.push)
             held[k] = verdict is True
             if verdict is None:
-                self.undecided.append(candidate)
+                self.undecided.append(self.entry(candidate))
         self.escalated += len(open_)
 
         def pairs(chosen: IntArray) -> WallFixtures:
@@ -215,19 +187,17 @@ class WallSearch:
                 push=push[chosen],
             )
 
+        def alone(chosen: IntArray) -> FixtureTable:
+            query = evolve(self.problem.query, toolkit=self.alone)
+            return wall_table(pairs(chosen), np.zeros(1, np.int64), evolve(self.problem, query=query))
+
         good = np.flatnonzero(held)
         self.verified += len(good)
-        found = self.sharpened(pairs(good), edge, lying, one, two.take(good), locator[good])
-        if self.explains and self.verified == 0:
-            size = np.abs(null).sum(axis=1)
-            share = np.where(size > LEAST_SPAN, null.min(axis=1) / np.maximum(size, LEAST_SPAN), -inf)
+        if self.explains:
             # Forces are given per clamp force, which there has to be.
             least = np.minimum(np.abs(null.sum(axis=1)), np.abs(null[:, 3] * push))
-            share[least < LEAST_CLAMPING * size] = -inf
-            best = int(share.argmax())
-            if share[best] > (-inf if self.nearest is None else self.nearest[0]):
-                self.nearest = float(share[best]), pairs(np.array([best]))
-        return found
+            self.look_nearer(null, least < LEAST_CLAMPING * np.abs(null).sum(axis=1), alone)
+        return self.sharpened(pairs(good), edge, lying, one, two.take(good), locator[good])
 
     def sharpened(
         self,
@@ -242,7 +212,7 @@ class WallSearch:
 
         Of two clamps this gives how far their forces may be off, too.
         """
-        places = self.placed(pressed, edge, one, two, locator)
+        places = self.sharp_places(pressed, edge, one, two, locator)
         if not self.problem.pairing:
             return places
         null, push = places.null.copy(), places.push.copy()
@@ -256,7 +226,7 @@ class WallSearch:
                 push[k] = sharp.push if grazes[k] else push[k]
         return evolve(places, null=null, doubt=doubt, push=push)
 
-    def placed(
+    def sharp_places(
         self, pressed: WallFixtures, edge: int, one: PinContacts, two: PinContacts, locator: IntArray
     ) -> WallFixtures:
         """Contacts computed in balls where doubles may not say well enough where they are, or how they press.
@@ -286,6 +256,21 @@ class WallSearch:
             branches=(float(one.branch[behind]), float(two.branch[k])),
         )
 
+    def entry(self, candidate: Candidate) -> Undecided:
+        """A candidate that is not decided, for the account."""
+        flush, faces = self.problem.workpiece.flush, self.problem.faces[list(candidate.features)].tolist()
+        one, other = flush.face[candidate.edge].tolist()
+        line = (candidate.line, 0) if candidate.is_upright else (0, candidate.line)
+        return Undecided(
+            self.problem.toolkit.arrangements[0].title,
+            (faces[0], one, other, faces[1]),
+            (0, 0, 0, line[0]),
+            (candidate.row, 0, 0, line[1]),
+            float(np.degrees(flush.theta[candidate.edge])),
+            AT_AN_EDGE,
+            0.0,
+        )
+
 
 def reaction_doubts(
     pressed: WallFixtures,
@@ -306,48 +291,6 @@ def reaction_doubts(
         return np.asarray(np.nan_to_num(doubt / (across * min(wall, 1.0)), nan=inf))
 
 
-def allowed_edges(problem: Problem) -> list[int]:
-    """The numbers of the hull edges on which a part may lie.
-
-    There it is at an angle that is allowed, on faces that may be touched. No keep-out zone reaches into the
-    wall, and the program's tools pass clear of it.
-    """
-    part, asked = problem.workpiece, problem.restrictions
-    avoided, carriers = avoided_faces(part, asked), problem.toolkit.carriers
-    swept, out = problem.swept(next(one for one in carriers if one.contact is WALL_END)), []
-    for number, (theta, touching) in enumerate(
-        zip(part.flush.theta.tolist(), part.flush.touching, strict=True)
-    ):
-        if any(map(avoided.issuperset, touching)):
-            continue
-        turned = float(np.degrees(theta))
-        off = [
-            ((turned - low + ANGLE_SLACK) % 360.0, high - low + 2 * ANGLE_SLACK) for low, high in asked.angles
-        ]
-        if off and not any(ahead <= width for ahead, width in off):
-            continue
-        x, y = part.flush.ends[number, 0].tolist()
-        pose = Pose(turned, 0.0, -float(rotated(x, y, theta)[1]))
-        if swept is not None and swept[0].above(theta, -pose.y)[0] < swept[1] - GAP_SLACK:
-            continue
-        zones = [pose.carry(segment) for zone in asked.zones for segment in zone.segments]
-        if all(bounding_box(segment)[1] >= -CLEARANCE for segment in zones):
-            out.append(number)
-    return out
-
-
-def lying_on(problem: Problem, edge: int) -> PartOnWall:
-    """The features as the part lies on a hull edge."""
-    ends = problem.workpiece.flush.ends[edge] - np.array(problem.workpiece.center)
-    return part_on_wall(problem.rows, ends[0], ends[1])
-
-
-def faces_are_square(lying: PartOnWall) -> bool:
-    """Whether every face that is offered is straight, and parallel or square to the wall."""
-    tilted = np.minimum(np.abs(lying.rows[:, AXIS_X]), np.abs(lying.rows[:, AXIS_Y])) > PARALLEL
-    return bool(((lying.rows[:, IS_ARC] == 0.0) & ~tilted).all())
-
-
 def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[WallSearch]:
     """The searches of a query in the ways of a toolkit with a wall, which differ in the clamp's direction
     alone."""
@@ -364,10 +307,9 @@ def fixtures_on(searches: Sequence[WallSearch], edge: int) -> Iterator[tuple[Wal
     """
     one = searches[0]
     problem = one.problem
-    lying = lying_on(problem, edge)
+    lying = one.lying_on(edge)
     locators = one.on_rows(edge, lying, problem.standing, one.rows_of(lying, problem.standing))
     for search in searches:
-        search.is_square = search.is_square and faces_are_square(lying)
         search.locators += len(locators)
     if len(locators) == 0:
         return

@@ -31,19 +31,12 @@ from numpy.typing import NDArray
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
-    CONTACTS,
     MOTION,
-    PEG,
-    PIECE,
-    PLACE_X,
-    PLACE_Y,
     SECOND,
-    SEPARATION,
-    THETA,
     Given,
 )
 from workhold.kernels.seating.parallel_and_concentric import ALPHA, at_tangencies, tangent_chords
-from workhold.seating.closing import filled
+from workhold.seating.closing import candidate_of, filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary, contains
 from workhold.seating.pattern import Pattern
 
@@ -224,14 +217,9 @@ def pressed(
     theta = omega - atan2((qy - py) / d, (qx - px) / d)
     c, s = cos(theta), sin(theta)
     rx, ry = c * px - s * py, s * px + c * py
-    row = np.zeros(CANDIDATE_LENGTH)
-    row[THETA], row[PLACE_X], row[PLACE_Y] = theta, pattern.pegs[i, 0] - rx, pattern.pegs[i, 1] - ry
-    row[SEPARATION] = separation
     contacts = [(peg, piece) for peg, pieces in zip((i, j), normal.pieces, strict=True) for piece in pieces]
-    row[CONTACTS] = len(contacts)
-    row[PEG : PEG + 4], row[PIECE : PIECE + 4] = -1.0, -1.0
-    for at, (peg, piece) in enumerate(contacts):
-        row[PEG + at], row[PIECE + at] = peg, piece
+    place = pattern.pegs[i, 0] - rx, pattern.pegs[i, 1] - ry
+    row = candidate_of((theta, *place, separation), contacts)
     second, along_one, along_two = normal.descent_direction
     row[SECOND] = second
     # Both places go along the same way, square to the line; the part turns against the chord.

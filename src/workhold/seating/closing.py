@@ -17,7 +17,7 @@ descent cache : descent paths that are kept, as a function's values are: D. Mich
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from threading import Lock
 from typing import Any
@@ -28,10 +28,13 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import close_jaws, reach_out
 from workhold.kernels.seating.columns import (
+    CANDIDATE_LENGTH,
     CONFIG,
     CONTACTS,
     DOUBT,
     NODE_LENGTH,
+    PEG,
+    PIECE,
     SECOND,
     DescentWorkSpace,
     Obstacles,
@@ -41,7 +44,16 @@ from workhold.kernels.seating.free_space import RANGES, leave
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
 
-__all__ = ["LONGEST_STEP", "Closing", "DescentCache", "DescentPaths", "descent_starts", "filled", "with_room"]
+__all__ = [
+    "LONGEST_STEP",
+    "Closing",
+    "DescentCache",
+    "DescentPaths",
+    "candidate_of",
+    "descent_starts",
+    "filled",
+    "with_room",
+]
 
 
 def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -> NDArray[np.float64]:
@@ -61,6 +73,18 @@ def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
     out = np.empty((2 * (count + more), *rows.shape[1:]), rows.dtype)
     out[:count] = rows[:count]
     return out
+
+
+def candidate_of(
+    config: NDArray[np.float64] | tuple[float, ...], contacts: Sequence[tuple[int, int]]
+) -> NDArray[np.float64]:
+    """A candidate (24,) without forces: theta, x, y and S, and the pegs that touch, each with its piece."""
+    row = np.zeros(CANDIDATE_LENGTH)
+    row[CONFIG] = config
+    row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(contacts), -1.0, -1.0
+    for at, (peg, piece) in enumerate(contacts):
+        row[PEG + at], row[PIECE + at] = peg, piece
+    return row
 
 
 Array = NDArray[np.float64]

@@ -26,9 +26,8 @@ from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.seating import Seat
 from workhold.seating.closing import Closing
-from workhold.seating.closing_frame import ClosingFrame
 from workhold.seating.join_tree import distances
-from workhold.seating.pattern import Pattern
+from workhold.seating.pattern import ClosingFrame, Pattern
 from workhold.seating.solver import Solver
 
 __all__ = ["ENDINGS", "ClosingSimulation", "simulate_closing"]

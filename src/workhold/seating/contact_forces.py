@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.candidates import MISFIT, judge_balance, settle
 from workhold.kernels.seating.columns import (
-    CANDIDATE_LENGTH,
     CLEAR,
     CONFIG,
     CONTACTS,
@@ -36,7 +35,7 @@ from workhold.kernels.seating.columns import (
     Given,
 )
 from workhold.kernels.seating.obstacles import clearances
-from workhold.seating.closing import Closing
+from workhold.seating.closing import Closing, candidate_of
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
 from workhold.seating.wall_equilibria import ON_WALL, WallEquilibria
@@ -241,9 +240,7 @@ def as_candidate(
     faces : that the pegs touch, by their numbers.
     size : of the part in mm.
     """
-    row, away = np.zeros(CANDIDATE_LENGTH), np.empty(1)
-    row[CONFIG], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = config, -1.0, -1.0
-    contacts = []
+    contacts, away = [], np.empty(1)
     for peg, (at, side) in enumerate(zip(pattern.at(config[None])[0], pattern.right.tolist(), strict=True)):
         off = {}
         for number in range(*boundary.parts[side].tolist()):
@@ -257,8 +254,6 @@ def as_candidate(
         contacts += [
             wall.on(piece, at > 0) for at, piece in zip(range(len(ON_WALL)), side.pieces, strict=True)
         ]
-    row[CONTACTS] = len(contacts)
-    for k, (peg, piece) in enumerate(contacts):
-        row[PEG + k], row[PIECE + k] = peg, piece
+    row = candidate_of(config, contacts)
     row[FORCE : FORCE + 4] = forces_of(boundary, pattern, row, size)[0]
     return row

@@ -1,5 +1,8 @@
 """All equilibria of a pattern of pegs and a part, sorted into seats, passes and what is loose or not settled.
 
+Two or three of a pattern's pegs balance the part, or pegs of one jaw fix it. Such a subset stands alike in
+many patterns of one lattice (``seating.pattern``), so its equilibria are kept with the part.
+
 Glossary
 --------
 equilibrium : a pose and separation in which contacts with forces that press balance; without friction a
@@ -11,15 +14,23 @@ pass : a saddle of the separation, through which a cage opens; the puncture gras
 from __future__ import annotations
 
 from itertools import product
-from math import cos, sin, sqrt
+from math import cos, inf, sin, sqrt
+from threading import Lock
 
 import numpy as np
-from attrs import define
+from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL, SAME_CENTER, SAME_POSE
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.candidates import DOUBTFUL, IN_BALANCE, complete_two
+from workhold.kernels.seating.candidates import (
+    DOUBTFUL,
+    IN_BALANCE,
+    NO_BALANCE,
+    complete_third,
+    complete_three,
+    complete_two,
+)
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
     CELL_LENGTH,
@@ -30,36 +41,176 @@ from workhold.kernels.seating.columns import (
     PIECE,
     SECOND,
     SEPARATION,
+    Given,
     Manifolds,
     SelfMotions,
 )
-from workhold.kernels.seating.four_contacts import two_pairs
+from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
 from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, first_of_each, gathered
-from workhold.kernels.seating.slides import slides_held
-from workhold.kernels.seating.three_contacts import ROOT_LENGTH
-from workhold.seating.antipodal_contacts import antipodal_candidates
-from workhold.seating.closing import DescentPaths, filled
+from workhold.kernels.seating.parallel_and_concentric import about_one_center
+from workhold.kernels.seating.slides import slides_blocked, slides_held, slides_squared
+from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
+from workhold.seating.antipodal_contacts import antipodal_candidates, parallel_candidates
+from workhold.seating.closing import Closing, DescentCache, DescentPaths, filled, with_room
 from workhold.seating.contact_forces import settle_on_wall, verdicts, with_forces
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.part_features import HullSide
 from workhold.seating.pattern import Pattern, PegSubset, subsets_of
 from workhold.seating.self_motions import (
+    NO_MOTIONS,
     SHORTEST,
     SLIDE_STEPS,
     ManifoldFinder,
     SelfMotion,
+    balance,
     joined,
     of_pattern,
+    on_one_center,
     on_one_line,
+    on_parallel_lines,
     turning,
 )
-from workhold.seating.subset_equilibria import SubsetCache, equilibria_of_subset
 from workhold.seating.two_contact_curves import TwoContactCurves
 from workhold.seating.wall_equilibria import LOCATOR, ON_WALL, TIP, WallEquilibria, wall_candidates
 
-__all__ = ["Equilibria", "equilibria"]
+__all__ = ["Equilibria", "SubsetCache", "SubsetEquilibria", "equilibria", "equilibria_of_subset"]
 
 Array = NDArray[np.float64]
+# Subsets of which something is kept, and nodes of their descent paths, of 80 bytes; with more, all are
+# forgotten.
+MOST_KEPT, MOST_NODES = 1024, 600_000
+NONE = np.zeros((0, CANDIDATE_LENGTH))
+# Candidates of a subset and its self-motions, see ``SubsetEquilibria``.
+Found = tuple[Array, SelfMotions]
+
+
+@frozen(eq=False)
+class SubsetEquilibria:
+    """The equilibria of a subset of pegs, in its own frame.
+
+    Parameters
+    ----------
+    first, end : where the subset's candidates stand among all that are kept. In them two or three contacts
+        balance; of pegs of one jaw three contacts fix the part, whose place is that at separation 0.
+    motions : self-motions of the part between the pegs.
+    descents : paths off the candidates, as far as they were followed.
+    """
+
+    first: int
+    end: int
+    motions: SelfMotions
+    descents: DescentPaths
+
+
+@define(eq=False)
+class SubsetCache:
+    """The equilibria of subsets of pegs on a part that were found so far.
+
+    Parameters
+    ----------
+    found : those of each subset, by how its pegs stand.
+    descents : their descent paths.
+    candidates : (C, 24) of all subsets; there is room for more. What was written stays where it is.
+    count : how many candidates there are.
+    """
+
+    found: dict[tuple[object, ...], SubsetEquilibria] = field(factory=dict)
+    descents: DescentCache = field(factory=DescentCache)
+    candidates: Array = field(factory=lambda: NONE)
+    count: int = 0
+    lock: Lock = field(factory=Lock)
+
+    def with_candidates(self, rows: Array) -> int:
+        """Keeps further candidates (N, 24), and returns the number of the first."""
+        with self.lock:
+            first = self.count
+            self.candidates = with_room(self.candidates, first, len(rows))
+            self.candidates[first : first + len(rows)] = rows
+            self.count += len(rows)
+        return first
+
+    @classmethod
+    def on(cls, boundary: ObstacleBoundary) -> SubsetCache:
+        """The cache of a part, or an empty one if that is full, which whoever has it goes on with."""
+        kept = boundary.once(cls.empty)
+        is_full = len(kept.found) >= MOST_KEPT or kept.descents.counts[1] > MOST_NODES
+        return boundary.once(cls.empty, anew=True) if is_full else kept
+
+    @classmethod
+    def empty(cls, _: ObstacleBoundary) -> SubsetCache:
+        """An empty cache."""
+        return cls()
+
+
+def equilibria_of_subset(
+    kept: SubsetCache, boundary: ObstacleBoundary, subset: PegSubset, size: float
+) -> SubsetEquilibria:
+    """The equilibria of a subset, found now or before; ``size`` is the part's in mm."""
+    key = size, subset.key
+    found = kept.found.get(key)
+    if found is None:
+        kind = (
+            jaw_equilibria
+            if subset.is_of_a_jaw
+            else pair_equilibria
+            if len(subset.sides) == 2
+            else triple_equilibria
+        )
+        candidates, motions = kind(boundary, subset, size)
+        passes = NONE if subset.is_of_a_jaw else candidates
+        descents = DescentPaths(Closing(boundary, subset.pattern, size), passes, kept.descents)
+        first = kept.with_candidates(candidates)
+        found = kept.found[key] = SubsetEquilibria(first, first + len(candidates), motions, descents)
+    return found
+
+
+def pair_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
+    """Equilibria of a peg of each jaw: antipodal contacts, and self-motions along one line."""
+    pattern, given = subset.pattern, TwoContactCurves.of_jaw_alone(boundary, subset).given
+    candidates = antipodal_candidates(boundary, pattern)
+    return in_balance(candidates, given, size), ManifoldFinder(boundary, pattern).free(
+        on_one_line(boundary, pattern)
+    )
+
+
+def triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
+    """Equilibria of two pegs of a jaw and one of the other."""
+    # The only peg of the other jaw has two contacts in pockets alone.
+    pattern, curves = subset.pattern, TwoContactCurves.of_jaw_alone(boundary, subset)
+    given, slides = curves.given, curves.slides
+    [(known, _, _)] = curves.jaws.values()
+    work = np.empty((DEPTH, 2)), np.empty((5, len(boundary.discs)))
+    sought = known.cells, known.middles, curves.sought, boundary.discs, pattern.stop
+    roots = filled(ROOT_LENGTH, 1024, three_contacts, *sought, *work)
+    candidates = [
+        filled(CANDIDATE_LENGTH, len(roots) + 1, complete_three, roots, given, boundary.pocket_pieces),
+        *([filled(CANDIDATE_LENGTH, 256, slides_squared, slides, given)] if len(slides) else []),
+        *parallel_candidates(boundary, pattern, given),
+        filled(CANDIDATE_LENGTH, 64, about_one_center, given, pattern.stop, pattern.widest),
+    ]
+    every = np.concatenate(candidates)
+    motions = [*on_parallel_lines(boundary, pattern, slides, given), *on_one_center(boundary, pattern)]
+    reached = every[pattern.reaches(every[:, SEPARATION])]
+    return in_balance(reached, given, size), ManifoldFinder(boundary, pattern).free(motions)
+
+
+def jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> Found:
+    """Poses that pegs of one jaw fix by three contacts: three pegs, or two of which one is in a pocket."""
+    curves, stack = TwoContactCurves.of_jaw_alone(boundary, subset), np.empty((DEPTH, 2))
+    [(known, _, _)] = curves.jaws.values()
+    roots = filled(
+        ROOT_LENGTH, 1024, third_of_jaw, known.cells, known.middles, curves.sought, boundary.discs, stack
+    )
+    fixed = [
+        filled(CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, curves.given, boundary.pocket_pieces),
+        filled(CANDIDATE_LENGTH, 256, slides_blocked, curves.slides, curves.given),
+    ]
+    return np.concatenate(fixed), NO_MOTIONS
+
+
+def in_balance(candidates: Array, given: Given, size: float) -> Array:
+    """The candidates of a subset that may be equilibria."""
+    return np.asarray(candidates[verdicts(with_forces(candidates, given, size), inf, inf) != NO_BALANCE])
 
 
 def wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
@@ -128,8 +279,8 @@ def turning_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifo
                 )
                 out.append(finder.cut(finder.free(motions)))
             for locator in (k for k in group if finder.boundary.fits(0, k)):
-                radius = float(finder.rows[locator, RADIUS])
-                square = radius**2 - ((known - lx) if ux else (known - ly)) ** 2
+                bend = float(finder.rows[locator, SIGN] * finder.rows[locator, RADIUS])
+                square = bend**2 - ((known - lx) if ux else (known - ly)) ** 2
                 for turn in (1.0, -1.0) if square > 0.0 else ():
                     center = (known, ly + turn * sqrt(square)) if ux else (lx + turn * sqrt(square), known)
                     reach = signed**2 - (ty - center[1]) ** 2
@@ -137,36 +288,16 @@ def turning_on_wall(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifo
                         continue
                     # The tip's normal is forward.
                     separation = center[0] + float(finder.rows[tip, SIGN]) * sqrt(reach) - tx
-                    pressed = presses(wall, finder, center, (lx, ly), (tx + separation, ty), (locator, tip))
-                    if pressed:
+                    at = (lx, ly), (tx + separation, ty)
+                    normals = [
+                        ((x - center[0]) / radius, (y - center[1]) / radius)
+                        for (x, y), radius in zip(at, (bend, signed), strict=True)
+                    ]
+                    if balance([(-ux, -uy), *normals], [0, 0, 1]):
                         contacts = [(LOCATOR, locator), (TIP, tip)]
-                        out.append(
-                            finder.cut(
-                                finder.free(
-                                    turning(finder.pattern, first, center, separation, contacts, None)
-                                )
-                            )
-                        )
+                        motions = turning(finder.pattern, first, center, separation, contacts, None)
+                        out.append(finder.cut(finder.free(motions)))
     return out
-
-
-def presses(
-    wall: WallEquilibria,
-    finder: ManifoldFinder,
-    center: tuple[float, float],
-    locator: tuple[float, float],
-    tip: tuple[float, float],
-    pieces: tuple[int, int],
-) -> bool:
-    """Whether wall, locator and tip all press a round part."""
-    normals = [np.array(wall.half_plane[:2]) * -1.0]
-    for at, piece in zip((locator, tip), pieces, strict=True):
-        away = (np.array(at) - center) * finder.rows[piece, SIGN] / finder.rows[piece, RADIUS]
-        normals.append(away)
-    matrix = np.stack(normals[:2], axis=1)
-    if abs(np.linalg.det(matrix)) < 1e-9 or normals[2][0] <= 0.0:
-        return False
-    return bool((np.linalg.solve(matrix, -normals[2]) > 1e-9).all())
 
 
 # mm. Pegs that do not touch may be in the part by this much: rounding.
@@ -212,31 +343,17 @@ def equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equ
     roots = filled(ROOT_LENGTH, 1024, two_pairs, *jaws, curves.sought, *work)
     two = filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)
     slid = filled(CANDIDATE_LENGTH, 256, slides_held, curves.slides, *jaws, given, pockets)
-    kept, ends, of_subsets = (
-        SubsetCache.on(boundary),
-        (pattern.stop, pattern.widest),
-        list[tuple[float, ...]](),
-    )
-    subsets, motions = list[tuple[PegSubset, DescentPaths]](), list[tuple[PegSubset, SelfMotions]]()
-    for subset in subsets_of(pattern):
-        own = equilibria_of_subset(kept, boundary, subset, size)
-        of_subsets.append((own.first, own.end, own.descents.first, *subset.numbers_and_shift))
-        subsets.append((subset, own.descents))
-        motions.append((subset, own.motions))
-    room = len(two) + len(slid) + sum(int(end - first) for first, end, *_ in of_subsets) + 256
-    among = (
-        np.array(of_subsets, dtype=np.float64),
-        kept.candidates,
-        two,
-        slid,
-        *ends,
-        given,
-        np.empty(CANDIDATE_LENGTH),
-    )
+    kept, ends = SubsetCache.on(boundary), (pattern.stop, pattern.widest)
+    parts = [(one, equilibria_of_subset(kept, boundary, one, size)) for one in subsets_of(pattern)]
+    numbers = [(own.first, own.end, own.descents.first, *one.numbers_and_shift) for one, own in parts]
+    room = len(two) + len(slid) + sum(own.end - own.first for _, own in parts) + 256
+    given_subsets = np.array(numbers, dtype=np.float64), kept.candidates
+    among = *given_subsets, two, slid, *ends, given, np.empty(CANDIDATE_LENGTH)
     found = filled(GATHERED_LENGTH, room, gathered, *among)
     every = with_forces(np.ascontiguousarray(found[:, :SUBSET]), given, size)
-    loose = finder.distinct(finder.cut(of_pattern(motions)))
-    return sorted_out(every, loose, found[:, SUBSET:].astype(np.int64), tuple(subsets))
+    loose = finder.distinct(finder.cut(of_pattern([(one, own.motions) for one, own in parts])))
+    subsets = tuple((one, own.descents) for one, own in parts)
+    return sorted_out(every, loose, found[:, SUBSET:].astype(np.int64), subsets)
 
 
 def equilibria_on_wall(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:

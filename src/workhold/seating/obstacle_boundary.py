@@ -17,7 +17,7 @@ from math import atan2, pi
 from typing import Any, TypeVar
 
 import numpy as np
-from attrs import define
+from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable, LatticeSteps, center_numbers, curve_table, loosened
@@ -57,6 +57,8 @@ class ObstacleBoundary:
     pocket_pieces : (V, 2) their numbers.
     hull : what of the part may touch a wall.
     mirrored : whether the part is turned over.
+    contacts, tables : what has been asked for of ``contacts_of`` and of ``curves``.
+    found : what functions found on this boundary, see ``once``.
     """
 
     rows: Array
@@ -66,6 +68,9 @@ class ObstacleBoundary:
     pocket_pieces: NDArray[np.int64]
     hull: Hull
     mirrored: bool = False
+    contacts: dict[int, tuple[SeatContact, ...]] = field(factory=dict, init=False)
+    tables: dict[tuple[float, int], CurveTable] = field(factory=dict, init=False)
+    found: dict[Callable[[ObstacleBoundary], Any], Any] = field(factory=dict, init=False)
 
     @classmethod
     def of(cls, workpiece: Workpiece, radii: tuple[float, float]) -> ObstacleBoundary:
@@ -185,11 +190,6 @@ class ObstacleBoundary:
         )
         return [(standing, moving) for standing, moving in both if standing and moving]
 
-    @cached_property
-    def contacts(self) -> dict[int, tuple[SeatContact, ...]]:
-        """The contacts that have been asked for, see ``contacts_of``."""
-        return {}
-
     def contacts_of(
         self, pegs: NDArray[np.int64], pieces: NDArray[np.int64]
     ) -> list[tuple[SeatContact, ...]]:
@@ -215,19 +215,9 @@ class ObstacleBoundary:
         return [self.contacts[key] for key in keys]
 
     @cached_property
-    def tables(self) -> dict[tuple[float, int], CurveTable]:
-        """Chord curves by the length of the chord and the first piece, as far as they have been asked for."""
-        return {}
-
-    @cached_property
     def centers(self) -> dict[int, NDArray[np.int64]]:
         """The centres (N,) of pieces, numbered as in ``contact.curves``, by the first piece of each jaw."""
         return {first: center_numbers(self.loose[first:end]) for first, end in self.parts.tolist()}
-
-    @cached_property
-    def found(self) -> dict[Callable[[ObstacleBoundary], Any], Any]:
-        """What functions found on this boundary, see ``once``."""
-        return {}
 
     def once(self, find: Callable[[ObstacleBoundary], Found], anew: bool = False) -> Found:
         """What a function finds on this boundary, which is kept from its first call on, or from one anew."""

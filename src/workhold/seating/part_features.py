@@ -11,7 +11,7 @@ C-32 (1983).
 from __future__ import annotations
 
 from functools import cached_property
-from math import acos, atan2, cos, hypot, pi, sin, tau
+from math import acos, atan2, cos, dist, hypot, pi, sin, tau
 
 import numpy as np
 from attrs import define, frozen
@@ -71,15 +71,13 @@ def rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, 
     for segment in segments:
         if is_full(segment):
             continue
-        previous = before.get(segment.start) or min(
-            before.values(), key=lambda s: distance(s.end, segment.start)
-        )
+        previous = before.get(segment.start) or min(before.values(), key=lambda s: dist(s.end, segment.start))
         low, high = end_angle(previous, 1.0), end_angle(segment, -1.0)
         turn = (high - low + pi) % (2 * pi) - pi
         if turn <= STRAIGHT_ON:
             continue
         arc = Arc(segment.start, radius, low + turn / 2, turn / 2, 1.0)
-        near = [joint for joint in joints if 0.0 < distance(joint, segment.start) <= 2 * radius + CLEARANCE]
+        near = [joint for joint in joints if 0.0 < dist(joint, segment.start) <= 2 * radius + CLEARANCE]
         others = [*raw, *(joint_circle(joint, radius) for joint in near)]
         out += [(segment.start, kept) for kept in kept_parts(arc, others, is_clear)]
     return [(corner, arc) for corner, arc in out if isinstance(arc, Arc)]
@@ -88,11 +86,6 @@ def rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, 
 def is_full(segment: Segment) -> bool:
     """Whether a segment is a whole circle."""
     return isinstance(segment, Arc) and segment.is_full
-
-
-def distance(a: Point, b: Point) -> float:
-    """Distance in mm of two points."""
-    return float(np.hypot(a[0] - b[0], a[1] - b[1]))
 
 
 def end_angle(segment: Segment, end: float) -> float:

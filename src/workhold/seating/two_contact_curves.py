@@ -1,11 +1,11 @@
 """Poses in which pegs of one jaw touch the part in two places: chord curves of pairs, and pockets.
 
 Glossary
--------- two-contact curve : all poses, up to the shift along x, in which two contacts of one jaw touch; a row
-of ``PAIR_LENGTH``
-    numbers, see ``kernels.seating.columns``. The contact space of two fingers: T. F. Allen, J. W. Burdick and
-    E. Rimon, "Two-finger caging of polygonal objects using contact space search", IEEE Transactions on
-    Robotics 31 (2015).
+--------
+two-contact curve : all poses, up to the shift along x, in which two contacts of one jaw touch; a row of
+    ``PAIR_LENGTH`` numbers, see ``kernels.seating.columns``. The contact space of two fingers: T. F. Allen,
+    J. W. Burdick and E. Rimon, "Two-finger caging of polygonal objects using contact space search", IEEE
+    Transactions on Robotics 31 (2015).
 slide : two contacts on parallel faces, which hold one orientation and so are no curve over it.
 """
 
@@ -211,7 +211,7 @@ class TwoContactCurves:
         before = curves_before = 0
         for side, subset in jaw_subsets(pattern).items():
             known = JawCurves.known(boundary, subset)
-            rows, slid = known.named(subset.names)
+            rows, slid = known.named(np.array([*subset.numbers, -1.0]))
             # Pockets, of which curves are none, come first.
             rows[known.pockets :, SOURCE] += curves_before
             parts.append((rows, known.curves, known.reals, slid))
@@ -226,7 +226,9 @@ class TwoContactCurves:
         if len(subset.sides) == 2 and not subset.is_of_a_jaw:
             return cls(*given_of(boundary, subset.pattern, *NO_CURVES), NO_SLIDES, {})
         side = int(2 * sum(subset.sides) > len(subset.sides))
-        own = subset if subset.is_of_a_jaw else subset.of_jaw(side)
+        own = subset
+        if not subset.is_of_a_jaw:
+            own = PegSubset.of(subset.pattern, np.flatnonzero(np.equal(subset.sides, side)).tolist())
         known = JawCurves.known(boundary, own)
         rows, slides = (known.rows, known.slides) if subset.sides[0] == side else known.after_one
         given = given_of(boundary, subset.pattern, rows, known.curves, known.reals)

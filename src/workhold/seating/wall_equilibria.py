@@ -25,7 +25,6 @@ from workhold.kernels.chord.columns import CURVE_INTEGERS, CURVE_REALS
 from workhold.kernels.seating.candidates import fourths
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
-    CONTACTS,
     DEPTH,
     MOTION,
     PAIR_LENGTH,
@@ -34,7 +33,6 @@ from workhold.kernels.seating.columns import (
     PLACE_X,
     PLACE_Y,
     SECOND,
-    SEPARATION,
     THETA,
     Given,
 )
@@ -42,7 +40,7 @@ from workhold.kernels.seating.tip_in_pocket import tip_in_pocket
 from workhold.kernels.seating.turning import SHAPE_LENGTH
 from workhold.kernels.seating.wall_equilibria import LOCATOR, TIP, Stood, stationary
 from workhold.kernels.seating.wall_equilibria import ON_WALL as FIRST_ON_WALL
-from workhold.seating.closing import filled
+from workhold.seating.closing import candidate_of, filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.part_features import HullSide
 from workhold.seating.pattern import Pattern
@@ -138,17 +136,6 @@ class WallEquilibria:
         none = np.zeros((0, PAIR_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
         return Given(*none, self.stood.rows, pegs, self.pattern.right, self.boundary.parts)
 
-    def begun(
-        self, theta: float, place: tuple[float, float], separation: float, contacts: list[Contact]
-    ) -> Array:
-        """A candidate without forces."""
-        row = np.zeros(CANDIDATE_LENGTH)
-        row[THETA], row[PLACE_X], row[PLACE_Y], row[SEPARATION] = theta, *place, separation
-        row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(contacts), -1.0, -1.0
-        for at, (peg, piece) in enumerate(contacts):
-            row[PEG + at], row[PIECE + at] = peg, piece
-        return row
-
     def on(self, piece: int, second: bool = False) -> Contact:
         """The contact of a piece of the hull with the wall."""
         return ON_WALL[second], len(self.boundary.rows) + piece
@@ -185,10 +172,14 @@ class WallEquilibria:
                 [self.on(side.pieces[0]), self.on(side.pieces[1], True)],
                 self.resting(side.pieces[0], theta),
             )
-            fixed.append(self.begun(theta, (known, 0.0) if self.is_upright else (0.0, known), 0.0, ends))
+            fixed.append(
+                candidate_of((theta, *((known, 0.0) if self.is_upright else (0.0, known)), 0.0), ends)
+            )
             for ahead, up, held in self.pocketed(theta) if self.is_upright else ():
                 place = known, float(self.pattern.pegs[TIP, 1]) - up
-                out.append(self.begun(theta, place, known + ahead - self.pattern.pegs[TIP, 0], ends + held))
+                out.append(
+                    candidate_of((theta, *place, known + ahead - self.pattern.pegs[TIP, 0]), ends + held)
+                )
         return np.concatenate([self.with_tip(self.with_locator(rows_of(fixed))), rows_of(out)])
 
     def pocketed(self, theta: float) -> list[tuple[float, float, list[Contact]]]:
@@ -222,7 +213,7 @@ class WallEquilibria:
                         c, s = cos(theta), sin(theta)
                         contacts = [(LOCATOR, one), (LOCATOR, two), self.on(piece)]
                         out.append(
-                            self.begun(theta, (lx - c * vx + s * vy, ly - s * vx - c * vy), 0.0, contacts)
+                            candidate_of((theta, lx - c * vx + s * vy, ly - s * vx - c * vy, 0.0), contacts)
                         )
         return self.with_tip(rows_of(out))
 
@@ -249,7 +240,7 @@ class WallEquilibria:
                     (self.resting(piece, theta), self.pattern.pegs[TIP, 1] - (s * vx + c * vy)),
                 )
                 contacts = [self.on(piece), *((TIP, k) for k in held)]
-                row = self.begun(theta, place, place[0] + ahead - self.pattern.pegs[TIP, 0], contacts)
+                row = candidate_of((theta, *place, place[0] + ahead - self.pattern.pegs[TIP, 0]), contacts)
                 row[SECOND], row[MOTION], row[MOTION + 1], row[MOTION + 2] = -1.0, 1.0, s * x + c * y, -ahead
                 out.append(row)
         return np.concatenate([found, rows_of(out)])
@@ -274,7 +265,9 @@ class WallEquilibria:
                 c, s = cos(theta), sin(theta)
                 place = self.resting(side.pieces[0], theta), ty - (s * row[X] + c * row[Y])
                 contacts = [(TIP, number), self.on(side.pieces[0]), self.on(side.pieces[1], True)]
-                one = self.begun(theta, place, place[0] + c * row[X] - s * row[Y] + signed - tx, contacts)
+                one = candidate_of(
+                    (theta, *place, place[0] + c * row[X] - s * row[Y] + signed - tx), contacts
+                )
                 one[SECOND], one[MOTION + 2] = -1.0 / signed, 1.0
                 out.append(one)
             for piece, low, high in self.runs:
@@ -293,7 +286,7 @@ class WallEquilibria:
                     place = self.resting(piece, theta), ty - (s * hull[0] + c * hull[1])
                     ahead = c * dx - s * dy + (signed if is_arc else 0.0)
                     separation = place[0] + c * hull[0] - s * hull[1] + ahead - tx
-                    one = self.begun(theta, place, separation, [(TIP, number), self.on(piece)])
+                    one = candidate_of((theta, *place, separation), [(TIP, number), self.on(piece)])
                     # Over the turn, and the rise of the tip above the piece: see ``curvature``.
                     second, turn, rise = curvature(ahead, signed if is_arc else None)
                     one[SECOND], one[MOTION] = second, turn

@@ -1,4 +1,4 @@
-"""What the clamps of a seat say of its pairs before anything is proven.
+"""Bounds of the rank of fixtures that are not proven yet: of pairs of clamps, and of all that is tilted.
 
 Contacts of three locators and one clamp already say what the locators take up of the clamp's force. So of
 any two at one seat it is known to some digits whether they close, how far their forces may differ, and what
@@ -8,18 +8,24 @@ How far forces may be off: a clamp's contact is as far off as its record says. T
 over the radius of its arc, and changes a moment by so much over L. The reactions are off by that times the
 inverse of the locators' wrenches, over the clamp's push where it moves along its line. All of it is taken
 generously, and to first order; where it is not small, the forces are taken as not known.
+
+A tilt costs points, and no location error is small. Pegs are off by p and faces by f, so that a contact is
+off by t = p + f along its normal. Along the tangent it is off by p or more as well, and by t where no arc is
+touched by two pegs. So the location error is no less than sqrt(t^2 + p^2), or t sqrt 2 (theorem "tilted
+fixtures" of docs/method-theorems.md).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
+from math import hypot, inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
-from workhold.conventions import NO_REACTION
+from workhold.conventions import NO_REACTION, SQUARE_TILT
+from workhold.geometry.segment import Arc
 from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.contact import record
 from workhold.kernels.contact.pair_bounds import (
@@ -33,15 +39,27 @@ from workhold.kernels.contact.pair_bounds import (
     bounds_of_pairs,
 )
 from workhold.listing.canonical_form import Candidates, candidates_of
-from workhold.listing.clamp_placement import DIRECTION_NAMES
-from workhold.listing.packed_contacts import PackedContacts
+from workhold.listing.clamp_placement import DIRECTION_NAMES, direction_number
+from workhold.listing.contact_groups import PackedContacts
 from workhold.listing.placing import LOCATOR_CONTACTS, TIP
+from workhold.listing.ranking import best_possible, ranking_keys
 from workhold.model.clamps import LOCATORS
-from workhold.model.quality import CLAMP_AMPLIFICATION, CLAMP_FREEDOM, CLOSURE_MARGIN, FIGURES
+from workhold.model.quality import (
+    CLAMP_AMPLIFICATION,
+    CLAMP_FREEDOM,
+    CLOSURE_MARGIN,
+    FIGURES,
+    LOCATION_ERROR,
+    PENALTY,
+    SMALLEST_FACE,
+    TILT,
+)
 from workhold.model.query import Query
 from workhold.statics.contact_matrix import locators_inverse, outward_normals, wrenches
+from workhold.statics.judging import Judging
+from workhold.statics.quality import face_sizes, main_direction
 
-__all__ = ["BOUNDED", "first_of_clamps", "pair_bounds"]
+__all__ = ["BOUNDED", "first_of_clamps", "pair_bounds", "square_angles", "tilted_keys"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -49,6 +67,7 @@ IntArray = NDArray[np.int64]
 # The figures that pairs bound, by where they stand in a row of bounds.
 BOUNDED = {CLAMP_FREEDOM: FREEDOM, CLOSURE_MARGIN: MARGIN, CLAMP_AMPLIFICATION: AMPLIFICATION}
 # What forces may be off by besides, as a part of the largest, and most with which they are known at all.
+# Location errors are rounded by less than the first.
 SHARE, MOST_SHARE = 1e-6, 1e-2
 # Larger than any step of holes.
 MANY = 1 << 20
@@ -83,7 +102,7 @@ def pair_bounds(
         there = np.flatnonzero((order >= edges[number]) & (order < edges[number + 1]))
         some = part.take(order[there] - edges[number])
         forces[there] = clamp_forces(some, candidates_of(some, problem), problem)
-        directions[there] = DIRECTION_NAMES.index(problem.toolkit.arrangements[0].direction or "")
+        directions[there] = direction_number(problem.toolkit)
     kept = np.flatnonzero(forces[:, OFF] >= 0.0)
     ends = np.searchsorted(seat[kept], np.arange(len(starts) + 1))
     asked = np.zeros((len(DIRECTION_NAMES), len(DIRECTION_NAMES)), np.int64)
@@ -121,3 +140,47 @@ def clamp_forces(records: Array, c: Candidates, problem: Problem) -> Array:
         alone = out[:, :LOCATORS].min(axis=1, initial=inf) > NO_REACTION * (out[:, FACE] + size) + out[:, OFF]
     out[alone, OFF] = -1.0
     return out
+
+
+# Degrees beside square orientations that count as such: far more than any orientation is off.
+BESIDE = 1e-3
+
+
+def square_angles(query: Query) -> list[tuple[float, float]]:
+    """Ranges in degrees of the part's angle in which it may lie square."""
+    direction, beside = main_direction(query.workpiece), SQUARE_TILT + BESIDE
+    middles = [90.0 * k - direction for k in range(4)]
+    return [(middle - beside, middle + beside) for middle in middles]
+
+
+def tilted_keys(query: Query, problem: Problem) -> Array | None:
+    """Keys (R,) that no tilted fixture ranks before; None where tilt has no say, or nothing is bounded.
+
+    Parameters
+    ----------
+    query : what is asked.
+    problem : the search of it, or of one of its directions.
+    """
+    toolkit, part = query.toolkit, query.workpiece
+    if toolkit.has_flats or part.outlines:
+        return None
+    tilted, square = (least_keys(query, problem, tilt) for tilt in (SQUARE_TILT, 0.0))
+    return None if (tilted == square).all() else tilted
+
+
+def least_keys(query: Query, problem: Problem, tilt: float) -> Array:
+    """Keys (R,) that no fixture of a tilt in degrees or more ranks before."""
+    part, tolerance = query.workpiece, query.tolerance
+    sizes, off = face_sizes(part), tolerance.peg + tolerance.face
+    arcs = [face.number for face in part.numbered.faces if isinstance(face.segment, Arc)]
+    # Whether two pegs share an arc or not.
+    cases = [(sqrt(2.0) * off, np.nanmax(sizes))]
+    if arcs:
+        cases.append((hypot(off, tolerance.peg), sizes[arcs].max()))
+    quality = best_possible(len(cases), query)
+    quality[:, LOCATION_ERROR], quality[:, SMALLEST_FACE] = np.transpose(cases)
+    quality[:, LOCATION_ERROR] *= 1.0 - SHARE
+    quality[:, TILT] = tilt
+    quality[:, PENALTY] = Judging.of(problem.wrench_length, query.toolkit, tolerance).penalty(quality)
+    keys = np.stack(ranking_keys(quality, query.ranking, tolerance), axis=1)
+    return np.asarray(keys[np.lexsort(keys.T[::-1])[0]])
