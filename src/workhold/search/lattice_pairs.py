@@ -39,7 +39,7 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.rules import ROUNDING
-from workhold.proof.lattice_pair import LatticePair, verdict_on_pair
+from workhold.proof.flush import LatticePair, verdict_on_pair
 from workhold.search.wall_contacts import PartOnWall
 
 __all__ = ["LatticePairs", "are_pressed", "pairs_on"]
