@@ -25,9 +25,8 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X
 from workhold.kernels.base.given import Limits
 from workhold.model.clamps import LOCATORS
 from workhold.model.workpiece import Workpiece
-from workhold.proof.ball_contacts import BoxContacts, places
+from workhold.proof.ball_contacts import BoxContacts, CandidateBox, places
 from workhold.proof.interval_newton import PRECISIONS, refined
-from workhold.proof.narrowing import CandidateBox
 from workhold.proof.singular_frame import SingularFrame
 
 __all__ = ["SharpReactions", "drawn_circle", "exact_rows", "rounded", "sharp_reactions", "side_of"]
