@@ -42,6 +42,7 @@ from workhold.verification.ball_geometry import (
     cross,
     dot,
     least,
+    minus,
     root,
     turned,
 )
@@ -62,6 +63,7 @@ __all__ = [
     "closure_findings",
     "contact_system",
     "every_outline",
+    "inner",
     "inverted",
     "met_by",
     "minors",
@@ -153,7 +155,7 @@ class BallContact:
             value = dot(n, u) - side.level - self.radius
             return value, [cross(n, u), -n[0], -n[1], dot(self.way, n)]
         c = turned(side.center, pose.cosine, pose.sine)
-        w = u[0] - c[0], u[1] - c[1]
+        w = minus(u, c)
         value = (dot(w, w) - side.reach(self.radius) ** 2) / 2
         return value, [cross(w, c), -w[0], -w[1], dot(self.way, w)]
 
@@ -176,17 +178,8 @@ def contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[
 
 def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
     """The null vector of four wrenches in balls, in mm: (-1)^i det of the wrenches other than i."""
-    moments = [cross(q, n) for q, n in zip(points, normals, strict=True)]
-    vector = []
-    for i in range(4):
-        a, b, c = (k for k in range(4) if k != i)
-        det = (
-            cross(normals[a], normals[b]) * moments[c]
-            + cross(normals[b], normals[c]) * moments[a]
-            + cross(normals[c], normals[a]) * moments[b]
-        )
-        vector.append(-det if i % 2 else det)
-    return vector
+    wrenches = [(*n, cross(q, n)) for q, n in zip(points, normals, strict=True)]
+    return [(-1) ** i * arb_mat([*wrenches[:i], *wrenches[i + 1 :]]).det() for i in range(4)]
 
 
 def span(vector: Sequence[arb], wrench_length: float) -> arb:
@@ -253,10 +246,13 @@ class Balance:
     def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
         """The component of forces along those of what moves: the part that locking it takes up."""
         own = self.forces
-        share = sum((a * b for a, b in zip(forces, own, strict=True)), arb(0)) / sum(
-            (a * a for a in own), arb(0)
-        )
+        share = inner(forces, own) / inner(own, own)
         return [share * force for force in own]
+
+
+def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:
+    """Scalar product of two rows."""
+    return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))
 
 
 def inverted(rows: list[list[arb]]) -> list[list[arb]] | None:
@@ -316,14 +312,14 @@ def wrench_radius(
     for corners in combinations(range(len(wrenches)), 3):
         a, b, c = (wrenches[k] for k in corners)
         across = vector_product(difference(b, a), difference(c, a))
-        size = root(scalar(across, across))
+        size = root(inner(across, across))
         if size < FLAT or not size > 0:
             continue
         others = (wrench for k, wrench in enumerate(wrenches) if k not in corners)
-        sides = [scalar(across, difference(wrench, a)) / size for wrench in others]
+        sides = [inner(across, difference(wrench, a)) / size for wrench in others]
         if any(side > FLAT for side in sides) and any(side < -FLAT for side in sides):
             continue
-        height = abs(scalar(across, a)) / size
+        height = abs(inner(across, a)) / size
         sure = all(side > -FLAT for side in sides) or all(side < FLAT for side in sides)
         found = height if nearest is None else nearest.min(height)
         nearest = found if sure or nearest is None else found.union(nearest)
@@ -340,43 +336,19 @@ def difference(a: Wrench, b: Wrench) -> Wrench:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-def scalar(a: Wrench, b: Wrench) -> arb:
-    """Scalar product in space."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
 def every_outline(workpiece: Workpiece) -> BallOutline:
     """The outline of a workpiece at the precision in force, with the faces of all outlines in its tables."""
     whole = BallOutline.of(workpiece)
     if not workpiece.outlines:
         return whole
-    first, own, known = len(whole.segments), dict[str, BallOutline](), list[tuple[Workpiece, BallOutline]]()
-    for role, part in workpiece.outlines:
-        same = next((outline for one, outline in known if one == part), None)
-        if same is None:
-            known.append((part, same := BallOutline.of(part, first)))
-            first += len(same.segments)
-        own[role] = same
+    own = {"": whole, **{role: BallOutline.of(*workpiece.outline_of(role)) for role, _ in workpiece.outlines}}
     tables: dict[str, Any] = {
-        name: {face: value for one in (whole, *own.values()) for face, value in getattr(one, name).items()}
-        for name in ("faces", "others", "smooth", "turns", "neighbours")
+        name: {face: value for one in own.values() for face, value in getattr(one, name).items()}
+        for name in ("faces", "others", "neighbours", "turns")
     }
     return evolve(whole, **tables, own=own)
 
 
 def met_by(outline: BallOutline, carrier: str) -> BallOutline:
     """What the pegs of a carrier of a name keep from; a clamp's name ends with its direction."""
-    if not outline.own:
-        return outline
-    role = carrier.split(" ")[0]
-    return outline.own[role] if role in outline.own else alone(outline)
-
-
-def alone(outline: BallOutline) -> BallOutline:
-    """The outline without the faces of others."""
-    count = len(outline.segments)
-    tables: dict[str, Any] = {
-        name: {face: value for face, value in getattr(outline, name).items() if face < count}
-        for name in ("faces", "others", "smooth", "turns", "neighbours")
-    }
-    return evolve(outline, **tables, own={})
+    return outline.own.get(carrier.split(" ")[0], outline.own[""]) if outline.own else outline

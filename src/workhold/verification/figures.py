@@ -36,6 +36,7 @@ from workhold.verification.ball_geometry import (
     exact_point,
     largest,
     least,
+    minus,
     norm,
     root,
 )
@@ -53,7 +54,7 @@ from workhold.verification.tolerances import (
 )
 from workhold.verification.touching import Barrier, barriers, edge_distances, end_distance, length_of
 
-__all__ = ["COUNTS", "RANGES", "Measure", "box_center", "figure_missing", "parts_spared"]
+__all__ = ["COUNTS", "RANGES", "Measure", "figure_missing", "parts_spared"]
 
 # Figures of which any number in a range may be right.
 COUNTS = ("warnings", "penalty")
@@ -326,8 +327,8 @@ def hull(points: Sequence[Point]) -> list[Point]:
         first = len(chain)
         for point in run:
             while len(chain) - first >= 2:
-                (ax, ay), (bx, by) = chain[-2:]
-                if not cross((bx - ax, by - ay), (point[0] - bx, point[1] - by)) < 0:
+                before, last = chain[-2:]
+                if not cross(minus(last, before), minus(point, last)) < 0:
                     break
                 chain.pop()
             chain.append(point)

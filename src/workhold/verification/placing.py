@@ -39,8 +39,9 @@ from workhold.verification.ball_geometry import (
     dot,
     exact_point,
     least,
+    loop_sides,
+    minus,
     turned,
-    vertex_side,
 )
 from workhold.verification.contacts import BallContact, BallPose, contact_system, every_outline
 from workhold.verification.rules.hardware import ToolkitRules
@@ -186,7 +187,8 @@ def broken_at_wall(fixture: Fixture, query: Query, hardware: ToolkitRules, avoid
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     for wall in hardware.walls:
         # Of a corner on a wall both faces are to be avoided.
-        for contact in hardware.contacts(fixture, every_outline(query.workpiece)):
+        contacts = hardware.contacts(fixture, every_outline(query.workpiece)) if avoided else []
+        for contact in contacts:
             if isinstance(contact, WallContact) and avoided.issuperset(contact.faces):
                 return (
                     f"the part lies on the {wall.noun} with face {contact.faces[0]}, which is to be avoided"
@@ -203,16 +205,10 @@ def in_part(fixture: Fixture, peg: Peg) -> Point:
     return turned(exact_point(peg.x - fixture.pose.x, peg.y - fixture.pose.y), cosine, -sine)
 
 
-def zone_sides(zone: Zone) -> list[Side]:
-    """The sides of a zone."""
-    vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in zone.loop]
-    return [vertex_side(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
-
-
 def zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
     """y in mm of the lowest point of a zone, once it is turned about the workpiece's origin."""
     heights = []
-    for side in zone_sides(zone):
+    for side in loop_sides(zone.loop):
         heights += [turned(point, cosine, sine)[1] for point in (side.start, side.end)]
         if isinstance(side, ArcSide) and not side.within((-sine, -cosine)) < 0:
             heights.append(turned(side.center, cosine, sine)[1] - side.radius)
@@ -221,7 +217,7 @@ def zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
 
 def zone_distance(zone: Zone, point: Point) -> arb:
     """Distance in mm from a point to a zone, 0 inside."""
-    sides = zone_sides(zone)
+    sides = loop_sides(zone.loop)
     nearest = least([side.distance(point) for side in sides])
     # On the chord of an arc, as at a circle's centre, turns are not certain. Nearer than any side all is
     # inside, or none is.
@@ -243,8 +239,7 @@ def turns_around(sides: Sequence[Side], point: Point) -> arb:
     """
     total = arb(0)
     for side in sides:
-        a = side.start[0] - point[0], side.start[1] - point[1]
-        b = side.end[0] - point[0], side.end[1] - point[1]
+        a, b = minus(side.start, point), minus(side.end, point)
         total += arb.atan2(cross(a, b), dot(a, b))
         if isinstance(side, ArcSide):
             beside = side.sign * cross(a, b) < 0

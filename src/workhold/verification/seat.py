@@ -23,10 +23,10 @@ from functools import cached_property
 from itertools import combinations
 
 from attrs import frozen
-from flint import arb
+from flint import arb, arb_mat
 
 from workhold.verification.ball_geometry import Point, cross, dot, largest, least, turned
-from workhold.verification.contacts import BallContact, BallPose, inverted
+from workhold.verification.contacts import BallContact, BallPose, inner, inverted
 from workhold.verification.tolerances import (
     LEAST_PUSH,
     LEAST_SEAT,
@@ -87,20 +87,14 @@ class LocatorWrenches:
     @cached_property
     def determinant(self) -> arb:
         """The determinant of the three wrenches, in mm."""
-        return determinant(self.wrenches)
+        return arb_mat(self.wrenches).det()
 
     def taken(self, point: Point, normal: Point) -> tuple[arb, arb, arb]:
         """What the locators take up per unit of force on the face of a clamp at a point, by Cramer's rule."""
         own = (*normal, cross(point, normal))
-        replaced = (determinant([*self.wrenches[:k], own, *self.wrenches[k + 1 :]]) for k in range(LOCATORS))
-        a, b, c = (-value / self.determinant for value in replaced)
+        replaced = (arb_mat([*self.wrenches[:k], own, *self.wrenches[k + 1 :]]) for k in range(LOCATORS))
+        a, b, c = (-matrix.det() / self.determinant for matrix in replaced)
         return a, b, c
-
-
-def determinant(vectors: Sequence[tuple[arb, arb, arb]]) -> arb:
-    """The determinant of three vectors."""
-    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = vectors
-    return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
 
 
 @frozen(eq=False)
@@ -325,8 +319,3 @@ class SeatBalance:
         fa, fb, area = inner(forces, ones), inner(forces, others), aa * bb - ab * ab
         u, v = (fa * bb - fb * ab) / area, (fb * aa - fa * ab) / area
         return [u * a + v * b for a, b in self.reactions]
-
-
-def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    """Scalar product of two rows."""
-    return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))
