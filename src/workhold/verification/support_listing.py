@@ -30,11 +30,10 @@ from workhold.model.query import Query
 from workhold.model.support_request import SupportRequest
 
 __all__ = [
-    "ClampCells",
     "Hole",
     "area_center",
     "band_faults",
-    "holes_near",
+    "inside_of",
     "missing_triples",
     "opened_clear_of_blocked",
     "room_on",
@@ -61,33 +60,26 @@ class Rules(Protocol):
     @property
     def query(self) -> Query:
         """Part and toolkit."""
-        ...
 
     @property
     def fixture(self) -> Fixture:
         """The planar fixture."""
-        ...
 
     @property
     def request(self) -> SupportRequest:
         """What was asked of supports and clamp."""
-        ...
 
     def point_of(self, hole: Hole) -> tuple[float, float]:
         """The place of a hole in the part's coordinates."""
-        ...
 
     def pad_room(self, hole: Hole) -> float:
         """The slack in mm by which a pad keeps its rules."""
-        ...
 
     def tip_room(self, point: tuple[float, float]) -> float:
         """The slack in mm by which the tip keeps the rules of the top."""
-        ...
 
     def travel(self, holes: list[Hole]) -> tuple[bool, float | None]:
         """Whether pegs and supports fit their plates, and the opening of what moves."""
-        ...
 
 
 def holes_near(rules: Rules) -> Iterator[Hole]:

@@ -11,12 +11,13 @@ Of a complete list all other triples are tried too (``verification.support_listi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from itertools import product
 from math import ceil, hypot, inf, pi, radians
 from pathlib import Path
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -38,6 +39,7 @@ from workhold.verification.support_listing import (
     Hole,
     area_center,
     band_faults,
+    inside_of,
     missing_triples,
     opened_clear_of_blocked,
     room_on,
@@ -76,40 +78,43 @@ class SupportsJudge:
     request: SupportRequest
     loads: tuple[SpatialLoad, ...]
     jaw_force: float
-    pegs: Array = field(init=False)
-    pushes: Array = field(init=False)
 
-    def __attrs_post_init__(self) -> None:
+    @cached_property
+    def pegs(self) -> Array:
+        """Places (P, 2) of the pegs, and of the ends on a wall, in the part's coordinates."""
         inverse = self.fixture.pose.inverse
-        pegs = np.array([inverse.apply(peg.x, peg.y) for peg in self.fixture.pegs])
+        return np.array([inverse.apply(peg.x, peg.y) for peg in self.fixture.pegs])
+
+    @cached_property
+    def pushes(self) -> Array:
+        """Unit vectors (P, 2) along which they push the part."""
         # Of a file without its solid, segments that continue one line are one face.
         faces = self.query.workpiece.numbered.faces
         segments = {number: face.segment for face in faces for number in face.segments}
         pushes = []
-        for peg, place in zip(self.fixture.pegs, pegs, strict=True):
+        for peg, (x, y) in zip(self.fixture.pegs, self.pegs.tolist(), strict=True):
             if peg not in self.fixture.placed:
                 # A wall runs along x with the part above it.
-                pushes.append(inverse.turn(0.0, 1.0))
+                pushes.append(self.fixture.pose.inverse.turn(0.0, 1.0))
                 continue
             face = segments[peg.face]
-            x, y = face.normal(face.parameter((float(place[0]), float(place[1]))))
-            pushes.append((-x, -y))
-        object.__setattr__(self, "pegs", pegs)
-        object.__setattr__(self, "pushes", np.array(pushes))
+            nx, ny = face.normal(face.parameter((x, y)))
+            pushes.append((-nx, -ny))
+        return np.array(pushes)
 
     @property
     def toolkit(self) -> Toolkit:
         """What holds the part."""
         return self.query.toolkit
 
-    def point_of(self, hole: tuple[str, int, int]) -> tuple[float, float]:
+    def point_of(self, hole: Hole) -> tuple[float, float]:
         """The place of a hole in the part's coordinates."""
         name, column, row = hole
         place = self.toolkit.carrier(name).place(column, row, self.fixture.jaw_separation)
         x, y = self.fixture.pose.inverse.apply(*place)
         return float(x), float(y)
 
-    def pad_room(self, hole: tuple[str, int, int]) -> float:
+    def pad_room(self, hole: Hole) -> float:
         """The slack in mm by which a pad keeps its rules."""
         asked, point = self.request, self.point_of(hole)
         loops = self.query.workpiece.loops if asked.bottom is None else asked.bottom
@@ -134,7 +139,7 @@ class SupportsJudge:
             room = min(room, max(rings, default=-inf))
         return room
 
-    def travel(self, holes: Sequence[tuple[str, int, int]]) -> tuple[bool, float | None]:
+    def travel(self, holes: Sequence[Hole]) -> tuple[bool, float | None]:
         """Whether pegs and supports fit their plates, and the opening of what moves."""
         toolkit, plates = self.toolkit, self.toolkit.plates
         taken: dict[str, list[tuple[int, int]]] = {plate.name: [] for plate in plates}
@@ -288,7 +293,7 @@ class SupportsJudge:
             if at is None or len(at) != 2:
                 yield f"the {name} clamp point is missing"
                 continue
-            shares, arm = self.shares(solved, at), self.side(supports, at)
+            shares, arm = self.shares(solved, at), inside_of(supports, *at)
             if self.tip_room((at[0], at[1])) < -AGREEMENT or arm < self.request.inside - AGREEMENT:
                 yield f"the clamp may not stand at the {name} point"
                 continue
@@ -302,16 +307,16 @@ class SupportsJudge:
             if self.loads:
                 known["support_force"] = max(0.0, float((need * shares + most).max()))
             yield from other_figures(name, figures, known)
-        center = self.side(supports, area_center(self.query.workpiece.loop_segments))
+        center = inside_of(supports, *area_center(self.query.workpiece.loop_segments))
         if differs(part.standing, center):
             yield f"standing is {center:.9g}, and is written as {part.standing:.9g}"
         points = [point for load in self.loads for point in load.points]
         if points:
-            over = max(-self.side(supports, point) for point in points)
+            over = max(-inside_of(supports, *point) for point in points)
             if differs(part.overhang, over):
                 yield f"overhang is {over:.9g}, and is written as {part.overhang}"
         if self.tip_room((part.arm_at[0], part.arm_at[1])) < -AGREEMENT or differs(
-            part.arm, self.side(supports, part.arm_at)
+            part.arm, inside_of(supports, *part.arm_at)
         ):
             yield f"the arm is not {part.arm:.9g}"
         yield from self.better_places(part, supports, solved, least)
@@ -322,7 +327,7 @@ class SupportsJudge:
             if i + j >= GRID:
                 continue
             x, y = np.array([i, j, GRID - i - j]) / GRID @ supports
-            arm = self.side(supports, (x, y))
+            arm = inside_of(supports, x, y)
             if arm < self.request.inside:
                 continue
             need = max(0.0, float((-least / self.shares(solved, (x, y))).max()))
@@ -330,15 +335,6 @@ class SupportsJudge:
             if (cheaper or arm > part.arm * (1 + AGREEMENT) + AGREEMENT) and self.tip_room((x, y)) > 0:
                 yield f"the clamp is better placed at ({x:.6g}, {y:.6g})"
                 return
-
-    def side(self, supports: Array, point: Sequence[float]) -> float:
-        """How far a point is inside the triangle, in mm."""
-        p, (a, b, c) = np.asarray(point, float), supports
-        turn = np.sign((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
-        ways = ((a, b), (b, c), (c, a))
-        return float(
-            min(turn * ((f - e)[0] * (p - e)[1] - (f - e)[1] * (p - e)[0]) / hypot(*(f - e)) for e, f in ways)
-        )
 
 
 def differs(written: float | None, own: float) -> bool:
