@@ -25,6 +25,7 @@ wrench radius : distance from the origin to the nearest facet of the hull of the
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from itertools import combinations
 from typing import Any, ClassVar
 
@@ -41,16 +42,19 @@ from workhold.verification.ball_geometry import (
     Side,
     cross,
     dot,
+    largest,
     least,
     minus,
     root,
     turned,
 )
 from workhold.verification.tolerances import (
+    FIGURE_AGREEMENT,
     FLAT,
     LEAST_CLAMPING,
     LEAST_SHARE,
     LEAST_SPAN,
+    ROUNDING,
     Finding,
     number,
     rule,
@@ -67,6 +71,7 @@ __all__ = [
     "inverted",
     "met_by",
     "minors",
+    "parts_spared",
     "span",
     "standoff",
     "wrench_radius",
@@ -200,6 +205,7 @@ class Balance:
     vector : the null vector of the wrenches, not scaled, see :func:`minors`.
     shares : the null vector scaled to sum 1; no numbers where the sum may be 0.
     clamp : the force that what moves passes on in the direction in which it clamps, for these shares.
+    ways : those of the pegs in the workpiece's frame.
     """
 
     points: tuple[Point, ...]
@@ -207,6 +213,7 @@ class Balance:
     vector: tuple[arb, ...]
     shares: tuple[arb, ...]
     clamp: arb
+    ways: tuple[Point, ...]
 
     @classmethod
     def of(cls, contacts: Sequence[BallContact], pose: BallPose, clamping: int) -> Balance:
@@ -217,9 +224,9 @@ class Balance:
         total = sum(vector, arb(0))
         shares = tuple(entry / total for entry in vector)
         # A peg pushes along -n, and clamps against its way.
-        ways = [turned(contact.way, pose.cosine, -pose.sine) for contact in contacts]
+        ways = tuple(turned(contact.way, pose.cosine, -pose.sine) for contact in contacts)
         push = sum((s * dot(way, n) for s, way, n in zip(shares, ways, normals, strict=True)), arb(0))
-        return cls(points, normals, vector, shares, clamping * push)
+        return cls(points, normals, vector, shares, clamping * push, ways)
 
     @property
     def forces(self) -> list[arb]:
@@ -231,23 +238,34 @@ class Balance:
         """The closure margin."""
         return least(self.shares)
 
-    def inverse(self, contacts: Sequence[BallContact], pose: BallPose) -> list[list[arb]] | None:
+    @cached_property
+    def inverse(self) -> list[list[arb]] | None:
         """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None if uncertain."""
-        rows = [
-            [*normal, cross(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal)]
-            for contact, point, normal in zip(contacts, self.points, self.normals, strict=True)
-        ]
-        return inverted(rows)
+        contacts = zip(self.points, self.normals, self.ways, strict=True)
+        return inverted(
+            [[*normal, cross(point, normal), dot(way, normal)] for point, normal, way in contacts]
+        )
 
-    def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
-        """A number for each peg, from a row of the inverse."""
-        return row
+    @property
+    def responses(self) -> list[list[arb]]:
+        """Force of each peg per unit of the load (g_x, g_y, moment), in three rows; see ``inverse``."""
+        return [] if self.inverse is None else self.inverse[:3]
 
     def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
         """The component of forces along those of what moves: the part that locking it takes up."""
         own = self.forces
         share = inner(forces, own) / inner(own, own)
         return [share * force for force in own]
+
+
+def parts_spared(forces: Sequence[arb]) -> arb:
+    """The relative error to which forces and figures of the file agree with the derived ones.
+
+    An error of the pose moves a fixture by as many times more as its forces exceed the clamping force, and
+    its forces by that factor again.
+    """
+    amplification = largest(forces)
+    return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
 
 
 def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:

@@ -21,12 +21,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import combinations
+from math import inf
 
 from attrs import frozen
 from flint import arb, arb_mat
 
+from workhold.model.fixture import Pair
 from workhold.verification.ball_geometry import Point, cross, dot, largest, least, turned
-from workhold.verification.contacts import BallContact, BallPose, inner, inverted
+from workhold.verification.contacts import BallContact, BallPose, inner, inverted, parts_spared
 from workhold.verification.tolerances import (
     LEAST_PUSH,
     LEAST_SEAT,
@@ -36,6 +38,7 @@ from workhold.verification.tolerances import (
     Finding,
     number,
     rule,
+    written,
 )
 
 __all__ = [
@@ -304,13 +307,34 @@ class SeatBalance:
         """The closure margin."""
         return closure_margin(*self.pushes)
 
-    def inverse(self, contacts: Sequence[BallContact], pose: BallPose) -> list[list[arb]] | None:
+    @cached_property
+    def inverse(self) -> list[list[arb]] | None:
         """The inverse of the locators' wrenches, which alone fix the part; None where there may be none."""
         return inverted([list(wrench) for wrench in self.seat.wrenches])
 
-    def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
-        """A row of the inverse, with 0 for each clamp, which keeps its force and takes nothing of a load."""
-        return [*row, arb(0), arb(0)]
+    @property
+    def responses(self) -> list[list[arb]]:
+        """Force of each peg per unit of a load, in three rows; a clamp keeps its own and takes nothing of it."""
+        return [[*row, arb(0), arb(0)] for row in self.inverse or ()]
+
+    def number_findings(self, pair: Pair, names: Sequence[str]) -> Iterator[Finding]:
+        """Whether the reactions of pegs of some names and the ends of the ratio in the file are these."""
+        part = parts_spared(self.forces)
+        for name, said, derived in zip(names, pair.reactions, self.reactions, strict=True):
+            for clamp, value, force in zip(CLAMPS, said, derived, strict=True):
+                yield from written(
+                    f"the force of {name} under {clamp}", value, force, part * (1 + abs(force))
+                )
+        # The ends follow from reactions that are off.
+        (low, high), ratio = pair.ratio, self.ratio
+        least = [abs(b) for _, b in self.reactions[:LOCATORS] if abs(b) > NO_REACTION]
+        part *= 1 + largest([1 / b for b in least]) if least else arb(1)
+        yield from written("the lower end of its ratio", low, ratio.low, part * (1 + ratio.low))
+        if (ratio.high is None) != (high == inf):
+            end = "has none" if ratio.high is None else f"is {number(ratio.high)}"
+            yield Finding(True, f"the upper end of its ratio {end}, and the file says otherwise")
+        elif ratio.high is not None:
+            yield from written("the upper end of its ratio", high, ratio.high, part * (1 + ratio.high))
 
     def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
         """The part of some forces that lies in the plane of those with which both clamps press."""

@@ -30,7 +30,7 @@ from workhold.model.query import Query
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.tolerances import AGREEMENT
 
-__all__ = ["Element", "Nearest", "ToolWalk", "program_fault", "walk_of"]
+__all__ = ["Element", "ToolWalk", "element_name", "elements_of", "program_fault", "walk_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -362,13 +362,20 @@ def elements_of(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iter
         yield Element(f"the {wall.noun}", wall.noun, seen(0.0, 0.0), up, 0.0, top, True, low)
     for name, peg in hardware.placed(fixture):
         carrier = hardware.carriers[peg.carrier]
-        place = f"{carrier.peg} {peg.hole}" if carrier.has_lattice else peg.hole
         low, top = carrier.heights or (0.0, height)
         ends = seen(peg.x, peg.y), seen(*behind(peg, carrier))
-        whole = Element(name, place, *ends, carrier.peg_radius, top, low=low)
+        whole = Element(name, element_name(peg, hardware), *ends, carrier.peg_radius, top, low=low)
         yield whole
         if carrier.body_radius > carrier.peg_radius:
             yield evolve(whole, radius=carrier.body_radius, height=0.0, low=0.0)
+
+
+def element_name(peg: Peg, hardware: ToolkitRules) -> str:
+    """What files call a place at which something holds the part: by its hole, or by the wall."""
+    carrier = hardware.carriers[peg.carrier]
+    if carrier.is_wall:
+        return carrier.noun
+    return f"{carrier.peg} {peg.hole}" if carrier.has_lattice else peg.hole
 
 
 def behind(peg: Peg, carrier: Carrier) -> tuple[float, float]:

@@ -19,7 +19,8 @@ from workhold.model.workpiece import Workpiece
 from workhold.verification.account import account_faults, seat_faults
 from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, norm
 from workhold.verification.contacts import Balance, BallContact, BallPose, closure_findings, met_by
-from workhold.verification.figures import Measure, figure_missing
+from workhold.verification.figures import Measure, figure_missing, written_numbers
+from workhold.verification.force_walk import program_force_findings
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
@@ -31,7 +32,6 @@ from workhold.verification.seating import SeatingJudge
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 from workhold.verification.tool_walk import program_fault
 from workhold.verification.touching import touching_findings
-from workhold.verification.written_numbers import pair_numbers, program_force_findings, written_numbers
 
 __all__ = [
     "Judge",
@@ -175,7 +175,7 @@ class Judge:
         yield from loose
         if loose:
             return
-        yield from pair_numbers(pair, hardware.names, seat)
+        yield from seat.number_findings(pair, hardware.names)
         yield from self.figure_findings(fixture, contacts, pose, measure, seat)
         if is_proven:
             standing = SeatOnPlate.of(fixture, contacts, pose, self.query, hardware, measure.outline)
@@ -193,7 +193,7 @@ class Judge:
         names, faces = self.hardware.names, self.hardware.shared_faces(fixture, contacts)
         figures = measure.figures(contacts, faces, pose, balance)
         yield from written_numbers(fixture, names, balance, figures)
-        yield from program_force_findings(fixture, self.query, self.hardware, contacts, pose, balance)
+        yield from program_force_findings(fixture, self.query, self.hardware, balance)
 
 
 def flat_findings(
