@@ -84,7 +84,7 @@ def certified_zero(system: System, start: Sequence[float]) -> list[arb] | None:
         inverse = jacobian.mid().inv().mid()
     except ZeroDivisionError:
         return None
-    around = arb_mat(size, 1, [arb(0, small) for _ in range(size)])
+    around = arb_mat(size, 1, [arb(0, small)] * size)
     box = middle + around
     identity = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
     image = middle - inverse * values + (identity - inverse * system(box)[1]) * around
@@ -92,15 +92,10 @@ def certified_zero(system: System, start: Sequence[float]) -> list[arb] | None:
     return image.entries() if all(outer.contains_interior(k) for outer, k in inner) else None
 
 
-def degree() -> arb:
-    """One degree in radians."""
-    return arb.pi() / 180
-
-
 def written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
     """All poses that agree with the file's, with travels in mm that agree with some likewise."""
     off = arb(0, AGREEMENT)
-    theta = (written.theta_deg + off) * degree()
+    theta = (written.theta_deg + off) * arb.pi() / 180
     return BallPose.of(theta, written.x + off, written.y + off, *(travel + off for travel in travels))
 
 
@@ -130,7 +125,9 @@ def proven_pose(
     findings: list[Finding] = []
     names = [("angle", "degrees"), ("x", "mm"), ("y", "mm"), *((name, "mm") for name in travels)]
     touched = f"all {'five' if len(contacts) > 4 else 'four'} faces"
-    for (name, unit), derived, value in zip(names, [zero[0] / degree(), *zero[1:]], values, strict=True):
+    for (name, unit), derived, value in zip(
+        names, [zero[0] * 180 / arb.pi(), *zero[1:]], values, strict=True
+    ):
         off = abs(derived - value)
         if not off < AGREEMENT:
             words = f"the {name} in the file is {number(off)} {unit} from the one that touches {touched}"
@@ -148,12 +145,9 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
             return f"{name} touches face {peg.face}, over which no upright face of the solid stands"
         if peg.face in avoided:
             return f"{name} touches face {peg.face}, which is to be avoided"
-        for zone in restrictions.zones:
-            if (
-                zone_distance(zone, in_part(fixture, peg))
-                < hardware.carriers[peg.carrier].body_radius - AGREEMENT
-            ):
-                return f"{name} stands over a keep-out zone"
+        reach = hardware.carriers[peg.carrier].body_radius - AGREEMENT
+        if any(zone_distance(zone, in_part(fixture, peg)) < reach for zone in restrictions.zones):
+            return f"{name} stands over a keep-out zone"
     theta = fixture.pose.theta_deg
     inside = (
         (theta - low + AGREEMENT) % 360.0 <= high - low + 2 * AGREEMENT for low, high in restrictions.angles

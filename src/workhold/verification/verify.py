@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from math import isnan
 from pathlib import Path
 from typing import Literal
@@ -86,21 +87,26 @@ class Judge:
     Parameters
     ----------
     query : what is asked.
-    hardware : the rules of its toolkit.
-    diameter, wrench_length : of the part, and L of the wrenches, half that of the peg-centre locus; in mm.
+    measures : by the bits of a precision, as far as known.
     """
 
     query: Query
     measures: dict[int, Measure] = field(factory=dict, init=False)
-    hardware: ToolkitRules = field(init=False)
-    diameter: float = field(init=False)
-    wrench_length: float = field(init=False)
 
-    def __attrs_post_init__(self) -> None:
-        hardware, diameter = ToolkitRules.of(self.query), outline_diameter(self.query.workpiece)
-        object.__setattr__(self, "hardware", hardware)
-        object.__setattr__(self, "diameter", diameter)
-        object.__setattr__(self, "wrench_length", diameter / 2 + hardware.largest_radius)
+    @cached_property
+    def hardware(self) -> ToolkitRules:
+        """The rules of the toolkit."""
+        return ToolkitRules.of(self.query)
+
+    @cached_property
+    def diameter(self) -> float:
+        """That of the part, in mm."""
+        return outline_diameter(self.query.workpiece)
+
+    @cached_property
+    def wrench_length(self) -> float:
+        """L of the wrenches in mm, half the diameter of the peg-centre locus."""
+        return self.diameter / 2 + self.hardware.largest_radius
 
     def rule_on(self, fixture: Fixture) -> Ruling:
         """The ruling on one fixture, at the lowest precision that decides it."""
@@ -342,28 +348,19 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         rulings.append((verdict, reason))
         doubtful += verdict != "proven"
         progress((place + 1) / len(everything), doubtful)
-    unproven = [
-        Unproven(place, verdict, reason)
-        for place, (verdict, reason) in enumerate(rulings)
-        if verdict != "proven"
-    ]
-    tally = {
-        name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")
-    }
+    unproven = [Unproven(place, *ruling) for place, ruling in enumerate(rulings) if ruling[0] != "proven"]
+    refuted = {one.index for one in unproven if one.verdict == "refuted"}
     faults = [
         *listing.faults,
         *account_faults(listing, turning.order),
         *order_faults(everything, query, judge.hardware),
+        *pattern_faults(everything, query),
+        *seat_faults(listing, refuted),
     ]
-    faults += pattern_faults(everything, query)
-    faults += seat_faults(
-        listing, {place for place, (verdict, _) in enumerate(rulings) if verdict == "refuted"}
-    )
-    if not tally["refuted"] and turning.is_certain:
+    if not refuted and turning.is_certain:
         faults += distinct_faults(listing, seen)
-    return Verification(
-        tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), tuple(faults), bits
-    )
+    tally = len(rulings) - len(unproven), len(refuted), len(unproven) - len(refuted)
+    return Verification(*tally, tuple(unproven), tuple(faults), bits)
 
 
 def distinct_faults(listing: Listing, seen: KnownFixtures) -> Iterator[str]:
