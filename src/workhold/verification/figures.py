@@ -59,7 +59,7 @@ from workhold.verification.tolerances import (
     Finding,
     written,
 )
-from workhold.verification.touching import Barrier, barriers, edge_distances, end_distance, length_of
+from workhold.verification.touching import Barrier, barriers, edge_distances, length_of
 
 __all__ = ["Measure", "figure_missing", "written_numbers"]
 
@@ -216,8 +216,13 @@ class Measure:
         return self.beside[key]
 
     def end_distance(self, contact: BallContact, face: int, center: Point) -> arb:
-        """Distance in mm of a peg on a face from the nearer end of its contact feature."""
-        return end_distance(contact.side, contact.radius, self.barriers(contact, face), center)
+        """Distance in mm of a peg on a face from the nearer end of its contact feature.
+
+        A whole circle has no end; half its circumference counts.
+        """
+        side, radius = contact.side, contact.radius
+        ends = edge_distances(side, radius, self.barriers(contact, face), center, (False, False))
+        return arb.pi() * side.reach(radius) if isinstance(side, ArcSide) and side.whole else least(ends)
 
     def edge_distance(self, contact: BallContact, face: int, center: Point) -> arb | None:
         """Distance in mm of a peg on a face from the nearer edge of its contact feature; None for no edge.
