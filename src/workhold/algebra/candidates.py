@@ -26,7 +26,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.resultants import Rows
+from workhold.algebra.resultants import ArrayTable
 from workhold.contact.problem import Frame
 from workhold.conventions import PARALLEL, WEDGE_SLACK
 from workhold.errors import InputError
@@ -239,7 +239,7 @@ def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
 
 
 @define(frozen=True, eq=False)
-class Systems(Rows):
+class Systems(ArrayTable):
     """N systems of contact equations: for Type I four pegs, for Type II the three on the left jaw.
 
     Parameters

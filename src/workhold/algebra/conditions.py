@@ -13,7 +13,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.resultants import Complex, Rows
+from workhold.algebra.resultants import ArrayTable, Complex
 from workhold.contact.problem import Frame
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, RISES, ROW_SLACK
 from workhold.kernels.base.feature import (
@@ -42,7 +42,7 @@ STEEPEST = 1e6
 
 
 @define(frozen=True, eq=False)
-class SimultaneousContacts(Rows):
+class SimultaneousContacts(ArrayTable):
     """N parts touched by four pegs, lengths in mm.
 
     Parameters

@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 from workhold.algebra.candidates import CENTERS, HALF_SECTOR, sector_of
 from workhold.algebra.exact import exact_roots
 from workhold.algebra.resultants import (
+    ArrayTable,
     Complex,
     ContactSystems,
-    Rows,
     TrigPolynomial,
     circle_constraint,
     coefficients,
@@ -197,7 +197,7 @@ LAST_STEPS = 16.0
 
 
 @define(frozen=True, eq=False)
-class Poses(Rows):
+class Poses(ArrayTable):
     """N poses.
 
     Parameters

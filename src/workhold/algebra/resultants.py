@@ -49,7 +49,7 @@ __all__ = [
     "PAPER_DEGREES",
     "TRUE_DEGREES",
     "ContactSystems",
-    "Rows",
+    "ArrayTable",
     "TrigPolynomial",
     "circle_constraint",
     "coefficients",
@@ -65,7 +65,7 @@ BoolArray = NDArray[np.bool_]
 
 
 @define(frozen=True, eq=False)
-class Rows:
+class ArrayTable:
     """N things in arrays, each of which has a row for every one of them."""
 
     @property
@@ -75,7 +75,7 @@ class Rows:
         return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
 
     def take(self, which: NDArray[np.int64] | BoolArray) -> Self:
-        """Those of an index array or mask."""
+        """The rows of an index array or mask."""
         return evolve(self, **{name: array[which] for name, array in self.arrays.items()})
 
     @classmethod
@@ -98,7 +98,7 @@ class TrigPolynomial:
 
 
 @define(frozen=True, eq=False)
-class ContactSystems(Rows):
+class ContactSystems(ArrayTable):
     """N systems of pegs and features in the form the constraints use.
 
     Parameters

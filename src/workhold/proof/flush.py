@@ -1,14 +1,15 @@
-"""Whether two pegs press a part that lies flush on a wall, in balls: a locator and a clamp, or two of a lattice.
+"""Whether two pegs press a part that lies flush on a wall, in balls.
 
-Everything is derived once more from the hull edge's corners and arcs, the outline's vertices and bulges and
-the lattice. Their doubles are taken as exact numbers, and balls have as many digits as it takes. An arc's
-centre rounded once would not do: where a row grazes an arc, 5e-16 mm move the contact by 7e-8 mm.
+They are a locator and a clamp, or two pegs of one lattice. Everything is derived once more from the hull
+edge's corners and arcs, the outline's vertices and bulges and the lattice. Their doubles are taken as exact
+numbers, and balls have as many digits as it takes. An arc's centre rounded once would not do: where a row
+grazes an arc, 5e-16 mm move the contact by 7e-8 mm.
 
 Glossary
 --------
-contacts : the hull edge's length in mm, and of both pegs the centre, the outward normal there, and how far
-    in mm it is inside the rule of both ends of its feature. Places are along the hull edge from its start,
-    and above it.
+contacts : the hull edge's length in mm, and the contact of both pegs. That is the centre, the outward normal
+    there, and how far in mm it is inside the rule of both ends of its feature. Places are along the hull edge
+    from its start, and above it.
 branch : -1 or 1, which of two places on an arc, or of two crossings, a contact is at.
 """
 

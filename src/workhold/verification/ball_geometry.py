@@ -321,8 +321,8 @@ class BallOutline:
     others : for each face, by its number, the numbers and sides of all segments that are not of it.
     neighbours : those of each face, by its number, segments at its start and at its end.
     turns : by how much the normals differ at these two joints, the larger component.
-    own : where there are any, the outlines of carriers with heights of their own by role, and for all others
-        the one that is no carrier's by an empty role (``verification.contacts``).
+    own : outlines of carriers with heights of their own by role, and of all others by an empty role; none
+        where all meet the same (``verification.contacts``).
     """
 
     segments: tuple[Side, ...]

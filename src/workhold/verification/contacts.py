@@ -293,8 +293,10 @@ def closure_findings(
     slack_words : what is wrong where the clamping force is none.
     """
     vector, spanned = balance.vector, span(balance.vector, wrench_length)
-    words = f"the contacts do not hold the part: their wrenches span only {number(spanned)}"
-    yield from rule(spanned - LEAST_SPAN, words, words)
+    yield from rule(
+        spanned - LEAST_SPAN,
+        f"the contacts do not hold the part: their wrenches span only {number(spanned)}",
+    )
     total = sum(vector, arb(0))
     if not (total > 0 or total < 0):
         opposed = any(entry > 0 for entry in vector) and any(entry < 0 for entry in vector)

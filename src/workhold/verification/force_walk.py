@@ -10,7 +10,7 @@ value are left. On an arc of the radius r every direction's value has a second d
 in the angle, u being the size of the coefficients of the force there: the place's and the direction's own
 derivatives are at most r and 1. So V is at most M w^2 / 8 above the greater of its values at the ends of a
 stretch of the angle w. Stretches are halved until that says enough. Numbers are doubles: the rounding and the
-uncertainty of the coefficients are added to the result. With these the forces are compared that a file states.
+uncertainty of the coefficients are added to the result. The forces that a file states are held to these.
 """
 
 from __future__ import annotations

@@ -125,13 +125,11 @@ def proven_pose(
     findings: list[Finding] = []
     names = [("angle", "degrees"), ("x", "mm"), ("y", "mm"), *((name, "mm") for name in travels)]
     touched = f"all {'five' if len(contacts) > 4 else 'four'} faces"
-    for (name, unit), derived, value in zip(
-        names, [zero[0] * 180 / arb.pi(), *zero[1:]], values, strict=True
-    ):
+    found = [zero[0] * 180 / arb.pi(), *zero[1:]]
+    for (name, unit), derived, value in zip(names, found, values, strict=True):
         off = abs(derived - value)
-        if not off < AGREEMENT:
-            words = f"the {name} in the file is {number(off)} {unit} from the one that touches {touched}"
-            findings += rule(AGREEMENT - off, words, words)
+        words = f"the {name} in the file is {number(off)} {unit} from the one that touches {touched}"
+        findings += rule(AGREEMENT - off, words)
     return BallPose.of(*zero), findings
 
 

@@ -36,7 +36,7 @@ class UnusableError(Exception):
 
     @classmethod
     def of(cls, item: Mapping[str, Any], key: str, kind: str) -> UnusableError:
-        """That a key of a JSON object is missing, or not of a kind."""
+        """The error for a key of a JSON object that is missing, or not of a kind."""
         return cls(f"{key} is {item[key]!r}, not {kind}" if key in item else f"the key {key} is missing")
 
 

@@ -246,10 +246,10 @@ class SeatBalance:
     def push_findings(self, wrench_length: float) -> Iterator[Finding]:
         """Whether the locators fix the pose, both clamps push, and neither holds the part alone; L in mm."""
         spanned = abs(self.seat.determinant) / wrench_length
-        words = (
-            f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}"
+        yield from rule(
+            spanned - LEAST_SEAT,
+            f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}",
         )
-        yield from rule(spanned - LEAST_SEAT, words, words)
         for name, push in zip(CLAMPS, self.pushes, strict=True):
             yield from rule(
                 push.push - LEAST_PUSH,
@@ -314,7 +314,7 @@ class SeatBalance:
 
     @property
     def responses(self) -> list[list[arb]]:
-        """Force of each peg per unit of a load, in three rows; a clamp keeps its own and takes nothing of it."""
+        """Force of each peg per unit of a load, in three rows; a clamp keeps its own force."""
         return [[*row, arb(0), arb(0)] for row in self.inverse or ()]
 
     def number_findings(self, pair: Pair, names: Sequence[str]) -> Iterator[Finding]:

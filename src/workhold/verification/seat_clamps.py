@@ -354,19 +354,18 @@ def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -
         yield Finding(False, f"there are {len(sure)} to {len(pairs)} pairs of clamps at its seat")
     freedom, margin = balance.ratio.freedom, balance.margin
     freest = largest([freedom, *(one.freedom for one in sure)])
-    worse = freest - freedom - SAME_FREEDOM - HAIR
-    words = (
+    yield from rule(
+        -(freest - freedom - SAME_FREEDOM - HAIR),
         f"another pair of clamps at its seat has a freedom of {number(freest)} degrees, this one "
-        f"{number(freedom)}"
+        f"{number(freedom)}",
     )
-    yield from rule(-worse, words, words)
     rivals = [one.margin for one in sure if freest - one.freedom < SAME_FREEDOM - HAIR]
     widest = largest([margin, *rivals])
-    words = (
+    yield from rule(
+        2 * HAIR - (widest - margin),
         f"an equally free pair of clamps at its seat has a closure margin of {number(widest)}, this one "
-        f"{number(margin)}"
+        f"{number(margin)}",
     )
-    yield from rule(2 * HAIR - (widest - margin), words, words)
 
 
 def pairs_at(

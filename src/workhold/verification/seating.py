@@ -34,7 +34,7 @@ from workhold.verification.rules.travel import travelled
 from workhold.verification.seating_contacts import (
     PRESSES,
     FloatOutline,
-    Placement,
+    PartPlacement,
     StatedContact,
     balances,
     stop_of,
@@ -159,7 +159,7 @@ class StatedSeating:
         apart = seat["jaw_separation"] - own["jaw_separation"]
         if abs(apart - seat["difference"]) > ROUNDED:
             yield "has a difference that is not that of the separations"
-        place = Placement.of(seat["pose"], seat["mirrored"])
+        place = PartPlacement.of(seat["pose"], seat["mirrored"])
         covers = self.covers(place)
         if covers is not None and covers != seat["same_place"]:
             yield "does not say rightly whether the part covers the same place"
@@ -189,9 +189,9 @@ class StatedSeating:
         return bool(norm(minus(touched, self.ends[contact["peg"]])) < AGREEMENT)
 
     @cached_property
-    def lying(self) -> Placement:
+    def lying(self) -> PartPlacement:
         """How the part lies in the fixture."""
-        return Placement(self.fixture.pose.theta_deg, self.fixture.pose.x, self.fixture.pose.y)
+        return PartPlacement(self.fixture.pose.theta_deg, self.fixture.pose.x, self.fixture.pose.y)
 
     @cached_property
     def ends(self) -> list[Point]:
@@ -262,7 +262,7 @@ class StatedSeating:
         rise = top["jaw_separation"] - own["jaw_separation"]
         if abs(self.clamping * rise - opening) > ROUNDED:
             yield "the pass is not at the capture opening"
-        there = Placement.of(top["pose"])
+        there = PartPlacement.of(top["pose"])
         contacts = [self.touching(contact, there, rise) for contact in top["contacts"]]
         if not 2 <= len(contacts) <= 3:
             yield "the pass does not have two or three contacts"
@@ -271,7 +271,7 @@ class StatedSeating:
         yield from (f"the pass {words}" for words in self.freedom_faults(there, rise))
         if not balances(self.wrenches(contacts, there), BALANCED):
             yield "the pass is no equilibrium of its contacts"
-        (x, y), (u, v) = (self.center(place) for place in (there, Placement.of(own["pose"])))
+        (x, y), (u, v) = (self.center(place) for place in (there, PartPlacement.of(own["pose"])))
         turn = (top["pose"]["theta_deg"] - own["pose"]["theta_deg"] + 180.0) % 360.0 - 180.0
         away = hypot(x - u, y - v) + 2.0 * self.judge.rough.arm * sin(abs(radians(turn)) / 2.0)
         if placing is not None and placing > away + AGREEMENT:
@@ -283,7 +283,7 @@ class StatedSeating:
 
     def friction_faults(self, stated: float, own: Mapping[str, Any]) -> Iterator[str]:
         """Whether the part can stick below a friction, or cannot just above."""
-        place = Placement.of(own["pose"])
+        place = PartPlacement.of(own["pose"])
         contacts = [self.touching(contact, place, 0.0) for contact in own["contacts"]]
         low, high = stated * (1.0 - FRICTION), stated * (1.0 + FRICTION) + ROUNDED
         if min(low, MOST_FRICTION) > ROUNDED and self.sticks(contacts, place, min(low, MOST_FRICTION)):
@@ -291,7 +291,7 @@ class StatedSeating:
         if high < MOST_FRICTION and not self.sticks(contacts, place, high):
             yield "the part cannot stick at the sticking friction"
 
-    def sticks(self, contacts: Sequence[StatedContact], place: Placement, friction: float) -> bool:
+    def sticks(self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float) -> bool:
         """Whether three of four contacts balance inside their cones."""
         edges = np.hstack([self.wrenches(contacts, place, sign * friction) for sign in (1.0, -1.0)])
         for three in combinations(range(4), 3):
@@ -300,7 +300,7 @@ class StatedSeating:
                 return True
         return False
 
-    def center(self, place: Placement) -> tuple[float, float]:
+    def center(self, place: PartPlacement) -> tuple[float, float]:
         """Where the part's centre lies, in doubles."""
         x, y = place.placed(np.array([self.judge.query.workpiece.center]))[0].tolist()
         return x, y
@@ -310,7 +310,7 @@ class StatedSeating:
         peg, by = self.fixture.pegs[number], apart * self.moving[number]
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
 
-    def freedom_faults(self, place: Placement, apart: float) -> Iterator[str]:
+    def freedom_faults(self, place: PartPlacement, apart: float) -> Iterator[str]:
         """A peg in the part, or the part in a wall."""
         numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
         pegs = np.array([self.peg(number, apart) for number in numbers])
@@ -322,13 +322,13 @@ class StatedSeating:
             if self.judge.rough.lowest(place) < -AGREEMENT:
                 yield f"has the part in the {wall.noun}"
 
-    def covers(self, place: Placement) -> bool | None:
+    def covers(self, place: PartPlacement) -> bool | None:
         """Whether the part covers the place that it has in the fixture; None where that is nearly so."""
         away = self.judge.rough.farthest(place, self.lying)
         is_near = SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE
         return None if is_near else away < SAME_PLACE
 
-    def touching(self, contact: Mapping[str, int], place: Placement, apart: float) -> StatedContact:
+    def touching(self, contact: Mapping[str, int], place: PartPlacement, apart: float) -> StatedContact:
         """A contact of the part as it lies, in balls."""
         number = contact["peg"]
         if number in self.on_wall:
@@ -336,7 +336,9 @@ class StatedSeating:
         radius = self.judge.hardware.carriers[self.fixture.pegs[number].carrier].peg_radius
         return touching_peg(self.judge.outline, contact, place, self.peg(number, apart), radius)
 
-    def wrenches(self, contacts: Sequence[StatedContact], place: Placement, friction: float = 0.0) -> Array:
+    def wrenches(
+        self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float = 0.0
+    ) -> Array:
         """Wrenches (4, K) of contacts that press along normals and, by friction, along tangents."""
         cx, cy = self.center(place)
         columns = []
@@ -349,7 +351,9 @@ class StatedSeating:
             columns.append((fx, fy, moment, borne))
         return np.array(columns).reshape(-1, 4).T
 
-    def balance(self, contacts: Sequence[StatedContact], place: Placement, forces: Sequence[float]) -> bool:
+    def balance(
+        self, contacts: Sequence[StatedContact], place: PartPlacement, forces: Sequence[float]
+    ) -> bool:
         """Whether forces balance, those of the pegs that move adding up to one."""
         left = self.wrenches(contacts, place) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
         return bool(np.abs(left).max() < BALANCED * (1.0 + sum(forces)) and min(forces) > -PRESSES)

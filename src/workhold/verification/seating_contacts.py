@@ -35,7 +35,7 @@ from workhold.verification.tolerances import AGREEMENT
 __all__ = [
     "PRESSES",
     "FloatOutline",
-    "Placement",
+    "PartPlacement",
     "StatedContact",
     "balances",
     "stop_of",
@@ -52,7 +52,7 @@ Array = NDArray[np.float64]
 
 
 @frozen
-class Placement:
+class PartPlacement:
     """How a part lies.
 
     Parameters
@@ -67,7 +67,7 @@ class Placement:
     mirrored: bool = False
 
     @classmethod
-    def of(cls, pose: Mapping[str, float], mirrored: bool = False) -> Placement:
+    def of(cls, pose: Mapping[str, float], mirrored: bool = False) -> PartPlacement:
         """The placement of a pose by its fields."""
         return cls(pose["theta_deg"], pose["x"], pose["y"], mirrored)
 
@@ -115,7 +115,7 @@ class StatedContact:
     is_inside: bool
 
 
-def touching_wall(outline: BallOutline, contact: Mapping[str, int], place: Placement) -> StatedContact:
+def touching_wall(outline: BallOutline, contact: Mapping[str, int], place: PartPlacement) -> StatedContact:
     """A contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc above it."""
     number, down, is_corner = contact["peg"], exact_point(0.0, -1.0), "corner" in contact
     side = outline.faces.get(contact["corner" if is_corner else "face"])
@@ -135,7 +135,7 @@ def touching_wall(outline: BallOutline, contact: Mapping[str, int], place: Place
 def touching_peg(
     outline: BallOutline,
     contact: Mapping[str, int],
-    place: Placement,
+    place: PartPlacement,
     center: tuple[float, float],
     radius: float,
 ) -> StatedContact:
@@ -282,7 +282,7 @@ class FloatOutline:
             np.array(lines).reshape(-1, 4), np.array(arcs).reshape(-1, 5), every, np.concatenate(edges), arm
         )
 
-    def lowest(self, place: Placement) -> float:
+    def lowest(self, place: PartPlacement) -> float:
         """How high in mm the lowest point of the part is."""
         turn = radians(place.theta_deg)
         down = np.array([-sin(turn) * (-1.0 if place.mirrored else 1.0), -cos(turn)])
@@ -309,7 +309,7 @@ class FloatOutline:
             found = np.minimum(found, away)
         return found
 
-    def is_free(self, pegs: Array, radii: Array, place: Placement) -> bool:
+    def is_free(self, pegs: Array, radii: Array, place: PartPlacement) -> bool:
         """Whether no disc about centres (N, 2) of radii (N,) in mm is in the part or reaches into it."""
         points = place.local(pegs)
         return bool((self.distances(points) >= radii).all() and not self.holds(points).any())
@@ -323,6 +323,6 @@ class FloatOutline:
         right = ax + (y - ay) / rise * (bx - ax) > x
         return np.asarray((crosses & right).sum(axis=1) % 2 == 1)
 
-    def farthest(self, one: Placement, other: Placement) -> float:
+    def farthest(self, one: PartPlacement, other: PartPlacement) -> float:
         """How far in mm the outline as it lies in one way is from that in another."""
         return float(self.distances(other.local(one.placed(self.points))).max())

@@ -367,7 +367,7 @@ def elements_of(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iter
 def element_name(peg: Peg, hardware: ToolkitRules) -> str:
     """What files call a place at which something holds the part: by its hole, or by the wall."""
     carrier = hardware.carriers[peg.carrier]
-    if carrier.is_wall:
+    if carrier in hardware.walls:
         return carrier.noun
     return f"{carrier.peg} {peg.hole}" if carrier.has_lattice else peg.hole
 

@@ -70,7 +70,7 @@ Barrier = tuple[arb, arb]
 def edge_distances(
     side: Side, radius: arb, beside: Iterable[Barrier], center: Point, smooth: tuple[bool, bool]
 ) -> list[arb]:
-    """Distances in mm along its contact feature from a peg's centre to every barrier, and to ends of the side.
+    """Distances in mm along its contact feature from a peg's centre to every barrier and to ends of the side.
 
     The ends are those that ``smooth`` calls no tangent joints. A whole circle has none. Nothing trims it:
     whatever else there is lies beyond the material behind it.

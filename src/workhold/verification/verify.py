@@ -100,7 +100,7 @@ class Judge:
 
     @cached_property
     def diameter(self) -> float:
-        """That of the part, in mm."""
+        """The diameter of the part, in mm."""
         return outline_diameter(self.query.workpiece)
 
     @cached_property
@@ -216,8 +216,8 @@ def flat_findings(
         elif not isnan(peg.flat_deg) and isinstance(contact.side, LineSide):
             sine, cosine = ((arb(peg.flat_deg) - arb(fixture.pose.theta_deg)) / 180).sin_cos_pi()
             off = norm((cosine + contact.side.normal[0], sine + contact.side.normal[1]))
-            words = f"the flat of {name} looks {number(off * 180 / arb.pi())} degrees past its face"
-            yield from rule(AGREEMENT - off, words, words)
+            past = number(off * 180 / arb.pi())
+            yield from rule(AGREEMENT - off, f"the flat of {name} looks {past} degrees past its face")
 
 
 # What a result in any toolkit alone cannot show, beside what ``not_shown`` says.

@@ -287,9 +287,8 @@ class ToolkitRules:
                 "xy", (peg.x, peg.y), self.place(peg), self.way(peg), strict=True
             ):
                 off = abs(hole + arb(travel) * way - written)
-                if not off < AGREEMENT:
-                    words = f"the {axis} of {name} is {number(off)} mm from that of its {noun}"
-                    yield from rule(AGREEMENT - off, words, words)
+                words = f"the {axis} of {name} is {number(off)} mm from that of its {noun}"
+                yield from rule(AGREEMENT - off, words)
 
     def asked_findings(self, fixture: Fixture) -> Iterator[Finding]:
         """Whether a fixture has the pegs of its type in different holes, and directions as asked for."""
