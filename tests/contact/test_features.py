@@ -22,7 +22,7 @@ from workhold.model.own_outlines import outline_diameter, segments_diameter
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions, polygon_zone
 from workhold.model.workpiece import Workpiece
-from workhold.proof.narrowing import contact_value
+from workhold.proof.ball_contacts import contact_value, from_origin
 from workhold.statics.contact_matrix import outward_normals
 from workhold.verification.ball_geometry import BallOutline
 
@@ -166,8 +166,8 @@ def test_a_joint_is_tangent_to_within_a_few_digits_of_a_bulge(turn, tangent):
     # Point pegs: their features end at the corners themselves.
     assert (end_slacks(contact_features(half, 0.0)) > 0).any() == tangent
     with exactly():
-        smooth = BallOutline.of(half).smooth
-    assert smooth[2] == (tangent, tangent)
+        outline = BallOutline.of(half)
+    assert outline.smooth_ends(2, has_flat=False) == (tangent, tangent)
 
 
 @pytest.mark.parametrize("bulge", [2e-6, -2.1e-6, 1e-5, -3e-4, 4e-3])
@@ -188,14 +188,17 @@ def test_a_shallow_arc_stays_where_it_is_drawn_however_far_its_centre_is(
         place = np.array(middle) - part.center
         assert outline_distances(place[None], row[None])[0] < size
         with exactly():
-            assert abs(contact_value(row.tolist(), (arb(place[0]), arb(place[1])))) < size
+            assert (
+                abs(contact_value(row.tolist(), from_origin(row.tolist(), (arb(place[0]), arb(place[1])))))
+                < size
+            )
 
 
 def test_the_axis_of_a_line_counts_with_its_length() -> None:
     """Rounding makes it other than 1, and the distance from the line is none the less in mm."""
     row = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0, 1.0, 0.0, 0.0]
-    assert contact_value(row, (arb(1.0 + 4.0), arb(2.0 - 3.0))).contains(5)
-    assert contact_value(row, (arb(1.0 - 8.0), arb(2.0 + 6.0))).contains(-10)
+    assert contact_value(row, from_origin(row, (arb(1.0 + 4.0), arb(2.0 - 3.0)))).contains(5)
+    assert contact_value(row, from_origin(row, (arb(1.0 - 8.0), arb(2.0 + 6.0)))).contains(-10)
 
 
 @pytest.mark.parametrize(("margin", "beyond"), [(0.0, 0.0), (20.0, 20.0), (50.0, 43.0)])

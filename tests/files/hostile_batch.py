@@ -31,15 +31,16 @@ from ezdxf.entities import LWPolyline
 from hostile_files import MAKERS
 from pytest import approx, raises
 
+from workhold.archive import mapped_archive
 from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.apart import limit_memory, limit_processor
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
+from workhold.files.result.heads import HEAD, columns_said
 from workhold.files.result.reader import read_result
 from workhold.files.toolkit_file import read_toolkit_file
 from workhold.kernels.base.distance import outline_distances
-from workhold.verification.listing import columns_of
 
 __all__ = ["check_one", "run_batch"]
 
@@ -96,7 +97,7 @@ def check_columns(path: Path) -> None:
             # Checksums are compared by what verifies a file, and names told twice only once.
             if "CRC" in str(error):
                 with raises(InputError):
-                    columns_of(path)
+                    mapped_archive(path, columns_said, HEAD, whole=True)
             return
         assert len(read) == len(told["theta"])
         for k, fixture in enumerate(read):

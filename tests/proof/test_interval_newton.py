@@ -10,8 +10,8 @@ import ladders
 from exact_chords import exactly
 from workhold.kernels.base.given import Limits
 from workhold.proof import interval_newton as settling
+from workhold.proof.ball_contacts import CandidateBox
 from workhold.proof.interval_newton import BoxOutcome, solutions_in
-from workhold.proof.narrowing import CandidateBox
 from workhold.proof.singular_frame import thirds
 
 # The ladders' moving pegs stand among the standing ones: any gap will do here.

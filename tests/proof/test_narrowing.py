@@ -14,8 +14,8 @@ from cad_parts import cad_part
 from workhold import design
 from workhold.files.toolkit_file import load_toolkit
 from workhold.kernels.base.given import Limits
+from workhold.proof.ball_contacts import CandidateBox, narrowed
 from workhold.proof.interval_newton import PRECISIONS
-from workhold.proof.narrowing import CandidateBox, narrowed
 
 GAP = 25.0
 LIMITS = Limits(GAP, 0.0, 45.0, 2.0, 1.0, 0.0, 0.0)

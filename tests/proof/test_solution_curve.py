@@ -12,8 +12,8 @@ import ladders
 from exact_chords import exactly
 from workhold.kernels.base.given import Limits
 from workhold.proof import solution_curve
+from workhold.proof.ball_contacts import CandidateBox
 from workhold.proof.interval_newton import PRECISIONS
-from workhold.proof.narrowing import CandidateBox
 from workhold.proof.singular_frame import SingularFrame
 from workhold.proof.solution_curve import SolutionCurve, TaylorForm, along_curve, curve_about, roots_on_curve
 

@@ -11,7 +11,7 @@ import pytest
 from toolkit_results import NOTCHED, part
 from workhold import FlatJaw, Query, Workpiece
 from workhold.contact.problem import Problem
-from workhold.proof.lattice_pair import verdict_on_pair
+from workhold.proof.flush import verdict_on_pair
 from workhold.search.flush_search import part_on_wall
 from workhold.search.lattice_pairs import are_pressed, closure_of, pairs_on
 from workhold.search.wall_shares import LatticePairSearch, WallShares

@@ -14,7 +14,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.support_request import SupportRequest
-from workhold.verification.support_listing import band_faults
+from workhold.verification.supports import band_faults
 
 # A band for each side of the base, no two alike.
 BANDS = [(float(k), 5.0 + k) for k in range(len(BASE))]

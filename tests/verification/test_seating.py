@@ -20,7 +20,7 @@ from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, claim_of, read_listing
 from workhold.verification.repeats import pattern_faults, stance
 from workhold.verification.seating import SeatingJudge, StatedSeating
-from workhold.verification.seating_contacts import FloatOutline, stop_of, touching_wall
+from workhold.verification.seating_contacts import FloatOutline, PartPlacement, stop_of, touching_wall
 from workhold.verification.verify import not_shown
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -303,11 +303,9 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
         assert ("has the part in the fence" in words) == (off < 0.0)
     # Its lowest point would be beyond its end, which is at the corner.
     arcs = Workpiece.from_loops("arcs", [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, 0]]])
-    pose = {"theta_deg": 0.0, "x": 0.0, "y": 0.0}
     for theta, is_inside in ((0.0, False), (-80.0, True), (-90.0, True), (-150.0, False)):
-        touched = touching_wall(
-            BallOutline.of(arcs), {"peg": 1, "face": 1}, pose | {"theta_deg": theta}, False
-        )
+        place = PartPlacement(theta, 0.0, 0.0)
+        touched = touching_wall(BallOutline.of(arcs), {"peg": 1, "face": 1}, place)
         assert touched.is_inside == is_inside, theta
     ends = {one["peg"]: one for one in own["contacts"] if one["peg"] in (1, 2)}
     exchanged = [
@@ -333,9 +331,7 @@ def test_the_lowest_point_of_a_part_is_that_of_its_box(mirrored: bool) -> None:
     part = BOWED.turned_over if mirrored else BOWED
     for theta in range(0, 360, 7):
         low = part.placed(Pose(theta, 3.0, 5.0)).bounds[1]
-        assert rough.lowest({"theta_deg": theta, "x": 3.0, "y": 5.0}, mirrored) == pytest.approx(
-            low, abs=1e-9
-        )
+        assert rough.lowest(PartPlacement(theta, 3.0, 5.0, mirrored)) == pytest.approx(low, abs=1e-9)
 
 
 def test_what_stops_a_clamp_or_jaws() -> None:

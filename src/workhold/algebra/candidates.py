@@ -26,6 +26,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
+from workhold.algebra.resultants import ArrayTable
 from workhold.contact.problem import Frame
 from workhold.conventions import PARALLEL, WEDGE_SLACK
 from workhold.errors import InputError
@@ -34,8 +35,6 @@ from workhold.limits import MOST_PEG_PAIRS
 
 __all__ = [
     "SECTORS",
-    "Facings",
-    "FeaturePieces",
     "PegPairs",
     "Systems",
     "facing",
@@ -240,7 +239,7 @@ def peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
 
 
 @define(frozen=True, eq=False)
-class Systems:
+class Systems(ArrayTable):
     """N systems of contact equations: for Type I four pegs, for Type II the three on the left jaw.
 
     Parameters
@@ -257,10 +256,6 @@ class Systems:
 
     def __len__(self) -> int:
         return len(self.feature)
-
-    def take(self, which: IntArray | BoolArray) -> Systems:
-        """The systems of an index array or mask."""
-        return Systems(self.feature[which], self.column[which], self.row[which], self.sectors[which])
 
 
 @define(frozen=True, eq=False)
@@ -358,27 +353,20 @@ def type_two_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Sys
     """
     facings = Facings.of(rows, frame.toolkit.clamping)
     count = len(rows)
-    number = {key: k for k, key in enumerate(zip(*(v.tolist() for v in whole(pairs)), strict=True))}
+    names = (pairs.tail, pairs.head, pairs.column, pairs.row)
+    number = {key: k for k, key in enumerate(zip(*(name.tolist() for name in names), strict=True))}
     sectors = pairs.sectors
     place = pairs.row * (1 << 20) + pairs.column
     right = facings.right.any(axis=0)
     for one in range(len(pairs)):
         two = np.flatnonzero((pairs.tail == pairs.tail[one]) & (place > place[one]))
         a, b = int(pairs.tail[one]), int(pairs.head[one])
-        third, kept = [], []
-        for k in two:
-            key = (
-                b,
-                int(pairs.head[k]),
-                int(pairs.column[k] - pairs.column[one]),
-                int(pairs.row[k] - pairs.row[one]),
-            )
-            if key in number:
-                third.append(number[key])
-                kept.append(int(k))
-        if not kept:
+        steps = pairs.column[two] - pairs.column[one], pairs.row[two] - pairs.row[one]
+        keys = zip(pairs.head[two].tolist(), *(step.tolist() for step in steps), strict=True)
+        across = np.array([number.get((b, *key), -1) for key in keys], np.int64)
+        two, across = two[across >= 0], across[across >= 0]
+        if not len(two):
             continue
-        two, across = np.array(kept), np.array(third)
         shared = (pairs.tails[one] & pairs.tails[two]).any(axis=1) & sectors[across] & right
         pushed = facings.left[a] | facings.left[b] | facings.left[pairs.head[two]]
         resists = facings.resists[a] | facings.resists[b] | facings.resists[pairs.head[two]]
@@ -393,8 +381,3 @@ def type_two_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Sys
             np.stack([zero, zero + pairs.row[one], pairs.row[two]], axis=1),
             shared[keep],
         )
-
-
-def whole(pairs: PegPairs) -> tuple[IntArray, IntArray, IntArray, IntArray]:
-    """The whole numbers that name peg pairs."""
-    return pairs.tail, pairs.head, pairs.column, pairs.row

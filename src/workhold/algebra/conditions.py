@@ -13,7 +13,7 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.algebra.resultants import Complex
+from workhold.algebra.resultants import ArrayTable, Complex
 from workhold.contact.problem import Frame
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, RISES, ROW_SLACK
 from workhold.kernels.base.feature import (
@@ -31,7 +31,7 @@ from workhold.kernels.base.feature import (
 from workhold.kernels.contact import record, rules
 from workhold.statics.contact_matrix import outward_normals
 
-__all__ = ["SimultaneousContacts", "fourth_pegs", "joined", "records_of", "row_points"]
+__all__ = ["SimultaneousContacts", "fourth_pegs", "records_of", "row_points"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -42,7 +42,7 @@ STEEPEST = 1e6
 
 
 @define(frozen=True, eq=False)
-class SimultaneousContacts:
+class SimultaneousContacts(ArrayTable):
     """N parts touched by four pegs, lengths in mm.
 
     Parameters
@@ -61,13 +61,6 @@ class SimultaneousContacts:
     psi: Array
     reach: Array
     center: Complex
-
-    def take(self, which: BoolArray | IntArray) -> SimultaneousContacts:
-        """The parts of an index array or mask."""
-        return SimultaneousContacts(self.standing, *(getattr(self, name)[which] for name in HELD_FIELDS))
-
-
-HELD_FIELDS = ("feature", "column", "row", "psi", "reach", "center")
 
 
 def within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> BoolArray:
@@ -115,9 +108,7 @@ def records_of(held: SimultaneousContacts, rows: Array, frame: Frame, margin: fl
     )
     out = np.zeros((len(held.psi), record.RECORD_LENGTH))
     out[:, record.STANDING] = held.standing
-    out[:, record.FEATURES : record.FEATURES + 4] = held.feature
-    out[:, record.COLUMNS : record.COLUMNS + 4] = held.column
-    out[:, record.ROWS : record.ROWS + 4] = held.row
+    out[:, record.FEATURES : record.PSI] = np.hstack([held.feature, held.column, held.row])
     out[:, record.PSI] = held.psi
     out[:, record.TAIL_X : record.TAIL_Y + 1] = points[:, 0]
     out[:, record.SEPARATION] = along[:, held.standing] - along[:, 0]
@@ -246,11 +237,4 @@ def fourth_pegs(
                 np.column_stack([chosen.center, point]),
             )
         )
-    return joined(found)
-
-
-def joined(parts: list[SimultaneousContacts]) -> SimultaneousContacts:
-    """Several sets, at least one, as one."""
-    return SimultaneousContacts(
-        parts[0].standing, *(np.concatenate([getattr(p, name) for p in parts]) for name in HELD_FIELDS)
-    )
+    return SimultaneousContacts.joined(found)

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from workhold.algebra.candidates import Systems, are_parallel, peg_pairs, type_one_systems, type_two_systems
 from workhold.algebra.conditions import SimultaneousContacts, fourth_pegs, records_of
-from workhold.algebra.conditions import joined as together
 from workhold.algebra.poses import orientations, peg_centers, poses_at
 from workhold.algebra.resultants import ContactSystems
 from workhold.algebra.sliding_pairs import (
@@ -201,16 +200,9 @@ def by_case(stream: Iterable[Systems], rows: Array) -> Iterator[tuple[Systems, C
             held = waiting.setdefault(case, [])
             held.append(chosen.take((left == case[0]) & (right == case[1])))
             if sum(map(len, held)) >= BATCH:
-                yield joined(waiting.pop(case)), case
+                yield Systems.joined(waiting.pop(case)), case
     for case, held in waiting.items():
-        yield joined(held), case
-
-
-def joined(parts: list[Systems]) -> Systems:
-    """Several sets of systems as one."""
-    return Systems(
-        *(np.concatenate([getattr(p, n) for p in parts]) for n in ("feature", "column", "row", "sectors"))
-    )
+        yield Systems.joined(held), case
 
 
 def refuse_unlike(frame: Frame) -> None:
@@ -238,7 +230,7 @@ def stages(solver: ResultantSolver, arrangements: Sequence[str]) -> Iterator[Arr
         systems, sliding = GENERATORS[frame.toolkit.arrangement(name).pegs]
         held = sliding(pairs, sliding_pairs, rows, frame)
         if held:
-            yield solver.fixtures(together(held))
+            yield solver.fixtures(SimultaneousContacts.joined(held))
         for batch, case in by_case(systems(pairs, rows[:, :SEGMENT_LENGTH], frame), rows):
             yield solver.fixtures(solver.solve(batch, case))
 

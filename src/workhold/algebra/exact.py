@@ -8,6 +8,8 @@ precision, and its roots are isolated.
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 from attrs import frozen
 from flint import acb, acb_poly, ctx
@@ -232,10 +234,8 @@ def spread(polynomial: acb_poly, precision: int) -> acb_poly:
     if not any(value.abs_lower() > 0 for value in values):
         return acb_poly([])
     sizes = [float(value.abs_upper()) for value in values]
-    change = max(sizes, default=0.0) * 2.0 ** (-precision / 2)
+    change = max(sizes) * 2.0 ** (-precision / 2)
     kept = [k for k, size in enumerate(sizes) if size > change]
-    if not kept:
-        return acb_poly([])
     return acb_poly(
         [values[k] + acb(change / (k + 1.7), change / (k + 2.3)) for k in range(kept[0], kept[-1] + 1)]
     )
@@ -245,17 +245,10 @@ def exact_roots(
     contacts: ContactSystems, case: tuple[int, int], free_of_separation: bool = False
 ) -> NDArray[np.complex128] | None:
     """Roots z of the resultant of one system that has an arc, None if it vanishes identically."""
-    before = ctx.prec
-    try:
-        for precision in PRECISIONS:
-            ctx.prec = precision
-            polynomial = spread(exact_resultant(contacts, case, free_of_separation), precision)
+    for bits in PRECISIONS:
+        with ctx.workprec(bits), suppress(ValueError):
+            polynomial = spread(exact_resultant(contacts, case, free_of_separation), bits)
             if polynomial.degree() < 1:
                 return None
-            try:
-                return np.array([complex(root) for root in polynomial.roots(REFINED)], np.complex128)
-            except ValueError:
-                continue
-    finally:
-        ctx.prec = before
+            return np.array([complex(root) for root in polynomial.roots(REFINED)], np.complex128)
     return None

@@ -12,6 +12,7 @@ Newton's method on the contact equations themselves, and stays if it meets them 
 
 from __future__ import annotations
 
+from contextlib import suppress
 from math import tau
 
 import numpy as np
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 from workhold.algebra.candidates import CENTERS, HALF_SECTOR, sector_of
 from workhold.algebra.exact import exact_roots
 from workhold.algebra.resultants import (
+    ArrayTable,
     Complex,
     ContactSystems,
     TrigPolynomial,
@@ -52,13 +54,10 @@ from workhold.conventions import (
 
 __all__ = [
     "Poses",
-    "ball_roots",
-    "near_circle",
+    "hard_roots",
     "orientations",
+    "peg_centers",
     "poses_at",
-    "refined",
-    "residuals",
-    "sectors_with_roots",
 ]
 
 Array = NDArray[np.float64]
@@ -99,17 +98,10 @@ def sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArr
 
 def ball_roots(values: Complex) -> Complex:
     """All roots of a polynomial, coefficients from the constant up, isolated in ball arithmetic."""
-    before = ctx.prec
     polynomial = acb_poly([acb(c.real, c.imag) for c in values])
-    try:
-        for precision in PRECISIONS:
-            ctx.prec = precision
-            try:
-                return np.array([complex(root) for root in polynomial.roots(REFINED)], np.complex128)
-            except ValueError:
-                continue
-    finally:
-        ctx.prec = before
+    for bits in PRECISIONS:
+        with ctx.workprec(bits), suppress(ValueError):
+            return np.array([complex(root) for root in polynomial.roots(REFINED)], np.complex128)
     # Roots that no precision separates are equal; their derivative's root is as good.
     return np.asarray(np.roots(values[::-1]), np.complex128)
 
@@ -128,11 +120,6 @@ def vanishing_ends(values: Complex, largest: Array) -> IntArray:
     bound = values.shape[1] // 2
     size = np.maximum(np.abs(values), np.abs(values[:, ::-1]))[:, :bound]
     return np.asarray((np.maximum.accumulate(size, axis=1) <= VANISHING * largest[:, None]).sum(axis=1))
-
-
-def near_circle(roots: Complex) -> BoolArray:
-    """Which roots may be on the unit circle."""
-    return np.asarray(np.abs(np.abs(roots) - 1.0) <= NEAR_CIRCLE)
 
 
 def hard_roots(contacts: ContactSystems, case: tuple[int, int], values: Complex) -> Complex | None:
@@ -194,7 +181,8 @@ def orientations(
         found.append(several)
     owner = np.concatenate([np.zeros(0, np.int64), *owners])
     root = np.concatenate([np.zeros(0, np.complex128), *found])
-    keep = near_circle(root)
+    # A real orientation is a root on the unit circle.
+    keep = np.abs(np.abs(root) - 1.0) <= NEAR_CIRCLE
     owner, psi = owner[keep], np.mod(np.angle(root[keep]), tau)
     # A root may have been moved across the edge of a sector.
     wide = sectors | np.roll(sectors, 1, axis=1) | np.roll(sectors, -1, axis=1)
@@ -209,7 +197,7 @@ LAST_STEPS = 16.0
 
 
 @define(frozen=True, eq=False)
-class Poses:
+class Poses(ArrayTable):
     """N poses.
 
     Parameters
@@ -226,12 +214,6 @@ class Poses:
     place: Complex
     separation: Array
     reach: Array
-
-    def take(self, which: NDArray[np.bool_] | IntArray) -> Poses:
-        """The poses of an index array or mask."""
-        return Poses(
-            self.owner[which], self.psi[which], self.place[which], self.separation[which], self.reach[which]
-        )
 
 
 def peg_centers(contacts: ContactSystems, poses: Poses) -> Complex:
@@ -250,11 +232,6 @@ def distances(contacts: ContactSystems, poses: Poses) -> tuple[Array, Complex, C
     across = np.where(straight, contacts.normal[poses.owner], off / np.where(size == 0.0, 1.0, size))
     along = np.where(straight, (np.conj(across) * off).real, size - contacts.radius[poses.owner])
     return along, across, center
-
-
-def residuals(contacts: ContactSystems, poses: Poses) -> Array:
-    """Largest distance in mm of a peg's centre from its line or circle, (N,)."""
-    return np.asarray(np.abs(distances(contacts, poses)[0]).max(axis=1, initial=0.0))
 
 
 def refined(contacts: ContactSystems, poses: Poses) -> Poses:
@@ -348,6 +325,6 @@ def poses_at(contacts: ContactSystems, case: tuple[int, int], owner: IntArray, p
         place = chosen.middle[:, :1] + chosen.radius[:, :1] * w
         for separation in separations(chosen, case, column, w):
             found.append(Poses(owner, psi, place[:, 0], separation[:, 0], np.zeros(len(owner))))
-    names = ("owner", "psi", "place", "separation", "reach")
-    everything = Poses(*(np.concatenate([getattr(one, name) for one in found]) for name in names))
-    return refined(contacts, everything.take(residuals(contacts, everything) <= NEARLY_MET))
+    everything = Poses.joined(found)
+    off, _, _ = distances(contacts, everything)
+    return refined(contacts, everything.take(np.abs(off).max(axis=1, initial=0.0) <= NEARLY_MET))

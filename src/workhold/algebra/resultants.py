@@ -34,10 +34,12 @@ They give the numbers of complex solutions of general systems, below the degrees
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import tau
+from typing import Any, Self
 
 import numpy as np
-from attrs import define
+from attrs import define, evolve, fields
 from numpy.typing import NDArray
 
 from workhold.conventions import COINCIDENT
@@ -47,11 +49,10 @@ __all__ = [
     "PAPER_DEGREES",
     "TRUE_DEGREES",
     "ContactSystems",
+    "ArrayTable",
     "TrigPolynomial",
     "circle_constraint",
-    "circle_difference",
     "coefficients",
-    "degree_bound",
     "have_no_separation",
     "line_constraint",
     "pair_constraint",
@@ -61,6 +62,27 @@ __all__ = [
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 BoolArray = NDArray[np.bool_]
+
+
+@define(frozen=True, eq=False)
+class ArrayTable:
+    """N things in arrays, each of which has a row for every one of them."""
+
+    @property
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """The arrays by name."""
+        values = {one.name: getattr(self, one.name) for one in fields(type(self))}
+        return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
+
+    def take(self, which: NDArray[np.int64] | BoolArray) -> Self:
+        """The rows of an index array or mask."""
+        return evolve(self, **{name: array[which] for name, array in self.arrays.items()})
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Several of them, at least one, as one."""
+        arrays = {name: np.concatenate([part.arrays[name] for part in parts]) for name in parts[0].arrays}
+        return evolve(parts[0], **arrays)
 
 
 @define(frozen=True, eq=False)
@@ -76,7 +98,7 @@ class TrigPolynomial:
 
 
 @define(frozen=True, eq=False)
-class ContactSystems:
+class ContactSystems(ArrayTable):
     """N systems of pegs and features in the form the constraints use.
 
     Parameters
@@ -102,10 +124,6 @@ class ContactSystems:
     def radius(self) -> Array:
         """Radii (N, K), 0 for lines."""
         return np.asarray(self.rows[..., RADIUS])
-
-    def take(self, which: NDArray[np.int64] | BoolArray) -> ContactSystems:
-        """The systems of an index array or mask."""
-        return ContactSystems(self.rows[which], self.point[which])
 
     def misfit(self, k: int, m: int) -> Array:
         """How far arcs k and m are from sliding, (N,); infinite where one of them is a line.
@@ -221,11 +239,6 @@ TRUE_DEGREES = PAPER_DEGREES | {(1, 0): 8, (2, 0): 10, (1, 1): 14, (2, 1): 16, (
 
 # The grid of orientations starts here, away from the symmetric ones.
 GRID_START = 0.1234
-
-
-def degree_bound(case: tuple[int, int]) -> int:
-    """d, half the largest degree in t of a case's resultant."""
-    return TRUE_DEGREES[case] // 2
 
 
 def resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Array]:
@@ -368,8 +381,11 @@ def have_no_separation(contacts: ContactSystems) -> NDArray[np.bool_]:
 def coefficients(
     contacts: ContactSystems, case: tuple[int, int], bound: int | None = None
 ) -> tuple[Complex, Array]:
-    """Coefficients of the resultants, (N, 2 d + 1) of z^-d ... z^d, and their terms' sizes (N,)."""
-    bound = degree_bound(case) if bound is None else bound
+    """Coefficients of the resultants, (N, 2 d + 1) of z^-d ... z^d, and their terms' sizes (N,).
+
+    The bound d is half the largest degree in t of the case's resultant where it is not said.
+    """
+    bound = TRUE_DEGREES[case] // 2 if bound is None else bound
     count = 2 * bound + 1
     psi = GRID_START + tau * np.arange(count) / count
     value, size = resultant(contacts, case, np.broadcast_to(psi, (len(contacts.rows), count)))

@@ -28,7 +28,7 @@ from workhold.proof.deciding import BALLS
 from workhold.statics.contact_matrix import outward_normals, wrenches
 
 if TYPE_CHECKING:
-    from workhold.proof.narrowing import CandidateBox
+    from workhold.proof.ball_contacts import CandidateBox
 
 __all__ = ["ClampContacts", "box_beside", "contacts_of_candidates", "contacts_on_wall"]
 
@@ -219,12 +219,12 @@ def box_beside(
     problem: Problem,
 ) -> CandidateBox:
     """A box about a proven contact of three locators and a clamp, as drawn, see
-    ``proof.narrowing.CandidateBox``."""
+    ``proof.ball_contacts.CandidateBox``."""
     from flint import ctx
 
+    from workhold.proof.ball_contacts import CandidateBox
     from workhold.proof.exact_contacts import exact_rows
     from workhold.proof.interval_newton import PRECISIONS
-    from workhold.proof.narrowing import CandidateBox
 
     frame, reach = problem.frame, (BESIDE / problem.wrench_length, BESIDE, BESIDE, 2 * BESIDE)
     radii = [frame.standing.peg_radius] * TIP + [frame.moving.peg_radius]

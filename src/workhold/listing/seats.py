@@ -51,7 +51,7 @@ from workhold.model.search_report import AT_AN_EDGE, Undecided
 from workhold.proof.deciding import BALLS, Account
 
 if TYPE_CHECKING:
-    from workhold.proof.narrowing import CandidateBox
+    from workhold.proof.ball_contacts import CandidateBox
 
 __all__ = ["ClampedSeats", "Seats", "seats_of", "undecided_pairs"]
 

@@ -1,5 +1,11 @@
 """Four contacts on a box of unknowns in ball arithmetic: equations, Jacobian, wrenches, and the rules.
 
+A box is made smaller before it is cut: by the gap rule, and by contacts with parallel lines. The gap rule
+bounds the separation alone. Two contacts with parallel lines make an equation of psi and the separation,
+because the part's place is not in their difference. It is needed where both lines are one and two pegs are in
+one row. Every separation meets all equations there, so the box is as long as the jaws open. No turned box of
+the interval Newton method shows that psi is one angle there.
+
 Reference: F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
 """
 
@@ -7,9 +13,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from math import isfinite, pi
+from math import inf, isfinite, nextafter, pi
+from typing import Any
 
-from attrs import frozen
+from attrs import evolve, frozen
 from flint import arb
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
@@ -28,9 +35,64 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.base.given import Limits
-from workhold.proof.narrowing import CandidateBox, axis_length, contact_value, from_origin, value_of_ray
 
-__all__ = ["BoxContacts", "contact_values", "end_slacks", "is_empty", "places", "slacks", "wrench_minors"]
+__all__ = [
+    "BoxContacts",
+    "CandidateBox",
+    "contact_value",
+    "contact_values",
+    "end_slacks",
+    "from_origin",
+    "is_empty",
+    "narrowed",
+    "places",
+    "slacks",
+    "wrench_minors",
+]
+
+# Newton steps of psi: each squares its error, so that these reach the precision in force.
+STEPS = 4
+
+
+@frozen
+class CandidateBox:
+    """A candidate: features touched, pegs' places, and where its solution may be.
+
+    Parameters
+    ----------
+    features : four rows of ``geometry.segment.segment_rows``, each with the slack of both ends.
+    offsets : four pegs' places in mm from the first peg, without the separation.
+    standing : how many of the pegs, the first ones, are on the carrier that stands still.
+    middle : psi in radians, tail x, tail y and separation in mm.
+    reach : how far each may be off.
+    """
+
+    features: Sequence[Sequence[float]]
+    offsets: Sequence[tuple[float, float]]
+    standing: int
+    middle: tuple[float, float, float, float]
+    reach: tuple[float, float, float, float]
+
+
+def from_origin(row: Sequence[float], point: tuple[Any, Any]) -> tuple[Any, Any]:
+    """A point in mm from the middle of a line, or from the centre of an arc."""
+    return point[0] - row[X] - row[REST_X], point[1] - row[Y] - row[REST_Y]
+
+
+def contact_value(row: Sequence[float], ray: tuple[Any, Any]) -> Any:
+    """Contact equation in mm: distance from a line, or (distance² - R²) / 2R from an arc's centre.
+
+    The peg's place is as ``from_origin`` gives it.
+    """
+    x, y = ray
+    if row[IS_ARC] == 0.0:
+        return (row[AXIS_Y] * x - row[AXIS_X] * y) / axis_length(row)
+    return (x * x + y * y - arb(row[RADIUS]) ** 2) / (2 * arb(row[RADIUS]))
+
+
+def axis_length(row: Sequence[float]) -> arb:
+    """The length of a line's axis, which rounding makes other than 1."""
+    return (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
 
 
 @frozen(eq=False)
@@ -51,24 +113,27 @@ class BoxContacts:
     axis: tuple[arb, arb]
 
 
-def turned_pegs(box: CandidateBox, unknowns: Sequence[arb]) -> Iterator[tuple[arb, arb]]:
+def turned_pegs(box: CandidateBox, unknowns: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
     """Yields the axis of the pegs (cosine and sine), and then each peg's arm from the first one."""
     psi, _, _, separation = unknowns
     cosine, sine = psi.cos(), psi.sin()
     yield cosine, sine
     for k, (dx, dy) in enumerate(box.offsets):
-        across = dx + separation if k >= box.standing else dx
+        across = dx + separation if k >= box.standing else arb(dx)
         if dy == 0.0:
             yield cosine * across, sine * across
         else:
-            yield cosine * across - sine * dy, sine * across + cosine * dy
+            yield cosine * across - sine * arb(dy), sine * across + cosine * arb(dy)
 
 
-def contact_values(box: CandidateBox, unknowns: Sequence[arb]) -> list[arb]:
-    """The four contact equations on a box of unknowns, without all else that ``places`` finds."""
+def contact_values(box: CandidateBox, unknowns: Sequence[Any]) -> list[Any]:
+    """The four contact equations at balls of the unknowns, or at power series of them."""
     _, x, y, _ = unknowns
     _, *arms = turned_pegs(box, unknowns)
-    return [contact_value(row, (x + arm[0], y + arm[1])) for row, arm in zip(box.features, arms, strict=True)]
+    return [
+        contact_value(row, from_origin(row, (x + arm[0], y + arm[1])))
+        for row, arm in zip(box.features, arms, strict=True)
+    ]
 
 
 def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
@@ -91,7 +156,7 @@ def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
         centers.append(center)
         rays.append(ray)
         normals.append(normal)
-        values.append(value_of_ray(row, ray))
+        values.append(contact_value(row, ray))
         slopes.append(slope)
     return BoxContacts(box.features, centers, rays, normals, arms, values, slopes, (cosine, sine))
 
@@ -183,3 +248,81 @@ def is_empty(box: CandidateBox, here: BoxContacts, limits: Limits) -> bool:
         # Of opposite signs, so that nothing closes.
         return True
     return any(slack < 0 for slack in slacks(box, here, minors, limits))
+
+
+def narrowed(box: CandidateBox, limits: Limits) -> CandidateBox | None:
+    """The part of a box that meets the gap rule and all pairs of parallel lines; None where nothing does."""
+    psi, separation = arb(box.middle[0], box.reach[0]), arb(box.middle[3], box.reach[3])
+    if isfinite(limits.gap):
+        left = max(x for x, _ in box.offsets[: box.standing])
+        right = min(x for x, _ in box.offsets[box.standing :])
+        least = arb(left) - right + limits.gap - GAP_SLACK
+        high = separation.upper()
+        if high < least:
+            return None
+        if separation.lower() < least:
+            separation = least.lower().union(high)
+    for one, other in parallel_lines(box):
+        for _ in range(STEPS):
+            closer = turned_onto(box, one, other, psi, separation)
+            if closer is None:
+                return None
+            if not closer.rad() < psi.rad():
+                break
+            psi = closer
+    turn, along = extent(psi), extent(separation)
+    if turn[1] >= box.reach[0] and along[1] >= box.reach[3]:
+        return box
+    middle, reach = (
+        (one, *rest[1:3], two) for one, rest, two in zip(turn, (box.middle, box.reach), along, strict=True)
+    )
+    return evolve(box, middle=middle, reach=reach)
+
+
+def extent(ball: arb) -> tuple[float, float]:
+    """The middle of a ball as a double, and how far around it the ball reaches at most."""
+    middle = float(ball.mid())
+    reach = float((abs(ball - middle)).upper())
+    return middle, nextafter(reach, inf)
+
+
+def parallel_lines(box: CandidateBox) -> Iterator[tuple[int, int]]:
+    """Pairs of contacts whose features are lines of exactly one direction."""
+    lines = [k for k, row in enumerate(box.features) if row[IS_ARC] == 0.0]
+    for one, other in combinations(lines, 2):
+        a, b = box.features[one], box.features[other]
+        if arb(a[AXIS_X]) * b[AXIS_Y] - arb(a[AXIS_Y]) * b[AXIS_X] == 0:
+            yield one, other
+
+
+def turned_onto(box: CandidateBox, one: int, other: int, psi: arb, separation: arb) -> arb | None:
+    """The part of psi at which two contacts with parallel lines may both touch; None where none is.
+
+    Their difference is n R(psi) a - c. The arm a leads from one peg to the other, and c is the distance of
+    their lines along the normal n = (cos phi, sin phi). Divided by a_x it is cos u - (a_y / a_x) sin u -
+    c / a_x with u = psi - phi. So the separation in a_x does not count where a_y and c are 0. A step of the
+    interval Newton method in u makes psi smaller.
+    """
+    first, second = box.features[one], box.features[other]
+    size = axis_length(first)
+    across, up = first[AXIS_Y] / size, -first[AXIS_X] / size
+    moves = int(other >= box.standing) - int(one >= box.standing)
+    (x, y), (far_x, far_y) = box.offsets[one], box.offsets[other]
+    arm_x, arm_y = arb(far_x) - x + moves * separation, arb(far_y) - y
+    if arm_x.contains(0):
+        return psi
+    apart = [
+        arb(second[place]) - first[place] + second[rest] - first[rest]
+        for place, rest in ((X, REST_X), (Y, REST_Y))
+    ]
+    slant, share = arm_y / arm_x, (across * apart[0] + up * apart[1]) / arm_x
+    middle = arb(psi.mid())
+    (cosine, sine), (mid_cosine, mid_sine) = (
+        (across * angle.cos() + up * angle.sin(), across * angle.sin() - up * angle.cos())
+        for angle in (psi, middle)
+    )
+    slope = -sine - slant * cosine
+    if slope.contains(0):
+        return psi if (cosine - slant * sine - share).contains(0) else None
+    image = middle - (mid_cosine - slant * mid_sine - share) / slope
+    return image.intersection(psi) if image.overlaps(psi) else None

@@ -302,8 +302,8 @@ def records_in_balls(records: Array, problem: Problem, course: Course) -> tuple[
 
 def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome | None:
     """One record decided in ball arithmetic; None when the work was stopped before."""
+    from workhold.proof.ball_contacts import CandidateBox
     from workhold.proof.interval_newton import BoxOutcome, solutions_in
-    from workhold.proof.narrowing import CandidateBox
 
     length = problem.wrench_length
     turn, right, up, along = (float(v) for v in box_reach(row[None], length)[0])

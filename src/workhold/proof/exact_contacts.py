@@ -17,7 +17,7 @@ from math import inf
 from typing import Any
 
 from attrs import frozen
-from flint import arb, ctx
+from flint import arb, arb_mat, ctx
 
 from workhold.contact.problem import Problem
 from workhold.conventions import STRAIGHT
@@ -25,12 +25,11 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X
 from workhold.kernels.base.given import Limits
 from workhold.model.clamps import LOCATORS
 from workhold.model.workpiece import Workpiece
-from workhold.proof.ball_contacts import BoxContacts, places
+from workhold.proof.ball_contacts import BoxContacts, CandidateBox, places
 from workhold.proof.interval_newton import PRECISIONS, refined
-from workhold.proof.narrowing import CandidateBox
 from workhold.proof.singular_frame import SingularFrame
 
-__all__ = ["SharpReactions", "drawn_circle", "exact_rows", "rounded", "sharp_reactions", "sides_of"]
+__all__ = ["SharpReactions", "drawn_circle", "exact_rows", "rounded", "sharp_reactions", "side_of"]
 
 Vertex = tuple[float, float, float]
 Side = tuple[Vertex, Vertex]
@@ -40,22 +39,23 @@ SAME_ROW = 1e-9
 
 def exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
     """Rows (P, 12) of features for pegs of some radii in mm, as balls at the precision in force."""
-    sides = [side for one in problem.workpiece.every_outline for side in sides_of(one)]
-    runs = {face.number: face.segments for face in problem.workpiece.numbered.faces}
-    out = []
+    workpiece, out = problem.workpiece, []
     for feature, radius in zip(features, radii, strict=True):
-        row, run = problem.rows[feature].tolist(), runs[int(problem.faces[feature])]
-        out.append(exact_row(row, [sides[number] for number in run], radius, problem.workpiece.center))
+        number = int(problem.faces[feature])
+        run = next(face.segments for face in workpiece.numbered.faces if face.number == number)
+        first, last = side_of(workpiece, run[0]), side_of(workpiece, run[-1])
+        out.append(exact_row(problem.rows[feature].tolist(), first, last, radius, workpiece.center))
     return out
 
 
-def sides_of(outline: Workpiece) -> list[Side]:
-    """The sides of an outline by number of segment: the vertex that each begins at, and the next one."""
-    out: list[Side] = []
-    for loop in outline.loops:
-        vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
-        out += zip(vertices, vertices[1:] + vertices[:1], strict=True)
-    return out
+def side_of(workpiece: Workpiece, number: int) -> Side:
+    """The vertices at both ends of a segment of a workpiece's outlines, by its number through all of them."""
+    for loop in (loop for outline in workpiece.every_outline for loop in outline.loops):
+        if number < len(loop):
+            (x, y, bulge), (x1, y1, other) = loop[[number, (number + 1) % len(loop)]].tolist()
+            return (x, y, bulge), (x1, y1, other)
+        number -= len(loop)
+    raise IndexError(number)
 
 
 def drawn_circle(side: Side) -> tuple[arb, arb, arb]:
@@ -68,16 +68,18 @@ def drawn_circle(side: Side) -> tuple[arb, arb, arb]:
     return x, y, (dx * dx + dy * dy).sqrt() * (1 + bulge * bulge) / (4 * abs(bulge))
 
 
-def exact_row(row: list[Any], run: Sequence[Side], radius: float, center: tuple[float, float]) -> list[Any]:
+def exact_row(
+    row: list[Any], first: Side, last: Side, radius: float, center: tuple[float, float]
+) -> list[Any]:
     """The row of a face of several sides: a line from first start to last end, or the first arc's circle."""
-    (start, _), end = run[0], run[-1][1]
+    (start, _), (_, end) = first, last
     is_arc = row[IS_ARC] != 0.0
     if is_arc != (abs(start[2]) >= STRAIGHT):
         return row
     made = list(row)
     made[REST_X] = made[REST_Y] = 0.0
     if is_arc:
-        x, y, drawn = drawn_circle(run[0])
+        x, y, drawn = drawn_circle(first)
         made[X], made[Y], made[RADIUS] = x - center[0], y - center[1], drawn + row[SIGN] * arb(radius)
         pairs = [(made[X], row[X]), (made[Y], row[Y]), (made[RADIUS], row[RADIUS])]
     else:
@@ -146,23 +148,13 @@ def reactions_in(box: CandidateBox, limits: Limits) -> SharpReactions | None:
 def reactions(here: BoxContacts) -> list[arb]:
     """Solution a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w (Cramer's rule), w the clamp's wrench about peg 1."""
     wrenches = [(n[0], n[1], q[0] * n[1] - q[1] * n[0]) for q, n in zip(here.arms, here.normals, strict=True)]
-    whole = determinant(wrenches[:LOCATORS])
+    whole = arb_mat(wrenches[:LOCATORS]).det()
     out = []
     for k in range(LOCATORS):
         columns = list(wrenches[:LOCATORS])
         columns[k] = wrenches[LOCATORS]
-        out.append(-determinant(columns) / whole)
+        out.append(-arb_mat(columns).det() / whole)
     return out
-
-
-def determinant(v: Sequence[tuple[arb, arb, arb]]) -> arb:
-    """The determinant of three vectors."""
-    one, two, three = v
-    return (
-        one[0] * (two[1] * three[2] - two[2] * three[1])
-        - one[1] * (two[0] * three[2] - two[2] * three[0])
-        + one[2] * (two[0] * three[1] - two[1] * three[0])
-    )
 
 
 def rounded(values: Sequence[arb], push: arb) -> SharpReactions:

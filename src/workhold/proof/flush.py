@@ -1,12 +1,21 @@
-"""Whether a locator and a clamp press a part that lies flush on a wall against both, in balls.
+"""Whether two pegs press a part that lies flush on a wall, in balls.
 
-Everything is derived once more from the hull edge's corners and arcs, the outline's vertices and bulges and
-the lattice. Their doubles are taken as exact numbers, and balls have as many digits as it takes. An arc's
-centre rounded once would not do: where a row grazes an arc, 5e-16 mm move the contact by 7e-8 mm.
+They are a locator and a clamp, or two pegs of one lattice. Everything is derived once more from the hull
+edge's corners and arcs, the outline's vertices and bulges and the lattice. Their doubles are taken as exact
+numbers, and balls have as many digits as it takes. An arc's centre rounded once would not do: where a row
+grazes an arc, 5e-16 mm move the contact by 7e-8 mm.
+
+Glossary
+--------
+contacts : the hull edge's length in mm, and the contact of both pegs. That is the centre, the outward normal
+    there, and how far in mm it is inside the rule of both ends of its feature. Places are along the hull edge
+    from its start, and above it.
+branch : -1 or 1, which of two places on an arc, or of two crossings, a contact is at.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 
 from attrs import frozen
@@ -17,22 +26,23 @@ from workhold.conventions import LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAS
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Carrier
 from workhold.geometry.hull import HullEnd
-from workhold.kernels.base.feature import HALF_EXTENT, HIGH_SLACK, LOW_SLACK, SIGN
 from workhold.model.workpiece import Workpiece
 from workhold.proof.deciding import BALLS
-from workhold.proof.exact_contacts import SharpReactions, drawn_circle, exact_rows, rounded, sides_of
+from workhold.proof.exact_contacts import SharpReactions, drawn_circle, exact_rows, rounded, side_of
 
 __all__ = [
     "Candidate",
-    "SharpContacts",
-    "SharpPlace",
+    "LatticePair",
     "pressing",
     "reactions_on_fence",
     "sharp_contacts",
     "sharp_place",
+    "verdict_on_pair",
 ]
 
 Point = tuple[arb, arb]
+Contact = tuple[Point, Point, list[arb]]
+Contacts = tuple[arb, Contact, Contact]
 
 # Bits of the balls, one after the other.
 PRECISIONS = (128, 256, 512)
@@ -48,7 +58,7 @@ class Candidate:
     row, line : the locator's row; the clamp's, or its column from the locator's if it is upright.
     is_upright : whether the clamp is on a column.
     features : those that locator and clamp touch.
-    branches : -1 or 1, which of its two contacts with an arc each is at.
+    branches : of both.
     """
 
     edge: int
@@ -60,18 +70,45 @@ class Candidate:
 
 
 @frozen
-class SharpContacts:
-    """A candidate to the last digit.
+class LatticePair:
+    """Two pegs of one lattice that may press a part on a wall.
 
     Parameters
     ----------
-    locator, tip : their centres along the hull edge from its start and above it, in mm.
-    null : forces of the wall's two ends, locator and clamp, not scaled.
+    edge : number of the hull edge that lies on the wall.
+    features : those that both pegs touch.
+    step : columns and rows from the first peg's hole to the second's.
+    branch : which of two crossings it is.
     """
 
-    locator: list[float]
-    tip: list[float]
+    edge: int
+    features: tuple[int, int]
+    step: tuple[int, int]
+    branch: int
+
+
+@frozen
+class SharpContacts:
+    """Two pegs to the last digit.
+
+    Parameters
+    ----------
+    points : their centres.
+    null : forces of the wall's two ends and of both, not scaled.
+    """
+
+    points: list[list[float]]
     null: list[float]
+
+    @classmethod
+    def of(cls, contacts: Contacts, problem: Problem) -> SharpContacts:
+        """The middles of the balls of contacts."""
+        return cls([middles(point) for point, _, _ in contacts[1:]], middles(null_of(contacts, problem)))
+
+
+def middles(values: Sequence[arb]) -> list[float]:
+    """The middles of balls as doubles."""
+    return [float(value.mid()) for value in values]
 
 
 def pressing(
@@ -87,107 +124,90 @@ def pressing(
     with BALLS:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
-                verdict = verdict_on(candidate, problem, plate, push)
+                contacts = contacts_of(candidate, problem, plate)
+                if contacts is None:
+                    return False
+                pushes = push_of(contacts, push)
+                if problem.pairing:
+                    wall, (_, normal, _), _ = contacts
+                    rules = [abs(normal[0]) * wall / problem.wrench_length - LEAST_SEAT, pushes - LEAST_PUSH]
+                else:
+                    rules = closing_rules(contacts, null_of(contacts, problem)[3] * pushes, problem)
+                verdict = verdict_on(rules, contacts, problem)
             if verdict is not None:
                 return verdict
     return None
 
 
-def verdict_on(
-    candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
-) -> bool | None:
-    """The verdict at the precision in force."""
-    contacts = contacts_of(candidate, problem, plate)
-    if contacts is None:
-        return False
-    length = arb(problem.wrench_length)
-    wall, (_, a, slack), (_, b, other) = contacts
-    null = null_of(contacts, length)
+def verdict_on_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, SharpContacts | None]:
+    """Returns whether a pair presses the part, None where that stays open, and the pair if it does."""
+    with BALLS:
+        for bits in PRECISIONS:
+            with ctx.workprec(bits):
+                contacts = contacts_of_pair(pair, problem)
+                if contacts is None:
+                    return False, None
+                pressed = sum(null_of(contacts, problem)[:2], arb(0))
+                verdict = verdict_on(closing_rules(contacts, pressed, problem), contacts, problem)
+                if verdict is not None:
+                    return verdict, SharpContacts.of(contacts, problem) if verdict else None
+    return None, None
+
+
+def closing_rules(contacts: Contacts, clamping: arb, problem: Problem) -> list[arb]:
+    """Numbers that are positive for contacts that close, given their clamping force for these shares."""
+    null, (_, (_, a, _), (_, b, _)) = null_of(contacts, problem), contacts
     size = sum((abs(entry) for entry in null), arb(0))
-    margin = arb(problem.contact_margin)
-    pushes = -(b[0] * push[0] + b[1] * push[1])
-    if problem.pairing:
-        rules = [abs(a[0]) * wall / length - LEAST_SEAT, pushes - LEAST_PUSH]
-    else:
-        rules = [entry - LEAST_CLOSURE * size for entry in null]
-        rules += [-a[0] * b[0], size - LEAST_SPAN, null[3] * pushes - LEAST_CLAMPING * size]
-    rules += [end - margin for end in (*slack, *other)]
-    if any(rule <= 0 for rule in rules):
+    rules = [entry - LEAST_CLOSURE * size for entry in null]
+    return [*rules, -a[0] * b[0], size - LEAST_SPAN, clamping - LEAST_CLAMPING * size]
+
+
+def verdict_on(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> bool | None:
+    """Whether some rules and those of all ends are kept; None where that is not certain."""
+    ends = (end - arb(problem.contact_margin) for _, _, slacks in contacts[1:] for end in slacks)
+    every = [*rules, *ends]
+    if any(rule <= 0 for rule in every):
         return False
-    return True if all(rule > 0 for rule in rules) else None
+    return True if all(rule > 0 for rule in every) else None
+
+
+def null_of(contacts: Contacts, problem: Problem) -> list[arb]:
+    """Forces of the wall's two ends and both pegs, not scaled; see ``search.wall_contacts.closure``."""
+    wall, ((u, v), a, _), ((p, q), b, _) = contacts
+    length, across, ahead = arb(problem.wrench_length), abs(a[0]), abs(b[0])
+    last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
+    both = wall * (ahead * a[1] + across * b[1]) / length
+    return [both - last, last, ahead * wall / length, across * wall / length]
+
+
+def push_of(contacts: Contacts, push: tuple[float, float]) -> arb:
+    """The share of the clamp's own force that a unit on its face is."""
+    _, _, (_, normal, _) = contacts
+    return -(normal[0] * push[0] + normal[1] * push[1])
 
 
 def sharp_contacts(candidate: Candidate, problem: Problem, plate: Carrier) -> SharpContacts | None:
     """A candidate that presses the part, to the last digit; None where it touches nothing."""
     with BALLS, ctx.workprec(PRECISIONS[-1]):
         contacts = contacts_of(candidate, problem, plate)
-        if contacts is None:
-            return None
-        points = [[float(value.mid()) for value in contact[0]] for contact in contacts[1:]]
-        null = [float(entry.mid()) for entry in null_of(contacts, arb(problem.wrench_length))]
-    return SharpContacts(points[0], points[1], null)
-
-
-@frozen
-class SharpPlace:
-    """A contact of a peg in a row: its centre in mm along and above the hull edge, and its outward normal.
-
-    The slack is its distance in mm to the nearer end of its feature.
-    """
-
-    point: list[float]
-    normal: list[float]
-    slack: float
+        return None if contacts is None else SharpContacts.of(contacts, problem)
 
 
 def sharp_place(
     edge: int, row: int, feature: int, branch: float, problem: Problem, plate: Carrier
-) -> SharpPlace | None:
+) -> tuple[list[float], list[float], float] | None:
     """The contact of a peg in a row of a plate with a feature, the part on a hull edge, to the last digit.
 
-    None where they do not meet.
+    It is the centre, the normal there, and the lesser distance to an end; None where they do not meet.
     """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
         start, tangent, _ = line_of(edge, problem.workpiece)
-        level = arb(plate.offset[1]) + arb(plate.pitch[1]) * row
         (drawn,) = exact_rows([feature], [problem.frame.standing.peg_radius], problem)
-        contact = touched(drawn, start, tangent, level, False, branch)
+        contact = BallFeature.of(drawn, start, tangent).contact_on(row_level(plate, row), False, branch)
         if contact is None:
             return None
         point, normal, slacks = contact
-        least = min((float(slack.mid()) for slack in slacks), default=inf)
-        return SharpPlace([float(v.mid()) for v in point], [float(v.mid()) for v in normal], least)
-
-
-def null_of(contacts: tuple[arb, Contact, Contact], length: arb) -> list[arb]:
-    """Forces of the wall's two ends, locator and clamp, not scaled; see ``search.wall_contacts.closure``."""
-    wall, ((u, v), a, _), ((p, q), b, _) = contacts
-    across, ahead = abs(a[0]), abs(b[0])
-    last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
-    both = wall * (ahead * a[1] + across * b[1]) / length
-    return [both - last, last, ahead * wall / length, across * wall / length]
-
-
-Contact = tuple[Point, Point, list[arb]]
-
-
-def contacts_of(
-    candidate: Candidate, problem: Problem, plate: Carrier
-) -> tuple[arb, Contact, Contact] | None:
-    """The hull edge's length, and locator's and clamp's contacts (:func:`touched`); None where one misses."""
-    start, tangent, wall = line_of(candidate.edge, problem.workpiece)
-    level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.row
-    radii = problem.frame.standing.peg_radius, problem.frame.moving.peg_radius
-    rows = exact_rows(candidate.features, radii, problem)
-    locator = touched(rows[0], start, tangent, level, False, candidate.branches[0])
-    if locator is None:
-        return None
-    if candidate.is_upright:
-        level = locator[0][0] + arb(plate.pitch[0]) * candidate.line
-    else:
-        level = arb(plate.offset[1]) + arb(plate.pitch[1]) * candidate.line
-    clamp = touched(rows[1], start, tangent, level, candidate.is_upright, candidate.branches[1])
-    return None if clamp is None else (wall, locator, clamp)
+        return middles(point), middles(normal), min(middles(slacks), default=inf)
 
 
 def reactions_on_fence(
@@ -210,7 +230,43 @@ def reactions_on_fence(
             return None
         force = -b[0] / a[0]
         last = (force * (u * a[1] - v * a[0]) + p * b[1] - q * b[0]) / wall
-        return rounded([force * a[1] + b[1] - last, last, force], -(b[0] * push[0] + b[1] * push[1]))
+        return rounded([force * a[1] + b[1] - last, last, force], push_of(contacts, push))
+
+
+def contacts_of(candidate: Candidate, problem: Problem, plate: Carrier) -> Contacts | None:
+    """The contacts of locator and clamp; None where one misses."""
+    start, tangent, wall = line_of(candidate.edge, problem.workpiece)
+    radii = problem.frame.standing.peg_radius, problem.frame.moving.peg_radius
+    one, other = (
+        BallFeature.of(row, start, tangent) for row in exact_rows(candidate.features, radii, problem)
+    )
+    locator = one.contact_on(row_level(plate, candidate.row), False, candidate.branches[0])
+    if locator is None:
+        return None
+    if candidate.is_upright:
+        level = locator[0][0] + arb(plate.pitch[0]) * candidate.line
+    else:
+        level = row_level(plate, candidate.line)
+    clamp = other.contact_on(level, candidate.is_upright, candidate.branches[1])
+    return None if clamp is None else (wall, locator, clamp)
+
+
+def row_level(plate: Carrier, row: int) -> arb:
+    """How high a row of a plate is above the wall, in mm."""
+    return arb(plate.offset[1]) + arb(plate.pitch[1]) * row
+
+
+def contacts_of_pair(pair: LatticePair, problem: Problem) -> Contacts | None:
+    """The contacts of both pegs of a pair; None where their curves are not shown to cross."""
+    start, tangent, wall = line_of(pair.edge, problem.workpiece)
+    radii = [problem.frame.moving.peg_radius] * 2
+    one, other = (BallFeature.of(row, start, tangent) for row in exact_rows(pair.features, radii, problem))
+    across, up = (arb(a) * int(k) for a, k in zip(problem.toolkit.moving.pitch, pair.step, strict=True))
+    between = other.middle[0] - across - one.middle[0], other.middle[1] - up - one.middle[1]
+    ray = crossing_of(one, other, between, pair.branch)
+    if ray is None:
+        return None
+    return wall, one.contact(ray), other.contact((ray[0] - between[0], ray[1] - between[1]))
 
 
 def line_of(number: int, workpiece: Workpiece) -> tuple[Point, Point, arb]:
@@ -232,36 +288,108 @@ def drawn_end(end: HullEnd, workpiece: Workpiece) -> tuple[arb, arb, arb]:
     if end.radius == 0.0:
         return rounded_once
     own, _ = workpiece.outline_of(WALL)
-    side = sides_of(own)[own.outer_faces[end.faces[0]].segments[0]]
+    side = side_of(own, own.outer_faces[end.faces[0]].segments[0])
     # An arc may be a run of chords in the drawing.
     return drawn_circle(side) if abs(side[0][2]) >= STRAIGHT else rounded_once
 
 
-def touched(
-    row: list[float], start: Point, tangent: Point, level: arb, upright: bool, branch: float
-) -> tuple[Point, Point, list[arb]] | None:
-    """Centre of a peg on a line that touches a feature, the normal there and distances to the ends' rule.
+@frozen
+class BallFeature:
+    """A feature in the wall's frame, in balls.
 
-    None where they do not meet.
+    Parameters
+    ----------
+    middle, axis : a point of a line and its direction; an arc's centre and the direction of its middle.
+    radius : of an arc in mm, None of a line.
+    half, sign, low, high : half its extent, its sign, and the slacks of the end behind and of the one ahead.
     """
-    feature = in_wall_frame(row, start, tangent)
-    (middle, axis), (half, sign, high, low) = (feature.middle, feature.axis), feature.ends
-    across = 0 if upright else 1
-    up = level - middle[across]
-    if feature.radius is None:
-        s = up / axis[across]
-        point = middle[0] + s * axis[0], middle[1] + s * axis[1]
-        return point, (axis[1], -axis[0]), [half - s + high, half + s + low]
-    radius = feature.radius
-    rest = half_chord(radius * radius - up * up)
-    if rest is None:
+
+    middle: Point
+    axis: Point
+    radius: arb | None
+    half: float
+    sign: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, row: Sequence[float], start: Point, tangent: Point) -> BallFeature:
+        """A feature's row as it lies on a hull edge from a start along a tangent."""
+        is_arc, x, y, ax, ay, half, radius, sign, rest_x, rest_y, low, high = row
+        tx, ty = tangent
+        dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
+        # Axes of features are unit vectors but for rounding.
+        size = (arb(ax) * ax + arb(ay) * ay).sqrt()
+        axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
+        middle = dx * tx + dy * ty, dy * tx - dx * ty
+        return cls(middle, axis, arb(radius) if is_arc else None, half, sign, low, high)
+
+    def contact(self, ray: Point) -> Contact:
+        """The contact of a peg whose centre is on it, given from its middle."""
+        point, (ax, ay) = (self.middle[0] + ray[0], self.middle[1] + ray[1]), self.axis
+        along = ax * ray[0] + ay * ray[1]
+        if self.radius is None:
+            return point, (ay, -ax), [self.half - along + self.high, self.half + along + self.low]
+        normal = self.sign * ray[0] / self.radius, self.sign * ray[1] / self.radius
+        if self.half >= arb.pi():
+            return point, normal, []
+        angle = arb.atan2(ax * ray[1] - ay * ray[0], along)
+        ends = (self.half - angle) * self.radius + self.high, (self.half + angle) * self.radius + self.low
+        return point, normal, [*ends]
+
+    def contact_on(self, level: arb, upright: bool, branch: float) -> Contact | None:
+        """The contact of a peg on a row, or on a column if ``upright``, at a level; None for a miss."""
+        across = 0 if upright else 1
+        up = level - self.middle[across]
+        if self.radius is None:
+            along = up / self.axis[across]
+            return self.contact((along * self.axis[0], along * self.axis[1]))
+        rest = half_chord(self.radius * self.radius - up * up)
+        if rest is None:
+            return None
+        return self.contact((up, branch * rest) if upright else (branch * rest, up))
+
+
+def crossing_of(one: BallFeature, other: BallFeature, between: Point, branch: int) -> Point | None:
+    """Returns where two curves cross, from the middle of the first; None where that is not proven.
+
+    ``between`` leads from the middle of the first to that of the second, in mm.
+    """
+    x, y = between
+    if one.radius is not None and other.radius is not None:
+        apart = (x * x + y * y).sqrt()
+        away = ((one.radius - other.radius) * (one.radius + other.radius) / apart + apart) / 2
+        half = half_chord((one.radius - away) * (one.radius + away))
+        x, y = x / apart, y / apart
+        return None if half is None else (away * x - branch * half * y, away * y + branch * half * x)
+    if other.radius is not None:
+        return on_line(between, one.axis, other.radius, branch)
+    if one.radius is not None:
+        place = on_line((-x, -y), other.axis, one.radius, branch)
+        return None if place is None else (place[0] + x, place[1] + y)
+    (ax, ay), (bx, by) = one.axis, other.axis
+    sine = ax * by - ay * bx
+    if not abs(sine) > 0:
         return None
-    ray = (up, branch * rest) if upright else (branch * rest, up)
-    point, normal = (middle[0] + ray[0], middle[1] + ray[1]), (sign * ray[0] / radius, sign * ray[1] / radius)
-    if half >= arb.pi():
-        return point, normal, []
-    angle = arb.atan2(axis[0] * ray[1] - axis[1] * ray[0], axis[0] * ray[0] + axis[1] * ray[1])
-    return point, normal, [(half - angle) * radius + high, (half + angle) * radius + low]
+    along = (x * by - y * bx) / sine
+    return along * ax, along * ay
+
+
+def on_line(between: Point, axis: Point, radius: arb, branch: int) -> Point | None:
+    """Returns where a line crosses a circle, from the line's middle; None where it surely misses it.
+
+    Parameters
+    ----------
+    between : from the middle of the line to that of the circle, in mm.
+    axis : unit vector along the line.
+    """
+    (ax, ay), (x, y) = axis, between
+    away = ax * y - ay * x
+    half = half_chord((radius - away) * (radius + away))
+    if half is None:
+        return None
+    along = ax * x + ay * y + branch * half
+    return along * ax, along * ay
 
 
 def half_chord(square: arb) -> arb | None:
@@ -269,43 +397,3 @@ def half_chord(square: arb) -> arb | None:
     if square < 0:
         return None
     return square.sqrt() if square > 0 else arb(0, abs(square).abs_upper().sqrt().upper())
-
-
-@frozen
-class BallFeature:
-    """A feature in the wall's frame, in balls: middle, unit vector, radius (None of a line), and row."""
-
-    middle: Point
-    axis: Point
-    radius: arb | None
-    row: list[float]
-
-    @property
-    def ends(self) -> tuple[float, float, float, float]:
-        """Half the extent, the sign, and the slacks of the end ahead and of the one behind."""
-        half, sign, high, low = (self.row[k] for k in (HALF_EXTENT, SIGN, HIGH_SLACK, LOW_SLACK))
-        return half, sign, high, low
-
-    def contact(self, point: Point) -> Contact:
-        """Returns a peg's centre on it, the outward normal there, and the distances to its ends."""
-        half, sign, high, low = self.ends
-        (ax, ay), ray = self.axis, (point[0] - self.middle[0], point[1] - self.middle[1])
-        along = ax * ray[0] + ay * ray[1]
-        if self.radius is None:
-            return point, (ay, -ax), [half - along + high, half + along + low]
-        normal = sign * ray[0] / self.radius, sign * ray[1] / self.radius
-        if half >= arb.pi():
-            return point, normal, []
-        angle = arb.atan2(ax * ray[1] - ay * ray[0], along)
-        return point, normal, [(half - angle) * self.radius + high, (half + angle) * self.radius + low]
-
-
-def in_wall_frame(row: list[float], start: Point, tangent: Point) -> BallFeature:
-    """Returns a feature as it lies on a hull edge from a start along a tangent."""
-    is_arc, x, y, ax, ay, _, radius, _, rest_x, rest_y, _, _ = row
-    tx, ty = tangent
-    dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
-    # Axes of features are unit vectors but for rounding.
-    size = (arb(ax) * ax + arb(ay) * ay).sqrt()
-    axis = (ax * tx + ay * ty) / size, (ay * tx - ax * ty) / size
-    return BallFeature((dx * tx + dy * ty, dy * tx - dx * ty), axis, arb(radius) if is_arc else None, row)

@@ -1,10 +1,10 @@
 """What double precision leaves open, decided in ball arithmetic (python-flint).
 
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
-there is one. ``proof.narrowing`` makes it smaller by two rules of one or two unknowns. It is turned into the
-frame of ``proof.singular_frame``. There, boxes in which some contact equation has no zero, or in which some
-rule is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the others
-smaller. It shows that there is none or exactly one solution. What remains is cut in three. Where
+there is one. It is made smaller by two rules of one or two unknowns (``ball_contacts.narrowed``), and turned
+into the frame of ``proof.singular_frame``. There, boxes in which some contact equation has no zero, or in
+which some rule is broken everywhere, are dropped. The interval Newton method (Hansen and Sengupta) makes the
+others smaller. It shows that there is none or exactly one solution. What remains is cut in three. Where
 ``FEW_BOXES`` do not decide, all solutions are mostly on one curve, on which ``proof.solution_curve`` finds
 them. What is left after ``MOST_BOXES`` boxes stays undecided. Solutions are judged at rising precision.
 
@@ -21,8 +21,7 @@ from flint import arb, ctx
 
 from workhold.kernels.base.given import Limits
 from workhold.model.search_report import AT_AN_EDGE, NEARLY_DOUBLE
-from workhold.proof.ball_contacts import is_empty, places, slacks, wrench_minors
-from workhold.proof.narrowing import CandidateBox, narrowed
+from workhold.proof.ball_contacts import CandidateBox, is_empty, narrowed, places, slacks, wrench_minors
 from workhold.proof.singular_frame import SingularFrame, is_smaller, thirds
 from workhold.proof.solution_curve import roots_on_curve
 

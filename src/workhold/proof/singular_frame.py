@@ -18,10 +18,9 @@ from flint import arb, arb_mat
 from numpy.typing import NDArray
 
 from workhold.kernels.base.given import Limits
-from workhold.proof.ball_contacts import BoxContacts, contact_values, places
-from workhold.proof.narrowing import CandidateBox
+from workhold.proof.ball_contacts import BoxContacts, CandidateBox, contact_values, places
 
-__all__ = ["SingularFrame", "is_smaller", "thirds"]
+__all__ = ["SingularFrame", "is_smaller", "newton_step", "thirds"]
 
 # The exact solution of a box may lie on its rim, so boxes are made larger by this part.
 RIM = 0.1
@@ -79,14 +78,14 @@ class SingularFrame:
 
     def values(self, place: Sequence[arb]) -> list[arb]:
         """The combined contact equations at a place in the frame."""
-        return list(
-            (self.combining * arb_mat(4, 1, contact_values(self.box, self.unknowns(place)))).entries()
-        )
+        values = contact_values(self.box, self.unknowns(place))
+        return list((self.combining * arb_mat(4, 1, values)).entries())
 
     def slopes(self, here: BoxContacts) -> list[list[arb]]:
         """The Jacobian of the combined contact equations by the frame's coordinates."""
         scaled = [[row[0] / self.length, *row[1:]] for row in here.slopes]
-        return rows_of(self.combining * arb_mat(scaled) * self.turning)
+        slopes: list[list[arb]] = (self.combining * arb_mat(scaled) * self.turning).tolist()
+        return slopes
 
     def step(
         self, place: list[arb], here: BoxContacts, regular: bool = False
@@ -106,30 +105,35 @@ class SingularFrame:
             except ZeroDivisionError:
                 return place, False
             values = list((inverse * arb_mat(4, 1, values)).entries())
-            slopes = rows_of(inverse * arb_mat(slopes))
-        out, inside = list(place), True
-        off = [one - at for one, at in zip(out, middle, strict=True)]
-        for k in range(4):
-            row = slopes[k]
-            rest = values[k] + sum([row[j] * off[j] for j in range(4) if j != k], arb(0))
-            if row[k].contains(0):
-                inside = False
-                if not (rest + row[k] * off[k]).contains(0):
-                    return None, False
-                continue
-            image = middle[k] - rest / row[k]
-            if not image.overlaps(out[k]):
+            slopes = (inverse * arb_mat(slopes)).tolist()
+        return newton_step(place, values, slopes)
+
+
+def newton_step(
+    place: Sequence[arb], values: Sequence[arb], slopes: Sequence[Sequence[arb]]
+) -> tuple[list[arb] | None, bool]:
+    """The part of a place with solutions, None without one, and whether it is seen to hold exactly one.
+
+    This is the step of Hansen and Sengupta: values are those of N equations at the place's middle, and
+    slopes (N, N) enclose their Jacobian over the place.
+    """
+    middle = [arb(p.mid()) for p in place]
+    out, inside = list(place), True
+    off = [one - at for one, at in zip(out, middle, strict=True)]
+    for k, row in enumerate(slopes):
+        rest = values[k] + sum([row[j] * off[j] for j in range(len(out)) if j != k], arb(0))
+        if row[k].contains(0):
+            inside = False
+            if not (rest + row[k] * off[k]).contains(0):
                 return None, False
-            inside = inside and out[k].contains_interior(image)
-            out[k] = image if out[k].contains(image) else out[k].intersection(image)
-            off[k] = out[k] - middle[k]
-        return out, inside
-
-
-def rows_of(matrix: arb_mat) -> list[list[arb]]:
-    """The rows of a 4 x 4 matrix."""
-    every = list(matrix.entries())
-    return [every[k : k + 4] for k in range(0, 16, 4)]
+            continue
+        image = middle[k] - rest / row[k]
+        if not image.overlaps(out[k]):
+            return None, False
+        inside = inside and out[k].contains_interior(image)
+        out[k] = image if out[k].contains(image) else out[k].intersection(image)
+        off[k] = out[k] - middle[k]
+    return out, inside
 
 
 def is_smaller(part: list[arb], place: list[arb], share: float = SMALLER) -> bool:

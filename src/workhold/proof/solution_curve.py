@@ -26,9 +26,8 @@ from attrs import frozen
 from flint import arb, arb_mat, arb_series, ctx
 
 from workhold.kernels.base.given import Limits
-from workhold.proof.ball_contacts import is_empty
-from workhold.proof.narrowing import contact_value
-from workhold.proof.singular_frame import SingularFrame, is_smaller, thirds
+from workhold.proof.ball_contacts import contact_values, is_empty
+from workhold.proof.singular_frame import SingularFrame, is_smaller, newton_step, thirds
 
 __all__ = ["SolutionCurve", "TaylorForm", "roots_on_curve"]
 
@@ -215,16 +214,11 @@ def along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[list[arb
             break
         off = inverse * arb_mat(3, 1, [values[k] + slopes[k][3] * (t - middle_t) for k in range(3)])
         matrix = inverse * arb_mat([row[:3] for row in slopes[:3]])
-        out, inside = list(well), True
-        for k in range(3):
-            others = sum((matrix[k, j] * (out[j] - middle[j]) for j in range(3) if j != k), arb(0))
-            if matrix[k, k].contains(0):
-                return well, is_curve
-            image = middle[k] - (off[k, 0] + others) / matrix[k, k]
-            if not image.overlaps(out[k]):
-                return well, is_curve
-            inside = inside and out[k].contains_interior(image)
-            out[k] = image if out[k].contains(image) else out[k].intersection(image)
+        if any(matrix[k, k].contains(0) for k in range(3)):
+            break
+        out, inside = newton_step(well, off.entries(), matrix.tolist())
+        if out is None:
+            break
         is_curve, before, well = is_curve or inside, well, out
         if not is_smaller(well, before):
             break
@@ -262,23 +256,11 @@ def power_series(frame: SingularFrame, well: list[arb], t: arb) -> list[list[arb
 def series_values(frame: SingularFrame, place: Sequence[Any]) -> list[Any]:
     """The combined contact equations at power series of the frame's coordinates."""
     turn, *steps = product(frame.turning, place)
-    psi, x, y, separation = (
-        m + s for m, s in zip(frame.box.middle, [turn / frame.length, *steps], strict=True)
-    )
-    cosine, sine = psi.cos(), psi.sin()
-    values = []
-    for k, (row, (dx, dy)) in enumerate(zip(frame.box.features, frame.box.offsets, strict=True)):
-        reach = dx + int(k >= frame.box.standing) * separation
-        values.append(contact_value(row, (x + cosine * reach - sine * dy, y + sine * reach + cosine * dy)))
-    return product(frame.combining, values)
+    unknowns = [m + s for m, s in zip(frame.box.middle, [turn / frame.length, *steps], strict=True)]
+    return product(frame.combining, contact_values(frame.box, unknowns))
 
 
 def product(matrix: Any, vector: Sequence[Any]) -> list[Any]:
     """A 4 x 4 matrix of balls times a vector of power series."""
-    return [
-        matrix[i, 0] * vector[0]
-        + matrix[i, 1] * vector[1]
-        + matrix[i, 2] * vector[2]
-        + matrix[i, 3] * vector[3]
-        for i in range(4)
-    ]
+    rows = matrix.tolist()
+    return [sum((a * b for a, b in zip(row, vector, strict=True)), arb_series([0])) for row in rows]

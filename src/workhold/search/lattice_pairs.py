@@ -40,7 +40,7 @@ from workhold.kernels.base.feature import (
 )
 from workhold.kernels.contact.rules import ROUNDING
 from workhold.listing.canonical_form import Rows
-from workhold.proof.lattice_pair import LatticePair, verdict_on_pair
+from workhold.proof.flush import LatticePair, verdict_on_pair
 from workhold.search.flush_search import PartOnWall
 
 __all__ = ["LatticePairs", "are_pressed", "pairs_on"]

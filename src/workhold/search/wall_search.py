@@ -104,7 +104,7 @@ class WallSearch(FlushSearch):
             sharp = sharp_place(edge, *numbers, problem, self.plate)
             kept[k] = sharp is not None
             if sharp is not None:
-                places.point[k], places.normal[k], places.slack[k] = sharp.point, sharp.normal, sharp.slack
+                places.point[k], places.normal[k], places.slack[k] = sharp
                 places.reach[k], places.swing[k] = 4.0 * lying.off, 4.0 * lying.turn
         return places.take(kept)
 
@@ -238,7 +238,7 @@ class WallSearch(FlushSearch):
         for k in far.tolist():
             sharp = sharp_contacts(self.candidate(edge, one, two, locator, k), self.problem, self.plate)
             if sharp is not None:
-                places[k], tip[k] = sharp.locator, sharp.tip
+                places[k], tip[k] = sharp.points
                 null[k] = null[k] if self.problem.pairing else sharp.null
         return evolve(pressed, locator=places, tip=tip, null=null) if len(far) else pressed
 

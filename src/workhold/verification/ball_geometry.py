@@ -27,9 +27,14 @@ S. M. Rump, "Verification methods: rigorous results using floating-point arithme
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import reduce
+from itertools import product
+from typing import Any
 
+import numpy as np
 from attrs import frozen
 from flint import arb
+from numpy.typing import NDArray
 
 from workhold.model.workpiece import Workpiece
 from workhold.verification.tolerances import STRAIGHT, TANGENT, WHOLE
@@ -45,13 +50,16 @@ __all__ = [
     "cross",
     "dot",
     "exact_point",
+    "box_center",
     "largest",
     "least",
     "line_side",
+    "loop_sides",
+    "minus",
     "norm",
     "root",
     "turned",
-    "whole_face",
+    "vertex_side",
 ]
 
 Point = tuple[arb, arb]
@@ -63,6 +71,11 @@ PRECISIONS = (128, 256, 512)
 def exact_point(x: float, y: float) -> Point:
     """A point given by floats."""
     return arb(x), arb(y)
+
+
+def minus(a: Point, b: Point) -> Point:
+    """One vector less another."""
+    return a[0] - b[0], a[1] - b[1]
 
 
 def dot(a: Point, b: Point) -> arb:
@@ -92,15 +105,12 @@ def turned(a: Point, cosine: arb, sine: arb) -> Point:
 
 def least(values: Sequence[arb]) -> arb:
     """The smallest of some numbers."""
-    found = values[0]
-    for value in values[1:]:
-        found = found.min(value)
-    return found
+    return reduce(arb.min, values)
 
 
 def largest(values: Sequence[arb]) -> arb:
     """The largest of some numbers."""
-    return -least([-value for value in values])
+    return reduce(arb.max, values)
 
 
 Vertex = tuple[float, float, float]
@@ -135,28 +145,28 @@ class LineSide:
 
     def distance(self, point: Point) -> arb:
         """Distance in mm of a point from the side."""
-        from_start = point[0] - self.start[0], point[1] - self.start[1]
+        from_start = minus(point, self.start)
         along = dot(from_start, self.tangent)
         if along > 0 and along < self.length:
             return abs(cross(self.tangent, from_start))
         if along < 0:
             return norm(from_start)
-        from_end = point[0] - self.end[0], point[1] - self.end[1]
+        from_end = minus(point, self.end)
         if along > self.length:
             return norm(from_end)
         return abs(cross(self.tangent, from_start)).union(norm(from_start).min(norm(from_end)))
 
     def away(self, point: Point) -> Point | None:
         """A vector from the nearest point of the side to a point, of any length; None where uncertain."""
-        along = dot((point[0] - self.start[0], point[1] - self.start[1]), self.tangent)
+        along = dot(minus(point, self.start), self.tangent)
         if along > 0 and along < self.length:
             return self.normal
         end = self.start if along < 0 else self.end if along > self.length else None
-        return None if end is None else (point[0] - end[0], point[1] - end[1])
+        return None if end is None else minus(point, end)
 
     def slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
         """Slacks in mm of a peg's centre on the side moved out by ``offset``."""
-        along = dot((point[0] - self.start[0], point[1] - self.start[1]), self.tangent)
+        along = dot(minus(point, self.start), self.tangent)
         return along, self.length - along
 
     def outward(self, point: Point) -> Point:
@@ -193,7 +203,7 @@ class ArcSide:
 
     def from_center(self, point: Point) -> Point:
         """Vector from the centre to a point."""
-        return point[0] - self.center[0], point[1] - self.center[1]
+        return minus(point, self.center)
 
     def gap(self, point: Point) -> arb:
         """Signed distance in mm of a point from the carrying circle."""
@@ -206,10 +216,7 @@ class ArcSide:
         within = self.within(ray)
         if self.whole or within > 0:
             return from_circle
-        start, end = self.start, self.end
-        from_ends = norm((point[0] - start[0], point[1] - start[1])).min(
-            norm((point[0] - end[0], point[1] - end[1]))
-        )
+        from_ends = norm(minus(point, self.start)).min(norm(minus(point, self.end)))
         return from_ends if within < 0 else from_circle.union(from_ends)
 
     def away(self, point: Point) -> Point | None:
@@ -218,7 +225,7 @@ class ArcSide:
         within = self.within(ray)
         if self.whole or within > 0:
             return ray
-        ways = [(point[0] - end[0], point[1] - end[1]) for end in (self.start, self.end)]
+        ways = [minus(point, end) for end in (self.start, self.end)]
         one, two = (dot(way, way) for way in ways)
         if not within < 0:
             return None
@@ -249,7 +256,7 @@ Side = LineSide | ArcSide
 
 def line_side(start: Point, end: Point) -> LineSide:
     """The straight side between two points."""
-    step = end[0] - start[0], end[1] - start[1]
+    step = minus(end, start)
     length = norm(step)
     tangent = step[0] / length, step[1] / length
     return LineSide(start, end, tangent, length, tangent[1] * start[0] - tangent[0] * start[1])
@@ -262,7 +269,7 @@ def arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
     is (1 + b²)/(4|b|) chords (from r = c / (2 sin(half sweep))).
     """
     b = arb(bulge)
-    dx, dy = end[0] - start[0], end[1] - start[1]
+    dx, dy = minus(end, start)
     left = (1 - b * b) / (4 * b)
     center = (start[0] + end[0]) / 2 - dy * left, (start[1] + end[1]) / 2 + dx * left
     chord = norm((dx, dy))
@@ -276,6 +283,12 @@ def vertex_side(vertex: Vertex, following: Vertex) -> Side:
     """The side that begins at a vertex (x, y, bulge)."""
     start, end = exact_point(*vertex[:2]), exact_point(*following[:2])
     return line_side(start, end) if abs(vertex[2]) < STRAIGHT else arc_side(start, end, vertex[2])
+
+
+def loop_sides(loop: NDArray[np.float64]) -> list[Side]:
+    """The sides of a closed chain of vertices (N, 3)."""
+    vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
+    return [vertex_side(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
 
 
 def whole_face(run: Sequence[Side]) -> Side:
@@ -306,59 +319,43 @@ class BallOutline:
     segments : by number.
     faces : whole faces by their numbers.
     others : for each face, by its number, the numbers and sides of all segments that are not of it.
-    smooth : whether each face, by its number, meets its neighbours tangentially at its start and at its end.
-    turns : by how much the normals differ at these two joints, the larger component.
     neighbours : those of each face, by its number, segments at its start and at its end.
-    own : outlines of carriers with heights of their own, by role (``verification.contacts``).
+    turns : by how much the normals differ at these two joints, the larger component.
+    own : outlines of carriers with heights of their own by role, and of all others by an empty role; none
+        where all meet the same (``verification.contacts``).
     """
 
     segments: tuple[Side, ...]
     faces: Mapping[int, Side]
     others: Mapping[int, tuple[tuple[int, Side], ...]]
-    smooth: Mapping[int, tuple[bool, bool]]
-    turns: Mapping[int, tuple[arb, arb]]
     neighbours: Mapping[int, tuple[Side, Side]]
+    turns: Mapping[int, tuple[arb, arb]]
     own: Mapping[str, BallOutline] = {}
 
     @classmethod
     def of(cls, workpiece: Workpiece, number: int = 0) -> BallOutline:
         """The outline at the precision in force, its segments numbered from ``number``."""
-        segments: list[Side] = []
-        before: list[int] = []
+        segments, before = list[Side](), list[int]()
         for loop in workpiece.loops:
             first, count = len(segments), len(loop)
-            vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
-            segments += [
-                vertex_side(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)
-            ]
+            segments += loop_sides(loop)
             before += [first + (k - 1) % count for k in range(count)]
         after = {neighbour: k for k, neighbour in enumerate(before)}
-        numbered = {number + f.number: f for f in workpiece.faces}
-        faces = {key: whole_face([segments[k] for k in f.segments]) for key, f in numbered.items()}
-        others = {
-            key: tuple((number + k, side) for k, side in enumerate(segments) if k not in f.segments)
-            for key, f in numbered.items()
-        }
-        neighbours = {
-            key: (segments[before[f.segments[0]]], segments[after[f.segments[-1]]])
-            for key, f in numbered.items()
-        }
-        turns = {
-            number: (
-                turn_at(one, faces[number], faces[number].start),
-                turn_at(faces[number], two, faces[number].end),
-            )
-            for number, (one, two) in neighbours.items()
-        }
-        smooth = {number: (bool(one < TANGENT), bool(two < TANGENT)) for number, (one, two) in turns.items()}
-        return cls(tuple(segments), faces, others, smooth, turns, neighbours)
+        faces, others, neighbours, turns = (dict[int, Any]() for _ in range(4))
+        for face in workpiece.faces:
+            key, run = number + face.number, face.segments
+            faces[key] = side = whole_face([segments[k] for k in run])
+            others[key] = tuple((number + k, other) for k, other in enumerate(segments) if k not in run)
+            neighbours[key] = one, two = segments[before[run[0]]], segments[after[run[-1]]]
+            turns[key] = turn_at(one, side, side.start), turn_at(side, two, side.end)
+        return cls(tuple(segments), faces, others, neighbours, turns)
 
     def smooth_ends(self, face: int, has_flat: bool) -> tuple[bool, bool]:
         """Whether a face meets its neighbours tangentially at its start and end, for pegs that touch it.
 
         One with a flat changes over from flat to round between a line and an arc.
         """
-        one, other = self.smooth[face]
+        one, other = (bool(turn < TANGENT) for turn in self.turns[face])
         if not has_flat:
             return one, other
         first, last = (
@@ -373,8 +370,8 @@ def turn_at(one: Side, two: Side, joint: Point) -> arb:
 
     The sides meet tangentially where it is below ``TANGENT``.
     """
-    (ax, ay), (bx, by) = one.outward(joint), two.outward(joint)
-    return abs(ax - bx).max(abs(ay - by))
+    x, y = minus(one.outward(joint), two.outward(joint))
+    return abs(x).max(abs(y))
 
 
 def box_center(outline: BallOutline) -> Point:
@@ -382,14 +379,11 @@ def box_center(outline: BallOutline) -> Point:
 
     The box is that of its joints, and of the arcs where they run along x or y.
     """
-    middle = []
-    for axis in (0, 1):
-        places = [side.start[axis] for side in outline.segments]
-        for side in outline.segments:
-            if isinstance(side, ArcSide):
-                for sign in (1, -1):
-                    within = side.within((arb(sign), arb(0)) if axis == 0 else (arb(0), arb(sign)))
-                    if not within < 0:
-                        places.append(side.center[axis] + sign * side.radius)
-        middle.append((least(places) + largest(places)) / 2)
-    return middle[0], middle[1]
+    places = [side.start for side in outline.segments]
+    arcs = [side for side in outline.segments if isinstance(side, ArcSide)]
+    for side, way in product(arcs, ((1, 0), (-1, 0), (0, 1), (0, -1))):
+        if not side.within(exact_point(*way)) < 0:
+            (x, y), radius = side.center, side.radius
+            places.append((x + way[0] * radius, y + way[1] * radius))
+    xs, ys = zip(*places, strict=True)
+    return (least(xs) + largest(xs)) / 2, (least(ys) + largest(ys)) / 2

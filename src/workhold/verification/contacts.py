@@ -25,6 +25,7 @@ wrench radius : distance from the origin to the nearest facet of the hull of the
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from itertools import combinations
 from typing import Any, ClassVar
 
@@ -41,15 +42,19 @@ from workhold.verification.ball_geometry import (
     Side,
     cross,
     dot,
+    largest,
     least,
+    minus,
     root,
     turned,
 )
 from workhold.verification.tolerances import (
+    FIGURE_AGREEMENT,
     FLAT,
     LEAST_CLAMPING,
     LEAST_SHARE,
     LEAST_SPAN,
+    ROUNDING,
     Finding,
     number,
     rule,
@@ -62,9 +67,11 @@ __all__ = [
     "closure_findings",
     "contact_system",
     "every_outline",
+    "inner",
     "inverted",
     "met_by",
     "minors",
+    "parts_spared",
     "span",
     "standoff",
     "wrench_radius",
@@ -153,7 +160,7 @@ class BallContact:
             value = dot(n, u) - side.level - self.radius
             return value, [cross(n, u), -n[0], -n[1], dot(self.way, n)]
         c = turned(side.center, pose.cosine, pose.sine)
-        w = u[0] - c[0], u[1] - c[1]
+        w = minus(u, c)
         value = (dot(w, w) - side.reach(self.radius) ** 2) / 2
         return value, [cross(w, c), -w[0], -w[1], dot(self.way, w)]
 
@@ -176,17 +183,8 @@ def contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[
 
 def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
     """The null vector of four wrenches in balls, in mm: (-1)^i det of the wrenches other than i."""
-    moments = [cross(q, n) for q, n in zip(points, normals, strict=True)]
-    vector = []
-    for i in range(4):
-        a, b, c = (k for k in range(4) if k != i)
-        det = (
-            cross(normals[a], normals[b]) * moments[c]
-            + cross(normals[b], normals[c]) * moments[a]
-            + cross(normals[c], normals[a]) * moments[b]
-        )
-        vector.append(-det if i % 2 else det)
-    return vector
+    wrenches = [(*n, cross(q, n)) for q, n in zip(points, normals, strict=True)]
+    return [(-1) ** i * arb_mat([*wrenches[:i], *wrenches[i + 1 :]]).det() for i in range(4)]
 
 
 def span(vector: Sequence[arb], wrench_length: float) -> arb:
@@ -207,6 +205,7 @@ class Balance:
     vector : the null vector of the wrenches, not scaled, see :func:`minors`.
     shares : the null vector scaled to sum 1; no numbers where the sum may be 0.
     clamp : the force that what moves passes on in the direction in which it clamps, for these shares.
+    ways : those of the pegs in the workpiece's frame.
     """
 
     points: tuple[Point, ...]
@@ -214,6 +213,7 @@ class Balance:
     vector: tuple[arb, ...]
     shares: tuple[arb, ...]
     clamp: arb
+    ways: tuple[Point, ...]
 
     @classmethod
     def of(cls, contacts: Sequence[BallContact], pose: BallPose, clamping: int) -> Balance:
@@ -224,9 +224,9 @@ class Balance:
         total = sum(vector, arb(0))
         shares = tuple(entry / total for entry in vector)
         # A peg pushes along -n, and clamps against its way.
-        ways = [turned(contact.way, pose.cosine, -pose.sine) for contact in contacts]
+        ways = tuple(turned(contact.way, pose.cosine, -pose.sine) for contact in contacts)
         push = sum((s * dot(way, n) for s, way, n in zip(shares, ways, normals, strict=True)), arb(0))
-        return cls(points, normals, vector, shares, clamping * push)
+        return cls(points, normals, vector, shares, clamping * push, ways)
 
     @property
     def forces(self) -> list[arb]:
@@ -238,25 +238,39 @@ class Balance:
         """The closure margin."""
         return least(self.shares)
 
-    def inverse(self, contacts: Sequence[BallContact], pose: BallPose) -> list[list[arb]] | None:
+    @cached_property
+    def inverse(self) -> list[list[arb]] | None:
         """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None if uncertain."""
-        rows = [
-            [*normal, cross(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal)]
-            for contact, point, normal in zip(contacts, self.points, self.normals, strict=True)
-        ]
-        return inverted(rows)
+        contacts = zip(self.points, self.normals, self.ways, strict=True)
+        return inverted(
+            [[*normal, cross(point, normal), dot(way, normal)] for point, normal, way in contacts]
+        )
 
-    def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
-        """A number for each peg, from a row of the inverse."""
-        return row
+    @property
+    def responses(self) -> list[list[arb]]:
+        """Force of each peg per unit of the load (g_x, g_y, moment), in three rows; see ``inverse``."""
+        return [] if self.inverse is None else self.inverse[:3]
 
     def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
         """The component of forces along those of what moves: the part that locking it takes up."""
         own = self.forces
-        share = sum((a * b for a, b in zip(forces, own, strict=True)), arb(0)) / sum(
-            (a * a for a in own), arb(0)
-        )
+        share = inner(forces, own) / inner(own, own)
         return [share * force for force in own]
+
+
+def parts_spared(forces: Sequence[arb]) -> arb:
+    """The relative error to which forces and figures of the file agree with the derived ones.
+
+    An error of the pose moves a fixture by as many times more as its forces exceed the clamping force, and
+    its forces by that factor again.
+    """
+    amplification = largest(forces)
+    return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
+
+
+def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:
+    """Scalar product of two rows."""
+    return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))
 
 
 def inverted(rows: list[list[arb]]) -> list[list[arb]] | None:
@@ -279,8 +293,10 @@ def closure_findings(
     slack_words : what is wrong where the clamping force is none.
     """
     vector, spanned = balance.vector, span(balance.vector, wrench_length)
-    words = f"the contacts do not hold the part: their wrenches span only {number(spanned)}"
-    yield from rule(spanned - LEAST_SPAN, words, words)
+    yield from rule(
+        spanned - LEAST_SPAN,
+        f"the contacts do not hold the part: their wrenches span only {number(spanned)}",
+    )
     total = sum(vector, arb(0))
     if not (total > 0 or total < 0):
         opposed = any(entry > 0 for entry in vector) and any(entry < 0 for entry in vector)
@@ -316,14 +332,14 @@ def wrench_radius(
     for corners in combinations(range(len(wrenches)), 3):
         a, b, c = (wrenches[k] for k in corners)
         across = vector_product(difference(b, a), difference(c, a))
-        size = root(scalar(across, across))
+        size = root(inner(across, across))
         if size < FLAT or not size > 0:
             continue
         others = (wrench for k, wrench in enumerate(wrenches) if k not in corners)
-        sides = [scalar(across, difference(wrench, a)) / size for wrench in others]
+        sides = [inner(across, difference(wrench, a)) / size for wrench in others]
         if any(side > FLAT for side in sides) and any(side < -FLAT for side in sides):
             continue
-        height = abs(scalar(across, a)) / size
+        height = abs(inner(across, a)) / size
         sure = all(side > -FLAT for side in sides) or all(side < FLAT for side in sides)
         found = height if nearest is None else nearest.min(height)
         nearest = found if sure or nearest is None else found.union(nearest)
@@ -340,43 +356,19 @@ def difference(a: Wrench, b: Wrench) -> Wrench:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-def scalar(a: Wrench, b: Wrench) -> arb:
-    """Scalar product in space."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
 def every_outline(workpiece: Workpiece) -> BallOutline:
     """The outline of a workpiece at the precision in force, with the faces of all outlines in its tables."""
     whole = BallOutline.of(workpiece)
     if not workpiece.outlines:
         return whole
-    first, own, known = len(whole.segments), dict[str, BallOutline](), list[tuple[Workpiece, BallOutline]]()
-    for role, part in workpiece.outlines:
-        same = next((outline for one, outline in known if one == part), None)
-        if same is None:
-            known.append((part, same := BallOutline.of(part, first)))
-            first += len(same.segments)
-        own[role] = same
+    own = {"": whole, **{role: BallOutline.of(*workpiece.outline_of(role)) for role, _ in workpiece.outlines}}
     tables: dict[str, Any] = {
-        name: {face: value for one in (whole, *own.values()) for face, value in getattr(one, name).items()}
-        for name in ("faces", "others", "smooth", "turns", "neighbours")
+        name: {face: value for one in own.values() for face, value in getattr(one, name).items()}
+        for name in ("faces", "others", "neighbours", "turns")
     }
     return evolve(whole, **tables, own=own)
 
 
 def met_by(outline: BallOutline, carrier: str) -> BallOutline:
     """What the pegs of a carrier of a name keep from; a clamp's name ends with its direction."""
-    if not outline.own:
-        return outline
-    role = carrier.split(" ")[0]
-    return outline.own[role] if role in outline.own else alone(outline)
-
-
-def alone(outline: BallOutline) -> BallOutline:
-    """The outline without the faces of others."""
-    count = len(outline.segments)
-    tables: dict[str, Any] = {
-        name: {face: value for face, value in getattr(outline, name).items() if face < count}
-        for name in ("faces", "others", "smooth", "turns", "neighbours")
-    }
-    return evolve(outline, **tables, own={})
+    return outline.own.get(carrier.split(" ")[0], outline.own[""]) if outline.own else outline

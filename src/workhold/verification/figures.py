@@ -16,7 +16,7 @@ scale. The figures are those of ``statics.quality``, of which nothing is used.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import permutations, product
 
 from attrs import field, frozen
@@ -36,24 +36,32 @@ from workhold.verification.ball_geometry import (
     exact_point,
     largest,
     least,
+    minus,
     norm,
     root,
 )
-from workhold.verification.contacts import Balance, BallContact, BallPose, every_outline, wrench_radius
+from workhold.verification.contacts import (
+    Balance,
+    BallContact,
+    BallPose,
+    every_outline,
+    parts_spared,
+    wrench_radius,
+)
 from workhold.verification.force_walk import ForceWalk, force_walk_of
 from workhold.verification.judging import main_direction, penalty, tilt, warnings
 from workhold.verification.seat import SeatBalance
 from workhold.verification.tolerances import (
-    FIGURE_AGREEMENT,
     FILLED,
     HAIR,
-    ROUNDING,
     SAME_END,
     TANGENT,
+    Finding,
+    written,
 )
-from workhold.verification.touching import Barrier, barriers, edge_distances, end_distance, length_of
+from workhold.verification.touching import Barrier, barriers, edge_distances, length_of
 
-__all__ = ["COUNTS", "RANGES", "Measure", "box_center", "figure_missing", "parts_spared"]
+__all__ = ["Measure", "figure_missing", "written_numbers"]
 
 # Figures of which any number in a range may be right.
 COUNTS = ("warnings", "penalty")
@@ -172,8 +180,7 @@ class Measure:
         out = {"closure_margin": balance.margin, "clamp_amplification": largest(balance.forces)}
         if isinstance(balance, SeatBalance):
             out["clamp_freedom"] = balance.ratio.freedom
-        inverse = balance.inverse(contacts, pose)
-        if inverse is None:
+        if balance.inverse is None:
             # The pose is not known well enough for any figure but those of the forces.
             return out
         pegs = [
@@ -186,16 +193,16 @@ class Measure:
         if radius is not None:
             out["wrench_radius"] = radius
         out |= {
-            "location_error": self.location_error(inverse, faces),
+            "location_error": self.location_error(balance.inverse, faces),
             "end_distance": least([self.end_distance(*peg) for peg in pegs]),
             "edge_distance": least([arb(self.wrench_length), *edges]),
             "tilt": tilt(pose, self.direction),
             "smallest_face": least([contact.size for contact in contacts]),
         }
         if self.loads or self.walk is not None:
-            out["load_reaction"] = self.load_reaction(inverse, balance)
-            out["jaw_force_needed"] = self.jaw_force_needed(inverse, balance)
-        part = parts_spared(balance)
+            out["load_reaction"] = self.load_reaction(balance)
+            out["jaw_force_needed"] = self.jaw_force_needed(balance)
+        part = parts_spared(balance.forces)
         out["warnings"] = warnings(out, edges, self.peg + self.face, self.jaw_force, part)
         out["penalty"] = penalty(out, self.peg + self.face, self.diameter, part)
         return out
@@ -209,8 +216,13 @@ class Measure:
         return self.beside[key]
 
     def end_distance(self, contact: BallContact, face: int, center: Point) -> arb:
-        """Distance in mm of a peg on a face from the nearer end of its contact feature."""
-        return end_distance(contact.side, contact.radius, self.barriers(contact, face), center)
+        """Distance in mm of a peg on a face from the nearer end of its contact feature.
+
+        A whole circle has no end; half its circumference counts.
+        """
+        side, radius = contact.side, contact.radius
+        ends = edge_distances(side, radius, self.barriers(contact, face), center, (False, False))
+        return arb.pi() * side.reach(radius) if isinstance(side, ArcSide) and side.whole else least(ends)
 
     def edge_distance(self, contact: BallContact, face: int, center: Point) -> arb | None:
         """Distance in mm of a peg on a face from the nearer edge of its contact feature; None for no edge.
@@ -238,13 +250,13 @@ class Measure:
             return None
         return near if near is far else near.union(arb(self.wrench_length) if far is None else far)
 
-    def jaw_force_needed(self, inverse: Sequence[Sequence[arb]], balance: Balance | SeatBalance) -> arb:
+    def jaw_force_needed(self, balance: Balance | SeatBalance) -> arb:
         """Jaw force in N above which no peg of a screw vise lets go, and never less than 0.
 
         Let f0 balance a load while the jaw keeps its force, and let P project on the forces of the jaw, or of
         both clamps. Locking leaves f0 - P f0, so the figure is the largest of ((P f0)_i - f0_i) / h_i.
         """
-        most, rows = arb(0), [balance.of_all(row) for row in inverse[:3]]
+        most, rows = arb(0), balance.responses
         pairs = list(zip(map(balance.kept_by_closing, rows), rows, strict=True))
         for i, force in enumerate(balance.forces):
             most = self.under_loads(most, *((kept[i] - row[i]) / force for kept, row in pairs))
@@ -291,14 +303,14 @@ class Measure:
                         most = most.max(moved_arc(arc, x, y, t, most))
         return most
 
-    def load_reaction(self, inverse: Sequence[Sequence[arb]], balance: Balance | SeatBalance) -> arb:
+    def load_reaction(self, balance: Balance | SeatBalance) -> arb:
         """Largest peg force in N under some load, with the least clamping that leaves no force negative.
 
         Forces that balance a load are f0 + k lambda. The least k without a negative one is the largest
         -f0_i / lambda_i. So peg j presses with the largest over i of f0_j - f0_i lambda_j / lambda_i. This is
         linear in the load's direction for each i.
         """
-        most, rows = arb(0), [balance.of_all(row) for row in inverse[:3]]
+        most, rows = arb(0), balance.responses
         for i, j in permutations(range(len(balance.shares)), 2):
             ratio = balance.shares[j] / balance.shares[i]
             most = self.under_loads(most, *(row[j] - ratio * row[i] for row in rows))
@@ -326,8 +338,8 @@ def hull(points: Sequence[Point]) -> list[Point]:
         first = len(chain)
         for point in run:
             while len(chain) - first >= 2:
-                (ax, ay), (bx, by) = chain[-2:]
-                if not cross((bx - ax, by - ay), (point[0] - bx, point[1] - by)) < 0:
+                before, last = chain[-2:]
+                if not cross(minus(last, before), minus(point, last)) < 0:
                     break
                 chain.pop()
             chain.append(point)
@@ -346,7 +358,23 @@ def figure_missing(fixture: Fixture, query: Query) -> str:
     return ""
 
 
-def parts_spared(balance: Balance | SeatBalance) -> arb:
-    """The relative error to which forces and figures of the file agree with the derived ones."""
-    amplification = largest(balance.forces)
-    return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
+def written_numbers(
+    fixture: Fixture, names: Sequence[str], balance: Balance | SeatBalance, figures: Mapping[str, arb]
+) -> Iterator[Finding]:
+    """Whether the forces of pegs of some names and the figures of quality of the file are the derived ones.
+
+    The file's numbers were computed in double precision from a rounded pose. A derived end distance is a
+    range where the clearance passes slowly through zero, and so is a count beside the edge of what it counts.
+    Any number in the range is right.
+    """
+    part = parts_spared(balance.forces)
+    for name, peg, force in zip(names, fixture.pegs, balance.forces, strict=True):
+        yield from written(f"the force of {name}", peg.force, force, part * abs(force))
+    for key, derived in figures.items():
+        if key in fixture.quality:
+            if key in COUNTS and not fixture.quality[key].is_integer():
+                yield Finding(
+                    True, f"its {key} is {fixture.quality[key]:.12g} in the file, which is no whole number"
+                )
+            spare = part * abs(derived) + (2 * derived.rad() if key in RANGES else 0)
+            yield from written(f"its {key.replace('_', ' ')}", fixture.quality[key], derived, spare)

@@ -10,13 +10,15 @@ value are left. On an arc of the radius r every direction's value has a second d
 in the angle, u being the size of the coefficients of the force there: the place's and the direction's own
 derivatives are at most r and 1. So V is at most M w^2 / 8 above the greater of its values at the ends of a
 stretch of the angle w. Stretches are halved until that says enough. Numbers are doubles: the rounding and the
-uncertainty of the coefficients are added to the result.
+uncertainty of the coefficients are added to the result. The forces that a file states are held to these.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from math import pi
+from typing import Any
 
 import numpy as np
 from attrs import frozen
@@ -24,10 +26,16 @@ from flint import arb
 from numpy.typing import NDArray
 
 from workhold.model.cutting_forces import CuttingForces
+from workhold.model.fixture import Fixture
 from workhold.model.program import Program
-from workhold.verification.tool_walk import ToolWalk, walk_of
+from workhold.model.query import Query
+from workhold.verification.contacts import Balance, parts_spared
+from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.seat import SeatBalance
+from workhold.verification.tolerances import Finding, written
+from workhold.verification.tool_walk import ToolWalk, element_name, walk_of
 
-__all__ = ["ForceWalk", "force_walk_of"]
+__all__ = ["ForceWalk", "force_walk_of", "program_force_findings"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -175,3 +183,102 @@ class ForceWalk:
 def force_walk_of(program: Program) -> ForceWalk | None:
     """The walk along a program with its forces; None where it has none."""
     return None if program.forces is None else ForceWalk.of(program, program.forces)
+
+
+KEYS = ("jaw", "contact", "jaw_force", "room")
+ASKED = ("force", "line", "tool", "element")
+# Coefficients of the load (g_x, g_y, moment), and of the jaw force.
+Row = tuple[arb, arb, arb]
+
+
+def program_force_findings(
+    fixture: Fixture,
+    query: Query,
+    hardware: ToolkitRules,
+    balance: Balance | SeatBalance,
+) -> Iterator[Finding]:
+    """What is wrong with the forces of the program that a file states of a fixture."""
+    said, walk = fixture.asking, None if query.program is None else force_walk_of(query.program)
+    if walk is None or said is None:
+        if said is not None:
+            yield Finding(True, "the forces of its program are given, and the program has none")
+        return
+    if fault := fault_of_form(said):
+        yield Finding(True, f"the forces of its program {fault}")
+        return
+    if balance.inverse is None:
+        return
+    locked = [
+        [a - k for a, k in zip(row, balance.kept_by_closing(row), strict=True)] for row in balance.responses
+    ]
+    each: list[Row] = [(x, y, m) for x, y, m in zip(*locked, strict=True)]
+    asked: list[Row] = [
+        (-x / force, -y / force, -m / force) for (x, y, m), force in zip(each, balance.forces, strict=True)
+    ]
+    spare = parts_spared(balance.forces)
+    names = [element_name(peg, hardware) for peg in fixture.pegs]
+    need = most(walk.worst(*row) for row in asked)
+    yield from written("the jaw force of its program", said["jaw"]["force"], need, spare * abs(need))
+    force = need if query.jaw_force is None else arb(query.jaw_force)
+    yield from written("the jaw force stated with it", said["jaw_force"], force, spare * abs(force))
+    if (said["room"] is None) != (query.jaw_force is None):
+        yield Finding(True, "the room of its jaw force is given without one, or missing with one")
+    elif said["room"] is not None:
+        yield from written("the room of its jaw force", said["room"], force - need, spare * abs(need))
+    share = [force * own for own in balance.forces]
+    total = most(walk.worst(*row) + own for row, own in zip(each, share, strict=True))
+    yield from written("the largest force of a contact", said["contact"]["force"], total, spare * abs(total))
+    none = [arb(0)] * len(names)
+    for key, functions, own, worst in (("jaw", asked, none, need), ("contact", each, share, total)):
+        yield from place_findings(said[key], walk, names, functions, own, worst, spare)
+
+
+def fault_of_form(said: Any) -> str:
+    """What an entry lacks, behind "the forces of its program"; empty where it lacks nothing."""
+    if not isinstance(said, dict) or any(key not in said for key in KEYS):
+        return f"do not have {', '.join(KEYS)}"
+    if any(not isinstance(said[key], dict) or any(one not in said[key] for one in ASKED) for key in KEYS[:2]):
+        return f"do not say {', '.join(ASKED)}"
+    numbers = [said["jaw"]["force"], said["contact"]["force"], said["jaw_force"]]
+    numbers += [] if said["room"] is None else [said["room"]]
+    if any(isinstance(one, bool) or not isinstance(one, int | float) for one in numbers):
+        return "are no numbers"
+    return ""
+
+
+def place_findings(
+    said: dict[str, Any],
+    walk: ForceWalk,
+    names: Sequence[str],
+    functions: Sequence[Row],
+    own: Sequence[arb],
+    worst: arb,
+    spare: arb,
+) -> Iterator[Finding]:
+    """Whether a line, a tool and a contact are those of the worst value.
+
+    Parameters
+    ----------
+    functions, own : of each contact, what the load does to it, and what it has without.
+    """
+    if said["line"] is None:
+        return
+    there = most(
+        walk.worst(*row, 0.0, said["line"], said["tool"]) + held
+        for name, row, held in zip(names, functions, own, strict=True)
+        if name == said["element"]
+    )
+    if there < worst - spare * (1 + abs(worst)):
+        yield Finding(
+            True,
+            f"T{said['tool']} in line {said['line']} is not where the program asks most of the "
+            f"{said['element']}",
+        )
+
+
+def most(values: Iterator[arb]) -> arb:
+    """The largest of some numbers, 0 or more."""
+    out = arb(0)
+    for value in values:
+        out = out.max(value)
+    return out

@@ -72,12 +72,10 @@ def main_direction(faces: Sequence[Side]) -> arb:
     )
     places, sums = [angle for angle, _ in around], [0.0, *accumulate(length for _, length in around)]
 
-    def total(angle: float) -> float:
-        return (
-            sums[bisect_right(places, angle + SQUARE_TILT)] - sums[bisect_left(places, angle - SQUARE_TILT)]
-        )
-
-    totals = [total(angle) for angle in rough]
+    totals = [
+        sums[bisect_right(places, angle + SQUARE_TILT)] - sums[bisect_left(places, angle - SQUARE_TILT)]
+        for angle in rough
+    ]
     rivals = [k for k, sum_ in enumerate(totals) if sum_ >= MAIN_DIRECTION * max(totals)]
     first = max(rivals, key=lambda k: round(lengths[k], 9))
     if any(abs((rough[k] - rough[first] + 45.0) % 90.0 - 45.0) >= 2 * SQUARE_TILT for k in rivals):
@@ -94,11 +92,6 @@ def tilt(pose: BallPose, direction: arb) -> arb:
     return off if within < -HAIR else arb(0) if within > HAIR else off.union(arb(0))
 
 
-def counted(low: int, high: int) -> arb:
-    """A count between two whole numbers."""
-    return arb(low).union(arb(high)) if low < high else arb(low)
-
-
 def over(value: arb, limit: arb | float, part: arb) -> tuple[int, int]:
     """Whether a value with a relative error, and a hair, is above a limit: at least and at most, 0 or 1."""
     spare = HAIR + part * abs(value)
@@ -107,8 +100,9 @@ def over(value: arb, limit: arb | float, part: arb) -> tuple[int, int]:
 
 
 def within_sum(pairs: Sequence[tuple[int, int]]) -> arb:
-    """The count of several things."""
-    return counted(sum(low for low, _ in pairs), sum(high for _, high in pairs))
+    """The count of several things, each between two whole numbers."""
+    low, high = (arb(sum(ends)) for ends in zip(*pairs, strict=True))
+    return low.union(high) if low < high else low
 
 
 def warnings(
@@ -228,7 +222,7 @@ def ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Ran
             # Nothing has no digits.
             yield 0.0, 0.0
         else:
-            yield two_digits(value - spare - HAIR), two_digits(value + spare + HAIR)
+            yield float(f"{value - spare - HAIR:.1e}"), float(f"{value + spare + HAIR:.1e}")
 
 
 def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
@@ -295,11 +289,6 @@ def unfit(fixture: Fixture, off: float) -> Range:
     beyond = max(UNFIT_CLOSURE - margin, error - UNFIT_LOCATION_ERROR * off)
     spare = HAIR + DIGITS * error
     return float(beyond > spare), float(beyond >= -spare)
-
-
-def two_digits(value: float) -> float:
-    """A number to two significant digits."""
-    return float(f"{value:.1e}")
 
 
 def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool | None:

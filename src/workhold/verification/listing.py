@@ -39,14 +39,10 @@ from workhold.verification.rules.hardware import ToolkitRules
 
 __all__ = [
     "Claim",
-    "Columns",
-    "FixturesInColumns",
     "Listing",
     "claim_of",
-    "columns_of",
     "listing_of",
     "read_listing",
-    "with_claims",
 ]
 
 
@@ -105,19 +101,6 @@ BLOCK = 1 << 14
 LARGEST = 1e300
 # Decimals of an angle in degrees.
 DECIMALS = 10
-
-
-def columns_of(path: Path) -> tuple[str, Columns]:
-    """Head and columns of a file, all of which is read once to compare its checksums.
-
-    Raises
-    ------
-    InputError
-        When it is damaged.
-    OSError
-        When it cannot be read.
-    """
-    return mapped_archive(path, columns_said, HEAD, whole=True)
 
 
 @frozen(eq=False)
@@ -288,10 +271,10 @@ def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | Columns, list[A
     """
     try:
         if is_archive(path):
-            text, columns = columns_of(path)
+            # All of it is read once, to compare its checksums.
+            text, columns = mapped_archive(path, columns_said, HEAD, whole=True)
             data = head_value(text)
-            head = checked_head(data, path)
-            return head, columns, seatings_of(data, path)
+            return checked_head(data, path), columns, seatings_of(data, path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
     return *read_parts(path, fixtures_of), []

@@ -39,8 +39,9 @@ from workhold.verification.ball_geometry import (
     dot,
     exact_point,
     least,
+    loop_sides,
+    minus,
     turned,
-    vertex_side,
 )
 from workhold.verification.contacts import BallContact, BallPose, contact_system, every_outline
 from workhold.verification.rules.hardware import ToolkitRules
@@ -83,7 +84,7 @@ def certified_zero(system: System, start: Sequence[float]) -> list[arb] | None:
         inverse = jacobian.mid().inv().mid()
     except ZeroDivisionError:
         return None
-    around = arb_mat(size, 1, [arb(0, small) for _ in range(size)])
+    around = arb_mat(size, 1, [arb(0, small)] * size)
     box = middle + around
     identity = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
     image = middle - inverse * values + (identity - inverse * system(box)[1]) * around
@@ -91,15 +92,10 @@ def certified_zero(system: System, start: Sequence[float]) -> list[arb] | None:
     return image.entries() if all(outer.contains_interior(k) for outer, k in inner) else None
 
 
-def degree() -> arb:
-    """One degree in radians."""
-    return arb.pi() / 180
-
-
 def written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
     """All poses that agree with the file's, with travels in mm that agree with some likewise."""
     off = arb(0, AGREEMENT)
-    theta = (written.theta_deg + off) * degree()
+    theta = (written.theta_deg + off) * arb.pi() / 180
     return BallPose.of(theta, written.x + off, written.y + off, *(travel + off for travel in travels))
 
 
@@ -129,11 +125,11 @@ def proven_pose(
     findings: list[Finding] = []
     names = [("angle", "degrees"), ("x", "mm"), ("y", "mm"), *((name, "mm") for name in travels)]
     touched = f"all {'five' if len(contacts) > 4 else 'four'} faces"
-    for (name, unit), derived, value in zip(names, [zero[0] / degree(), *zero[1:]], values, strict=True):
+    found = [zero[0] * 180 / arb.pi(), *zero[1:]]
+    for (name, unit), derived, value in zip(names, found, values, strict=True):
         off = abs(derived - value)
-        if not off < AGREEMENT:
-            words = f"the {name} in the file is {number(off)} {unit} from the one that touches {touched}"
-            findings += rule(AGREEMENT - off, words, words)
+        words = f"the {name} in the file is {number(off)} {unit} from the one that touches {touched}"
+        findings += rule(AGREEMENT - off, words)
     return BallPose.of(*zero), findings
 
 
@@ -147,12 +143,9 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
             return f"{name} touches face {peg.face}, over which no upright face of the solid stands"
         if peg.face in avoided:
             return f"{name} touches face {peg.face}, which is to be avoided"
-        for zone in restrictions.zones:
-            if (
-                zone_distance(zone, in_part(fixture, peg))
-                < hardware.carriers[peg.carrier].body_radius - AGREEMENT
-            ):
-                return f"{name} stands over a keep-out zone"
+        reach = hardware.carriers[peg.carrier].body_radius - AGREEMENT
+        if any(zone_distance(zone, in_part(fixture, peg)) < reach for zone in restrictions.zones):
+            return f"{name} stands over a keep-out zone"
     theta = fixture.pose.theta_deg
     inside = (
         (theta - low + AGREEMENT) % 360.0 <= high - low + 2 * AGREEMENT for low, high in restrictions.angles
@@ -186,7 +179,8 @@ def broken_at_wall(fixture: Fixture, query: Query, hardware: ToolkitRules, avoid
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     for wall in hardware.walls:
         # Of a corner on a wall both faces are to be avoided.
-        for contact in hardware.contacts(fixture, every_outline(query.workpiece)):
+        contacts = hardware.contacts(fixture, every_outline(query.workpiece)) if avoided else []
+        for contact in contacts:
             if isinstance(contact, WallContact) and avoided.issuperset(contact.faces):
                 return (
                     f"the part lies on the {wall.noun} with face {contact.faces[0]}, which is to be avoided"
@@ -203,16 +197,10 @@ def in_part(fixture: Fixture, peg: Peg) -> Point:
     return turned(exact_point(peg.x - fixture.pose.x, peg.y - fixture.pose.y), cosine, -sine)
 
 
-def zone_sides(zone: Zone) -> list[Side]:
-    """The sides of a zone."""
-    vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in zone.loop]
-    return [vertex_side(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
-
-
 def zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
     """y in mm of the lowest point of a zone, once it is turned about the workpiece's origin."""
     heights = []
-    for side in zone_sides(zone):
+    for side in loop_sides(zone.loop):
         heights += [turned(point, cosine, sine)[1] for point in (side.start, side.end)]
         if isinstance(side, ArcSide) and not side.within((-sine, -cosine)) < 0:
             heights.append(turned(side.center, cosine, sine)[1] - side.radius)
@@ -221,7 +209,7 @@ def zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
 
 def zone_distance(zone: Zone, point: Point) -> arb:
     """Distance in mm from a point to a zone, 0 inside."""
-    sides = zone_sides(zone)
+    sides = loop_sides(zone.loop)
     nearest = least([side.distance(point) for side in sides])
     # On the chord of an arc, as at a circle's centre, turns are not certain. Nearer than any side all is
     # inside, or none is.
@@ -243,8 +231,7 @@ def turns_around(sides: Sequence[Side], point: Point) -> arb:
     """
     total = arb(0)
     for side in sides:
-        a = side.start[0] - point[0], side.start[1] - point[1]
-        b = side.end[0] - point[0], side.end[1] - point[1]
+        a, b = minus(side.start, point), minus(side.end, point)
         total += arb.atan2(cross(a, b), dot(a, b))
         if isinstance(side, ArcSide):
             beside = side.sign * cross(a, b) < 0

@@ -34,6 +34,11 @@ NUMBERS = {3: "three", 5: "five"}
 class UnusableError(Exception):
     """A value of the wrong kind; the message goes behind the place."""
 
+    @classmethod
+    def of(cls, item: Mapping[str, Any], key: str, kind: str) -> UnusableError:
+        """The error for a key of a JSON object that is missing, or not of a kind."""
+        return cls(f"{key} is {item[key]!r}, not {kind}" if key in item else f"the key {key} is missing")
+
 
 def fixtures_of(items: Iterable[Any], path: Path) -> list[Fixture]:
     """Fixtures from their JSON objects.
@@ -113,13 +118,10 @@ def directions_from(item: Mapping[str, Any]) -> list[str]:
     """The directions of the clamps of a fixture, none, one or two."""
     if "directions" in item:
         directions: Any = item["directions"]
-        if (
-            not isinstance(directions, list)
-            or len(directions) != 2
-            or not all(map(list(WAYS).__contains__, directions))
-        ):
+        is_two = isinstance(directions, list) and len(directions) == 2
+        if not is_two or any(one not in list(WAYS) for one in directions):
             raise UnusableError(f"its directions are not two of {', '.join(WAYS)}")
-        return directions
+        return list(directions)
     direction = None if item.get("direction") is None else word(item, "direction")
     if direction not in (None, *WAYS):
         raise UnusableError(f"its direction is not {' or '.join(WAYS)}")
@@ -147,9 +149,7 @@ def two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[floa
     """Two numbers of a JSON object; of those after the first ``least`` a null is infinite."""
     values = item.get(key)
     if not isinstance(values, list) or len(values) != 2:
-        raise UnusableError(
-            f"{key} is {values!r}, not two numbers" if key in item else f"the key {key} is missing"
-        )
+        raise UnusableError.of(item, key, "two numbers")
     one, other = (
         inf if place >= least and value is None else real({key: value}, key)
         for place, value in enumerate(values)
@@ -221,7 +221,7 @@ def word(item: Mapping[str, Any], key: str) -> str:
     """A word of a JSON object."""
     value = item.get(key)
     if not isinstance(value, str):
-        raise UnusableError(f"{key} is {value!r}, not a word" if key in item else f"the key {key} is missing")
+        raise UnusableError.of(item, key, "a word")
     return value
 
 
@@ -229,9 +229,7 @@ def real(item: Mapping[str, Any], key: str) -> float:
     """A finite number of a JSON object."""
     value: Any = item.get(key)
     if type(value) not in (int, float) or abs(value) > 1e300 or not isfinite(value):
-        raise UnusableError(
-            f"{key} is {value!r}, not a number" if key in item else f"the key {key} is missing"
-        )
+        raise UnusableError.of(item, key, "a number")
     return float(value)
 
 
@@ -239,7 +237,5 @@ def whole(item: Mapping[str, Any], key: str) -> int:
     """A whole number of a JSON object of a sensible size."""
     value = item.get(key)
     if type(value) is not int or abs(value) > 2**31:
-        raise UnusableError(
-            f"{key} is {value!r}, not a whole number" if key in item else f"the key {key} is missing"
-        )
+        raise UnusableError.of(item, key, "a whole number")
     return value

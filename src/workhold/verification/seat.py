@@ -21,12 +21,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import combinations
+from math import inf
 
 from attrs import frozen
-from flint import arb
+from flint import arb, arb_mat
 
+from workhold.model.fixture import Pair
 from workhold.verification.ball_geometry import Point, cross, dot, largest, least, turned
-from workhold.verification.contacts import BallContact, BallPose, inverted
+from workhold.verification.contacts import BallContact, BallPose, inner, inverted, parts_spared
 from workhold.verification.tolerances import (
     LEAST_PUSH,
     LEAST_SEAT,
@@ -36,6 +38,7 @@ from workhold.verification.tolerances import (
     Finding,
     number,
     rule,
+    written,
 )
 
 __all__ = [
@@ -87,20 +90,14 @@ class LocatorWrenches:
     @cached_property
     def determinant(self) -> arb:
         """The determinant of the three wrenches, in mm."""
-        return determinant(self.wrenches)
+        return arb_mat(self.wrenches).det()
 
     def taken(self, point: Point, normal: Point) -> tuple[arb, arb, arb]:
         """What the locators take up per unit of force on the face of a clamp at a point, by Cramer's rule."""
         own = (*normal, cross(point, normal))
-        replaced = (determinant([*self.wrenches[:k], own, *self.wrenches[k + 1 :]]) for k in range(LOCATORS))
-        a, b, c = (-value / self.determinant for value in replaced)
+        replaced = (arb_mat([*self.wrenches[:k], own, *self.wrenches[k + 1 :]]) for k in range(LOCATORS))
+        a, b, c = (-matrix.det() / self.determinant for matrix in replaced)
         return a, b, c
-
-
-def determinant(vectors: Sequence[tuple[arb, arb, arb]]) -> arb:
-    """The determinant of three vectors."""
-    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = vectors
-    return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
 
 
 @frozen(eq=False)
@@ -249,10 +246,10 @@ class SeatBalance:
     def push_findings(self, wrench_length: float) -> Iterator[Finding]:
         """Whether the locators fix the pose, both clamps push, and neither holds the part alone; L in mm."""
         spanned = abs(self.seat.determinant) / wrench_length
-        words = (
-            f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}"
+        yield from rule(
+            spanned - LEAST_SEAT,
+            f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}",
         )
-        yield from rule(spanned - LEAST_SEAT, words, words)
         for name, push in zip(CLAMPS, self.pushes, strict=True):
             yield from rule(
                 push.push - LEAST_PUSH,
@@ -310,13 +307,34 @@ class SeatBalance:
         """The closure margin."""
         return closure_margin(*self.pushes)
 
-    def inverse(self, contacts: Sequence[BallContact], pose: BallPose) -> list[list[arb]] | None:
+    @cached_property
+    def inverse(self) -> list[list[arb]] | None:
         """The inverse of the locators' wrenches, which alone fix the part; None where there may be none."""
         return inverted([list(wrench) for wrench in self.seat.wrenches])
 
-    def of_all(self, row: Sequence[arb]) -> Sequence[arb]:
-        """A row of the inverse, with 0 for each clamp, which keeps its force and takes nothing of a load."""
-        return [*row, arb(0), arb(0)]
+    @property
+    def responses(self) -> list[list[arb]]:
+        """Force of each peg per unit of a load, in three rows; a clamp keeps its own force."""
+        return [[*row, arb(0), arb(0)] for row in self.inverse or ()]
+
+    def number_findings(self, pair: Pair, names: Sequence[str]) -> Iterator[Finding]:
+        """Whether the reactions of pegs of some names and the ends of the ratio in the file are these."""
+        part = parts_spared(self.forces)
+        for name, said, derived in zip(names, pair.reactions, self.reactions, strict=True):
+            for clamp, value, force in zip(CLAMPS, said, derived, strict=True):
+                yield from written(
+                    f"the force of {name} under {clamp}", value, force, part * (1 + abs(force))
+                )
+        # The ends follow from reactions that are off.
+        (low, high), ratio = pair.ratio, self.ratio
+        least = [abs(b) for _, b in self.reactions[:LOCATORS] if abs(b) > NO_REACTION]
+        part *= 1 + largest([1 / b for b in least]) if least else arb(1)
+        yield from written("the lower end of its ratio", low, ratio.low, part * (1 + ratio.low))
+        if (ratio.high is None) != (high == inf):
+            end = "has none" if ratio.high is None else f"is {number(ratio.high)}"
+            yield Finding(True, f"the upper end of its ratio {end}, and the file says otherwise")
+        elif ratio.high is not None:
+            yield from written("the upper end of its ratio", high, ratio.high, part * (1 + ratio.high))
 
     def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
         """The part of some forces that lies in the plane of those with which both clamps press."""
@@ -325,8 +343,3 @@ class SeatBalance:
         fa, fb, area = inner(forces, ones), inner(forces, others), aa * bb - ab * ab
         u, v = (fa * bb - fb * ab) / area, (fb * aa - fa * ab) / area
         return [u * a + v * b for a, b in self.reactions]
-
-
-def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    """Scalar product of two rows."""
-    return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))

@@ -157,7 +157,7 @@ class SeatOnPlate:
     def pairs(self, directions: Sequence[str]) -> Iterator[SeatPair]:
         """The pairs of clamps in two directions that hold the part here, those in doubt with them."""
         one, other = directions
-        found = {direction: list(self.clamps(direction)) for direction in dict.fromkeys(directions)}
+        found = {direction: self.clamps(direction) for direction in dict.fromkeys(directions)}
         both = combinations(found[one], 2) if one == other else product(found[one], found[other])
         for first, second in both:
             ratio = ratio_of(first.push, second.push)
@@ -172,7 +172,7 @@ class SeatOnPlate:
                 freedom = arb(0, 90) if ratio is None else ratio.freedom
                 yield SeatPair(freedom, margin, sure and ratio is not None)
 
-    def clamps(self, direction: str) -> Iterator[SeatClamp]:
+    def clamps(self, direction: str) -> list[SeatClamp]:
         """All clamps that may push in a direction and do not hold the part alone."""
         found: list[SeatClamp] = []
         avoided = faces_avoided(self.query) | faces_without_band(self.query.workpiece)
@@ -184,7 +184,7 @@ class SeatOnPlate:
                     # A tip at a joint touches both faces, and counts on the first.
                     if not any(other.line == line and touch(other.tip, clamp.tip) for other in found):
                         found.append(clamp)
-        yield from found
+        return found
 
     def lines(self, side: Side, direction: str) -> list[int]:
         """Numbers of the rows, or columns, that fit on the plate and on which a tip may touch a side."""
@@ -243,15 +243,14 @@ class SeatOnPlate:
         if most > 0:
             return None
         sure = [touches is True, bool(push.push > LEAST_PUSH), bool(push.alone < NO_REACTION), bool(most < 0)]
-        for zone in self.query.restrictions.zones:
-            off = zone_distance(zone, contact.in_part(self.pose)) - contact.radius + HAIR
-            if off < 0:
-                return None
-            sure.append(bool(off > 0))
+        zones, place = self.query.restrictions.zones, contact.in_part(self.pose)
+        clear = [zone_distance(zone, place) - contact.radius + HAIR for zone in zones]
+        if any(off < 0 for off in clear):
+            return None
         passed = self.is_passed(contact, contact)
         if passed is False:
             return None
-        sure.append(passed is True)
+        sure += [passed is True, *(bool(off > 0) for off in clear)]
         holes = list(self.holes(contact, line, direction))
         return SeatClamp(direction, line, face, contact.hole, push, holes, all(sure)) if holes else None
 
@@ -355,19 +354,18 @@ def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -
         yield Finding(False, f"there are {len(sure)} to {len(pairs)} pairs of clamps at its seat")
     freedom, margin = balance.ratio.freedom, balance.margin
     freest = largest([freedom, *(one.freedom for one in sure)])
-    worse = freest - freedom - SAME_FREEDOM - HAIR
-    words = (
+    yield from rule(
+        -(freest - freedom - SAME_FREEDOM - HAIR),
         f"another pair of clamps at its seat has a freedom of {number(freest)} degrees, this one "
-        f"{number(freedom)}"
+        f"{number(freedom)}",
     )
-    yield from rule(-worse, words, words)
     rivals = [one.margin for one in sure if freest - one.freedom < SAME_FREEDOM - HAIR]
     widest = largest([margin, *rivals])
-    words = (
+    yield from rule(
+        2 * HAIR - (widest - margin),
         f"an equally free pair of clamps at its seat has a closure margin of {number(widest)}, this one "
-        f"{number(margin)}"
+        f"{number(margin)}",
     )
-    yield from rule(2 * HAIR - (widest - margin), words, words)
 
 
 def pairs_at(

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
-from workhold.verification.ball_geometry import BallOutline, Point, norm
+from workhold.verification.ball_geometry import BallOutline, Point, minus, norm
 from workhold.verification.contacts import BallPose
 from workhold.verification.listing import Claim
 from workhold.verification.rules.hardware import ToolkitRules
@@ -34,6 +34,7 @@ from workhold.verification.rules.travel import travelled
 from workhold.verification.seating_contacts import (
     PRESSES,
     FloatOutline,
+    PartPlacement,
     StatedContact,
     balances,
     stop_of,
@@ -158,28 +159,25 @@ class StatedSeating:
         apart = seat["jaw_separation"] - own["jaw_separation"]
         if abs(apart - seat["difference"]) > ROUNDED:
             yield "has a difference that is not that of the separations"
-        place = self.covers(seat)
-        if place is not None and place != seat["same_place"]:
+        place = PartPlacement.of(seat["pose"], seat["mirrored"])
+        covers = self.covers(place)
+        if covers is not None and covers != seat["same_place"]:
             yield "does not say rightly whether the part covers the same place"
         stop = self.fields["stop"]
         if stop is not None and self.clamping * (seat["jaw_separation"] - stop) < -ROUNDED:
             yield "lies beyond the stop"
         if seat["kind"] == "unsettled":
             return
-        yield from self.freedom_faults(seat["pose"], seat["mirrored"], apart)
-        contacts = [
-            self.touching(contact, seat["pose"], seat["mirrored"], apart) for contact in seat["contacts"]
-        ]
+        yield from self.freedom_faults(place, apart)
+        contacts = [self.touching(contact, place, apart) for contact in seat["contacts"]]
         yield from touching_faults(contacts, self.on_wall, self.judge.hardware.wall_noun)
         if self.kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
             yield f"is called {seat['kind']}, which its contacts are not"
         if seat["kind"] in STRICT and len(seat["forces"]) != len(contacts):
             yield "does not have a force for each contact"
-        elif seat["kind"] in STRICT and not self.balance(
-            contacts, seat["pose"], seat["mirrored"], seat["forces"]
-        ):
+        elif seat["kind"] in STRICT and not self.balance(contacts, place, seat["forces"]):
             yield "is no equilibrium of its forces"
-        elif seat["kind"] == "loose" and not self.can_balance(contacts, seat["pose"], seat["mirrored"]):
+        elif seat["kind"] == "loose" and not balances(self.wrenches(contacts, place), BALANCED):
             yield "is no equilibrium of its contacts"
 
     def is_own(self, contact: Mapping[str, int]) -> bool:
@@ -187,11 +185,13 @@ class StatedSeating:
         peg = self.fixture.pegs[contact["peg"]]
         if contact["peg"] not in self.on_wall:
             return contact.get("face") == peg.face
-        (x, y), (u, v) = (
-            self.touching(contact, vars_of(self.fixture), False, 0.0).at,
-            self.ends[contact["peg"]],
-        )
-        return bool(norm((x - u, y - v)) < AGREEMENT)
+        touched = self.touching(contact, self.lying, 0.0).at
+        return bool(norm(minus(touched, self.ends[contact["peg"]])) < AGREEMENT)
+
+    @cached_property
+    def lying(self) -> PartPlacement:
+        """How the part lies in the fixture."""
+        return PartPlacement(self.fixture.pose.theta_deg, self.fixture.pose.x, self.fixture.pose.y)
 
     @cached_property
     def ends(self) -> list[Point]:
@@ -262,16 +262,16 @@ class StatedSeating:
         rise = top["jaw_separation"] - own["jaw_separation"]
         if abs(self.clamping * rise - opening) > ROUNDED:
             yield "the pass is not at the capture opening"
-        contacts = [self.touching(contact, top["pose"], False, rise) for contact in top["contacts"]]
+        there = PartPlacement.of(top["pose"])
+        contacts = [self.touching(contact, there, rise) for contact in top["contacts"]]
         if not 2 <= len(contacts) <= 3:
             yield "the pass does not have two or three contacts"
         faults = touching_faults(contacts, self.on_wall, self.judge.hardware.wall_noun)
         yield from (f"the pass {words}" for words in faults)
-        yield from (f"the pass {words}" for words in self.freedom_faults(top["pose"], False, rise))
-        if not self.can_balance(contacts, top["pose"], False):
+        yield from (f"the pass {words}" for words in self.freedom_faults(there, rise))
+        if not balances(self.wrenches(contacts, there), BALANCED):
             yield "the pass is no equilibrium of its contacts"
-        center = self.judge.query.workpiece.center
-        (x, y), (u, v) = (self.place(center, pose, False) for pose in (top["pose"], own["pose"]))
+        (x, y), (u, v) = (self.center(place) for place in (there, PartPlacement.of(own["pose"])))
         turn = (top["pose"]["theta_deg"] - own["pose"]["theta_deg"] + 180.0) % 360.0 - 180.0
         away = hypot(x - u, y - v) + 2.0 * self.judge.rough.arm * sin(abs(radians(turn)) / 2.0)
         if placing is not None and placing > away + AGREEMENT:
@@ -283,25 +283,26 @@ class StatedSeating:
 
     def friction_faults(self, stated: float, own: Mapping[str, Any]) -> Iterator[str]:
         """Whether the part can stick below a friction, or cannot just above."""
-        contacts = [self.touching(contact, own["pose"], False, 0.0) for contact in own["contacts"]]
+        place = PartPlacement.of(own["pose"])
+        contacts = [self.touching(contact, place, 0.0) for contact in own["contacts"]]
         low, high = stated * (1.0 - FRICTION), stated * (1.0 + FRICTION) + ROUNDED
-        if min(low, MOST_FRICTION) > ROUNDED and self.sticks(contacts, own["pose"], min(low, MOST_FRICTION)):
+        if min(low, MOST_FRICTION) > ROUNDED and self.sticks(contacts, place, min(low, MOST_FRICTION)):
             yield "the part can stick below the sticking friction"
-        if high < MOST_FRICTION and not self.sticks(contacts, own["pose"], high):
+        if high < MOST_FRICTION and not self.sticks(contacts, place, high):
             yield "the part cannot stick at the sticking friction"
 
-    def sticks(self, contacts: Sequence[StatedContact], pose: Mapping[str, float], friction: float) -> bool:
+    def sticks(self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float) -> bool:
         """Whether three of four contacts balance inside their cones."""
-        edges = np.hstack([self.wrenches(contacts, pose, False, sign * friction) for sign in (1.0, -1.0)])
+        edges = np.hstack([self.wrenches(contacts, place, sign * friction) for sign in (1.0, -1.0)])
         for three in combinations(range(4), 3):
             columns = [k + 4 * side for k in three for side in (0, 1)]
             if balances(edges[:, columns]):
                 return True
         return False
 
-    def place(self, point: Sequence[float], pose: Mapping[str, float], mirrored: bool) -> tuple[float, float]:
-        """Where a point of the part lies in a pose, in doubles."""
-        x, y = self.judge.rough.placed(np.array([point]), pose, mirrored)[0].tolist()
+    def center(self, place: PartPlacement) -> tuple[float, float]:
+        """Where the part's centre lies, in doubles."""
+        x, y = place.placed(np.array([self.judge.query.workpiece.center]))[0].tolist()
         return x, y
 
     def peg(self, number: int, apart: float) -> tuple[float, float]:
@@ -309,48 +310,37 @@ class StatedSeating:
         peg, by = self.fixture.pegs[number], apart * self.moving[number]
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
 
-    def freedom_faults(self, pose: Mapping[str, float], mirrored: bool, apart: float) -> Iterator[str]:
+    def freedom_faults(self, place: PartPlacement, apart: float) -> Iterator[str]:
         """A peg in the part, or the part in a wall."""
         numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
-        pegs, carriers = (
-            np.array([self.peg(number, apart) for number in numbers]),
-            self.judge.hardware.carriers,
-        )
+        pegs = np.array([self.peg(number, apart) for number in numbers])
+        carriers = self.judge.hardware.carriers
         radii = np.array([carriers[self.fixture.pegs[number].carrier].peg_radius for number in numbers])
-        if not self.judge.rough.is_free(pegs, radii - AGREEMENT, pose, mirrored):
+        if not self.judge.rough.is_free(pegs, radii - AGREEMENT, place):
             yield "has a peg in the part"
         for wall in self.judge.hardware.walls:
-            if self.judge.rough.lowest(pose, mirrored) < -AGREEMENT:
+            if self.judge.rough.lowest(place) < -AGREEMENT:
                 yield f"has the part in the {wall.noun}"
 
-    def covers(self, seat: Mapping[str, Any]) -> bool | None:
-        """Whether the part in a seat covers the place of its fixture; None where that is nearly so."""
-        away = self.judge.rough.farthest(seat["pose"], seat["mirrored"], vars_of(self.fixture))
-        return (
-            None
-            if SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE
-            else away < SAME_PLACE
-        )
+    def covers(self, place: PartPlacement) -> bool | None:
+        """Whether the part covers the place that it has in the fixture; None where that is nearly so."""
+        away = self.judge.rough.farthest(place, self.lying)
+        is_near = SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE
+        return None if is_near else away < SAME_PLACE
 
-    def touching(
-        self, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool, apart: float
-    ) -> StatedContact:
-        """A contact in a pose, in balls."""
+    def touching(self, contact: Mapping[str, int], place: PartPlacement, apart: float) -> StatedContact:
+        """A contact of the part as it lies, in balls."""
         number = contact["peg"]
         if number in self.on_wall:
-            return touching_wall(self.judge.outline, contact, pose, mirrored)
+            return touching_wall(self.judge.outline, contact, place)
         radius = self.judge.hardware.carriers[self.fixture.pegs[number].carrier].peg_radius
-        return touching_peg(self.judge.outline, contact, pose, mirrored, self.peg(number, apart), radius)
+        return touching_peg(self.judge.outline, contact, place, self.peg(number, apart), radius)
 
     def wrenches(
-        self,
-        contacts: Sequence[StatedContact],
-        pose: Mapping[str, float],
-        mirrored: bool,
-        friction: float = 0.0,
+        self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float = 0.0
     ) -> Array:
         """Wrenches (4, K) of contacts that press along normals and, by friction, along tangents."""
-        cx, cy = self.place(self.judge.query.workpiece.center, pose, mirrored)
+        cx, cy = self.center(place)
         columns = []
         for one in contacts:
             nx, ny = (float(part.mid()) for part in one.normal)
@@ -362,26 +352,11 @@ class StatedSeating:
         return np.array(columns).reshape(-1, 4).T
 
     def balance(
-        self,
-        contacts: Sequence[StatedContact],
-        pose: Mapping[str, float],
-        mirrored: bool,
-        forces: Sequence[float],
+        self, contacts: Sequence[StatedContact], place: PartPlacement, forces: Sequence[float]
     ) -> bool:
         """Whether forces balance, those of the pegs that move adding up to one."""
-        left = self.wrenches(contacts, pose, mirrored) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
+        left = self.wrenches(contacts, place) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
         return bool(np.abs(left).max() < BALANCED * (1.0 + sum(forces)) and min(forces) > -PRESSES)
-
-    def can_balance(
-        self, contacts: Sequence[StatedContact], pose: Mapping[str, float], mirrored: bool
-    ) -> bool:
-        """Whether some forces do."""
-        return balances(self.wrenches(contacts, pose, mirrored), BALANCED)
-
-
-def vars_of(fixture: Fixture) -> dict[str, float]:
-    """The pose of a fixture by its fields."""
-    return {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y}
 
 
 def agree(derived: float | None, written: float | None, spare: float = ROUNDED) -> bool:

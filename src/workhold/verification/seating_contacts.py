@@ -26,6 +26,7 @@ from workhold.verification.ball_geometry import (
     Point,
     Side,
     exact_point,
+    minus,
     norm,
     turned,
 )
@@ -34,6 +35,7 @@ from workhold.verification.tolerances import AGREEMENT
 __all__ = [
     "PRESSES",
     "FloatOutline",
+    "PartPlacement",
     "StatedContact",
     "balances",
     "stop_of",
@@ -44,6 +46,53 @@ __all__ = [
 
 # mm. A tip may be in a locator by this much: rounding.
 APART = 1e-6
+
+
+Array = NDArray[np.float64]
+
+
+@frozen
+class PartPlacement:
+    """How a part lies.
+
+    Parameters
+    ----------
+    theta_deg, x, y : its pose, in degrees and mm.
+    mirrored : whether it is turned over first, x to -x in its own frame.
+    """
+
+    theta_deg: float
+    x: float
+    y: float
+    mirrored: bool = False
+
+    @classmethod
+    def of(cls, pose: Mapping[str, float], mirrored: bool = False) -> PartPlacement:
+        """The placement of a pose by its fields."""
+        return cls(pose["theta_deg"], pose["x"], pose["y"], mirrored)
+
+    def turned(self, way: Point) -> Point:
+        """A vector of the part as it lies, in balls."""
+        sine, cosine = (arb(self.theta_deg) / 180).sin_cos_pi()
+        return turned((-way[0], way[1]) if self.mirrored else way, cosine, sine)
+
+    def own(self, way: Point) -> Point:
+        """A vector of the toolkit's frame as the part sees it, in balls."""
+        sine, cosine = (arb(self.theta_deg) / 180).sin_cos_pi()
+        x, y = turned(way, cosine, -sine)
+        return (-x, y) if self.mirrored else (x, y)
+
+    def placed(self, points: Array) -> Array:
+        """Points (N, 2) of the part as they lie, in doubles."""
+        c, s = cos(radians(self.theta_deg)), sin(radians(self.theta_deg))
+        x, y = points[:, 0] * (-1.0 if self.mirrored else 1.0), points[:, 1]
+        return np.stack([c * x - s * y + self.x, s * x + c * y + self.y], axis=1)
+
+    def local(self, points: Array) -> Array:
+        """Points (N, 2) of the toolkit's frame as the part sees them, in doubles."""
+        c, s = cos(radians(self.theta_deg)), sin(radians(self.theta_deg))
+        x, y = points[:, 0] - self.x, points[:, 1] - self.y
+        return np.stack([(c * x + s * y) * (-1.0 if self.mirrored else 1.0), c * y - s * x], axis=1)
 
 
 @frozen
@@ -66,52 +115,44 @@ class StatedContact:
     is_inside: bool
 
 
-def touching_wall(
-    outline: BallOutline, contact: Mapping[str, int], pose: Mapping[str, float], mirrored: bool
-) -> StatedContact:
+def touching_wall(outline: BallOutline, contact: Mapping[str, int], place: PartPlacement) -> StatedContact:
     """A contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc above it."""
     number, down, is_corner = contact["peg"], exact_point(0.0, -1.0), "corner" in contact
     side = outline.faces.get(contact["corner" if is_corner else "face"])
-    sine, cosine = (arb(pose["theta_deg"]) / 180).sin_cos_pi()
     if is_corner and side is not None:
         local, off = side.start, arb(0)
     elif isinstance(side, ArcSide) and side.sign > 0:
-        x, y = turned(down, cosine, -sine)
-        x = -x if mirrored else x
+        x, y = place.own(down)
         local = side.center[0] + side.radius * x, side.center[1] + side.radius * y
         off = side.distance(local)
     else:
-        return StatedContact(number, exact_point(0.0, 0.0), down, float("inf"), False)
-    x, y = turned((-local[0], local[1]) if mirrored else local, cosine, sine)
-    at = x + pose["x"], y + pose["y"]
+        return StatedContact(number, exact_point(0.0, 0.0), down, inf, False)
+    x, y = place.turned(local)
+    at = x + place.x, y + place.y
     return StatedContact(number, at, down, float(abs(at[1]).upper()), bool(off < AGREEMENT))
 
 
 def touching_peg(
     outline: BallOutline,
     contact: Mapping[str, int],
-    pose: Mapping[str, float],
-    mirrored: bool,
+    place: PartPlacement,
     center: tuple[float, float],
     radius: float,
 ) -> StatedContact:
     """A contact with a face or a corner of a round peg about a center, of a radius in mm."""
     number, (x, y), face = contact["peg"], center, contact.get("face")
-    sine, cosine = (arb(pose["theta_deg"]) / 180).sin_cos_pi()
-    local = turned(exact_point(x - pose["x"], y - pose["y"]), cosine, -sine)
-    local = (-local[0], local[1]) if mirrored else local
+    local = place.own(exact_point(x - place.x, y - place.y))
     side = outline.faces.get(contact["corner"] if face is None else face)
     if side is None:
-        return StatedContact(number, exact_point(x, y), exact_point(0.0, 0.0), float("inf"), False)
+        return StatedContact(number, exact_point(x, y), exact_point(0.0, 0.0), inf, False)
     if face is None:
-        way, inside = (local[0] - side.start[0], local[1] - side.start[1]), True
+        way, inside = minus(local, side.start), True
         off = abs(norm(way) - radius)
     else:
         way, off = side.outward(local), abs(side.gap(local) - radius)
         inside = bool(abs(side.distance(local) - radius) < AGREEMENT)
     size = norm(way)
-    normal = way[0] / size, way[1] / size
-    normal = turned((-normal[0], normal[1]) if mirrored else normal, cosine, sine)
+    normal = place.turned((way[0] / size, way[1] / size))
     at = arb(x) - radius * normal[0], arb(y) - radius * normal[1]
     return StatedContact(number, at, normal, float(off.upper()), inside)
 
@@ -163,7 +204,6 @@ def stop_of(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float |
     return None if least == -inf else least
 
 
-Array = NDArray[np.float64]
 # No unit. A force above minus this, per unit of clamping force, presses.
 PRESSES = 1e-9
 
@@ -242,26 +282,14 @@ class FloatOutline:
             np.array(lines).reshape(-1, 4), np.array(arcs).reshape(-1, 5), every, np.concatenate(edges), arm
         )
 
-    def placed(self, points: Array, pose: Mapping[str, float], mirrored: bool) -> Array:
-        """Points (N, 2) of the part as they lie in a pose, the part turned over or not."""
-        c, s = cos(radians(pose["theta_deg"])), sin(radians(pose["theta_deg"]))
-        x, y = points[:, 0] * (-1.0 if mirrored else 1.0), points[:, 1]
-        return np.stack([c * x - s * y + pose["x"], s * x + c * y + pose["y"]], axis=1)
-
-    def lowest(self, pose: Mapping[str, float], mirrored: bool) -> float:
-        """How high in mm the lowest point of the part is in a pose."""
-        turn = radians(pose["theta_deg"])
-        down = np.array([-sin(turn) * (-1.0 if mirrored else 1.0), -cos(turn)])
+    def lowest(self, place: PartPlacement) -> float:
+        """How high in mm the lowest point of the part is."""
+        turn = radians(place.theta_deg)
+        down = np.array([-sin(turn) * (-1.0 if place.mirrored else 1.0), -cos(turn)])
         x, y, radius, middle, half = self.arcs.T
         away = np.abs((np.arctan2(down[1], down[0]) - middle + pi) % (2.0 * pi) - pi)
         below = np.stack([x, y], axis=1)[away <= half] + radius[away <= half, None] * down
-        return float(self.placed(np.concatenate([self.points, below]), pose, mirrored)[:, 1].min())
-
-    def local(self, points: Array, pose: Mapping[str, float], mirrored: bool) -> Array:
-        """Points (N, 2) of the toolkit's frame as the part in a pose sees them."""
-        c, s = cos(radians(pose["theta_deg"])), sin(radians(pose["theta_deg"]))
-        x, y = points[:, 0] - pose["x"], points[:, 1] - pose["y"]
-        return np.stack([(c * x + s * y) * (-1.0 if mirrored else 1.0), c * y - s * x], axis=1)
+        return float(place.placed(np.concatenate([self.points, below]))[:, 1].min())
 
     def distances(self, points: Array) -> Array:
         """Distances (N,) of points from the outline."""
@@ -281,9 +309,9 @@ class FloatOutline:
             found = np.minimum(found, away)
         return found
 
-    def is_free(self, pegs: Array, radii: Array, pose: Mapping[str, float], mirrored: bool) -> bool:
+    def is_free(self, pegs: Array, radii: Array, place: PartPlacement) -> bool:
         """Whether no disc about centres (N, 2) of radii (N,) in mm is in the part or reaches into it."""
-        points = self.local(pegs, pose, mirrored)
+        points = place.local(pegs)
         return bool((self.distances(points) >= radii).all() and not self.holds(points).any())
 
     def holds(self, points: Array) -> NDArray[np.bool_]:
@@ -295,7 +323,6 @@ class FloatOutline:
         right = ax + (y - ay) / rise * (bx - ax) > x
         return np.asarray((crosses & right).sum(axis=1) % 2 == 1)
 
-    def farthest(self, pose: Mapping[str, float], mirrored: bool, other: Mapping[str, float]) -> float:
-        """How far in mm the outline in a pose is from that in another one, in which it is not turned over."""
-        there = self.local(self.placed(self.points, pose, mirrored), other, False)
-        return float(self.distances(there).max())
+    def farthest(self, one: PartPlacement, other: PartPlacement) -> float:
+        """How far in mm the outline as it lies in one way is from that in another."""
+        return float(self.distances(other.local(one.placed(self.points))).max())

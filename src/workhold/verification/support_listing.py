@@ -5,6 +5,8 @@ the room that the tip has. So the lesser of both, at the middle of a square cell
 Cells are divided until one has a place for the clamp, or none can have one. Faces are asked by their segments
 how large a disc lies on them.
 
+A hole or a place has a room: by how much, in mm, it keeps all its rules, negative where it breaks one.
+
 Glossary
 --------
 sure, possible : of a hole or a triple, that it keeps its rules by more than rounding, or breaks none by more.
@@ -13,13 +15,13 @@ sure, possible : of a hole or a triple, that it keeps its rules by more than rou
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from heapq import heappop, heappush
 from itertools import combinations, count, pairwise, product
 from math import atan2, ceil, floor, hypot, inf, pi, sqrt
-from typing import Protocol
 
 import numpy as np
-from attrs import define, field
+from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.fixels.toolkit import Toolkit
@@ -30,13 +32,10 @@ from workhold.model.query import Query
 from workhold.model.support_request import SupportRequest
 
 __all__ = [
-    "ClampCells",
     "Hole",
-    "area_center",
-    "band_faults",
-    "holes_near",
+    "SupportPlaces",
+    "inside_of",
     "missing_triples",
-    "opened_clear_of_blocked",
     "room_on",
 ]
 
@@ -51,46 +50,113 @@ MOST_NAMED = 3
 Loop = tuple[Segment, ...]
 # How far beside a segment a point is looked at, in mm.
 PROBE = 1e-4
-# Written heights agree with those of the solid to this, in mm.
-SAME_HEIGHT = 1e-6
 
 
-class Rules(Protocol):
-    """What decides over holes and places, as ``verification.supports`` derives it."""
+@frozen(eq=False)
+class SupportPlaces:
+    """Where supports and the tip of their clamp may stand.
+
+    Parameters
+    ----------
+    query, fixture, request : part and toolkit, the planar fixture, and what is asked of supports and clamp.
+    """
+
+    query: Query
+    fixture: Fixture
+    request: SupportRequest
+
+    @cached_property
+    def pegs(self) -> Array:
+        """Places (P, 2) of the pegs, and of the ends on a wall, in the part's coordinates."""
+        inverse = self.fixture.pose.inverse
+        return np.array([inverse.apply(peg.x, peg.y) for peg in self.fixture.pegs])
 
     @property
-    def query(self) -> Query:
-        """Part and toolkit."""
-        ...
-
-    @property
-    def fixture(self) -> Fixture:
-        """The planar fixture."""
-        ...
-
-    @property
-    def request(self) -> SupportRequest:
-        """What was asked of supports and clamp."""
-        ...
+    def toolkit(self) -> Toolkit:
+        """What holds the part."""
+        return self.query.toolkit
 
     def point_of(self, hole: Hole) -> tuple[float, float]:
         """The place of a hole in the part's coordinates."""
-        ...
+        name, column, row = hole
+        place = self.toolkit.carrier(name).place(column, row, self.fixture.jaw_separation)
+        x, y = self.fixture.pose.inverse.apply(*place)
+        return float(x), float(y)
 
     def pad_room(self, hole: Hole) -> float:
         """The slack in mm by which a pad keeps its rules."""
-        ...
+        asked, point = self.request, self.point_of(hole)
+        loops = self.query.workpiece.loops if asked.bottom is None else asked.bottom
+        room = room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
+        room -= asked.pad_radius + asked.pad_margin
+        for peg, place in zip(self.fixture.pegs, self.pegs, strict=True):
+            if peg in self.fixture.placed:
+                body = self.toolkit.carrier(peg.carrier).body_radius
+                room = min(room, hypot(point[0] - place[0], point[1] - place[1]) - asked.pad_radius - body)
+        return room
 
     def tip_room(self, point: tuple[float, float]) -> float:
         """The slack in mm by which the tip keeps the rules of the top."""
-        ...
+        asked = self.request
+        loops = self.query.workpiece.loops if asked.top is None else asked.top
+        room = room_on(loops, [zone.loop for zone in asked.top_zones], point) - asked.tip_radius
+        if asked.reach is not None:
+            x, y = self.fixture.pose.apply(*point)
+            rings = [
+                min(hypot(x - a, y - b) - low, high - hypot(x - a, y - b)) for a, b, low, high in asked.reach
+            ]
+            room = min(room, max(rings, default=-inf))
+        return room
 
-    def travel(self, holes: list[Hole]) -> tuple[bool, float | None]:
+    def travel(self, holes: Sequence[Hole]) -> tuple[bool, float | None]:
         """Whether pegs and supports fit their plates, and the opening of what moves."""
-        ...
+        toolkit, plates = self.toolkit, self.toolkit.plates
+        taken: dict[str, list[tuple[int, int]]] = {plate.name: [] for plate in plates}
+        for name, column, row in holes:
+            taken[name].append((column, row))
+        lines = {
+            name: ([column for column, _ in places], [row for _, row in places])
+            for name, places in taken.items()
+        }
+        for peg in self.fixture.pegs:
+            carrier = toolkit.carrier(peg.carrier)
+            for axis, number in enumerate((peg.column, peg.row)):
+                if carrier.stands_on in lines and carrier.counted[axis]:
+                    lines[carrier.stands_on][axis].append(number)
+        fits = True
+        every_row = [row for one in lines.values() for row in one[1]]
+        for plate in plates:
+            columns = lines[plate.name][0]
+            if plate.columns is not None and columns:
+                fits &= max(columns) - min(columns) < plate.columns
+            if plate.rows is not None:
+                fits &= max(every_row) - min(every_row) < plate.rows
+            if toolkit.wall is not None and plate.travel is None:
+                fits &= min(every_row) >= 0 and (plate.rows is None or max(every_row) < plate.rows)
+        moving = next((plate for plate in plates if plate.travel is not None), None)
+        if moving is None or moving.travel is None:
+            return fits, None
+        axis = 0 if len(plates) > 1 else 1
+        step, own = moving.pitch[axis], lines[moving.name][axis]
+        opened = self.fixture.jaw_separation + min(own) * step
+        count = (moving.columns, moving.rows)[axis]
+        room = inf if count is None else count - 1 - max(own) + min(own)
+        for plate in plates:
+            if plate is not moving and plate.name != moving.name:
+                other = lines[plate.name][axis]
+                opened += ((plate.columns or 0) - 1 - max(other)) * step
+                room += (plate.columns or 0) - 1 - max(other) + min(other)
+        most = moving.travel.most
+        back = 0 if most is None else max(ceil((opened - most - 1e-9) / step), 0)
+        opened -= back * step
+        fits = fits and back <= room and opened >= moving.travel.least - AGREEMENT
+        if fits and len(plates) > 1 and any(plate.blocked for plate in plates):
+            clear = opened_clear_of_blocked(toolkit, self.fixture, [*holes])
+            return clear is not None, clear
+        return fits, opened
 
 
-def holes_near(rules: Rules) -> Iterator[Hole]:
+def holes_near(rules: SupportPlaces) -> Iterator[Hole]:
     """All holes of the plates under the box of the face that supports may touch."""
     loops = rules.query.workpiece.loops if rules.request.bottom is None else rules.request.bottom
     boxes = np.array([bounding_box(one) for loop in loops for one in loop_segments(np.asarray(loop))])
@@ -114,7 +180,7 @@ class ClampCells:
     size : of the first cell, in mm.
     """
 
-    rules: Rules
+    rules: SupportPlaces
     low: Array
     size: float
     slack: dict[tuple[int, int, int], float] = field(factory=dict, init=False)
@@ -164,7 +230,9 @@ def large_enough(points: Array, inside: float) -> NDArray[np.bool_]:
     return np.asarray(twice > (inside + AGREEMENT) * around)
 
 
-def missing_triples(rules: Rules, listed: Iterable[Iterable[Hole]], positions: int) -> tuple[list[str], int]:
+def missing_triples(
+    rules: SupportPlaces, listed: Iterable[Iterable[Hole]], positions: int
+) -> tuple[list[str], int]:
     """What speaks against a list that says it is complete, and for how many triples nobody can say.
 
     Parameters
@@ -192,7 +260,9 @@ def missing_triples(rules: Rules, listed: Iterable[Iterable[Hole]], positions: i
     return faults, undecided
 
 
-def possible_triples(rules: Rules, holes: list[Hole]) -> Iterator[tuple[list[Hole], Array, ClampCells]]:
+def possible_triples(
+    rules: SupportPlaces, holes: list[Hole]
+) -> Iterator[tuple[list[Hole], Array, ClampCells]]:
     """Triples of holes, with corners, of which each two fit the plates and the triangle is large enough."""
     if len(holes) < 3:
         return
@@ -302,42 +372,3 @@ def faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
         elif number == 0 or sizes[number] > 0:
             faces.append([(loop, 1)])
     return faces
-
-
-def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
-    """The centre of area of the part, from integrals along its border (Gauss-Legendre along each segment)."""
-    nodes, weights = np.polynomial.legendre.leggauss(24)
-    area = first = second = 0.0
-    for one in (segment for loop in loops for segment in loop):
-        if isinstance(one, Arc):
-            low = one.mid_angle - one.sign * one.half_sweep
-            sweep = 2 * one.sign * one.half_sweep
-            angle = low + sweep * (nodes + 1) / 2
-            x, y = one.center[0] + one.radius * np.cos(angle), one.center[1] + one.radius * np.sin(angle)
-            dx, dy = -one.radius * np.sin(angle) * sweep / 2, one.radius * np.cos(angle) * sweep / 2
-        else:
-            (x0, y0), (x1, y1) = one.start, one.end
-            x, y = x0 + (x1 - x0) * (nodes + 1) / 2, y0 + (y1 - y0) * (nodes + 1) / 2
-            dx, dy = np.full(len(nodes), (x1 - x0) / 2), np.full(len(nodes), (y1 - y0) / 2)
-        area += float(weights @ (x * dy))
-        first += float(weights @ (x * x * dy)) / 2
-        second -= float(weights @ (y * y * dx)) / 2
-    return first / area, second / area
-
-
-def band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iterator[str]:
-    """A fault for each peg whose band is not that of the faces of the solid that it touches."""
-    bands, by_segment = request.bands, query.workpiece.numbered.bands
-    if query.workpiece.solid is None or bands is None:
-        return
-    for peg, written in zip(fixture.pegs, bands, strict=True):
-        faces = [by_segment[number] for number in (peg.face, peg.beside) if number is not None]
-        known = [band for band in faces if band is not None]
-        own = [min(low for low, _ in known), max(high for _, high in known)] if known else []
-        own = [min(height, request.thickness) for height in own]
-        if len(own) != len(written or ()) or any(
-            abs(a - b) > SAME_HEIGHT for a, b in zip(written or (), own, strict=True)
-        ):
-            has = "no band" if written is None else f"the band {written[0]:g} to {written[1]:g}"
-            solids = f"{own[0]:g} to {own[1]:g}" if own else "none"
-            yield f"a peg on face {peg.face} has {has}, and that of the solid is {solids}"

@@ -11,12 +11,13 @@ Of a complete list all other triples are tried too (``verification.support_listi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from itertools import product
-from math import ceil, hypot, inf, pi, radians
+from math import inf, pi, radians
 from pathlib import Path
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
@@ -28,7 +29,7 @@ from workhold.files.supports_forms import (
     read_supports_part,
 )
 from workhold.fixels.contacts import CLAMP_TIP
-from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Arc, Segment
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
@@ -36,19 +37,19 @@ from workhold.verification.reading import fixtures_of
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.support_listing import (
     Hole,
-    area_center,
-    band_faults,
+    SupportPlaces,
+    inside_of,
     missing_triples,
-    opened_clear_of_blocked,
-    room_on,
 )
 from workhold.verification.verify import Judge, Unproven, Verification
 
-__all__ = ["SupportsJudge", "is_supports_file", "verify_supports_file"]
+__all__ = ["SupportsJudge", "band_faults", "is_supports_file", "verify_supports_file"]
 
 Array = NDArray[np.float64]
 # mm, or parts of a figure: what is written agrees with what is derived to this.
 AGREEMENT = 1e-6
+# Written heights agree with those of the solid to this, in mm.
+SAME_HEIGHT = 1e-6
 # Points tried along each side of a triangle.
 GRID = 12
 
@@ -63,123 +64,33 @@ def is_supports_file(path: str | Path) -> bool:
 
 
 @frozen(eq=False)
-class SupportsJudge:
+class SupportsJudge(SupportPlaces):
     """Judges triples over one planar fixture.
 
     Parameters
     ----------
-    query, fixture, request, loads, jaw_force : what a file says.
+    loads, jaw_force : what a file says, in N.
     """
 
-    query: Query
-    fixture: Fixture
-    request: SupportRequest
     loads: tuple[SpatialLoad, ...]
     jaw_force: float
-    pegs: Array = field(init=False)
-    pushes: Array = field(init=False)
 
-    def __attrs_post_init__(self) -> None:
-        inverse = self.fixture.pose.inverse
-        pegs = np.array([inverse.apply(peg.x, peg.y) for peg in self.fixture.pegs])
+    @cached_property
+    def pushes(self) -> Array:
+        """Unit vectors (P, 2) along which they push the part."""
         # Of a file without its solid, segments that continue one line are one face.
         faces = self.query.workpiece.numbered.faces
         segments = {number: face.segment for face in faces for number in face.segments}
         pushes = []
-        for peg, place in zip(self.fixture.pegs, pegs, strict=True):
+        for peg, (x, y) in zip(self.fixture.pegs, self.pegs.tolist(), strict=True):
             if peg not in self.fixture.placed:
                 # A wall runs along x with the part above it.
-                pushes.append(inverse.turn(0.0, 1.0))
+                pushes.append(self.fixture.pose.inverse.turn(0.0, 1.0))
                 continue
             face = segments[peg.face]
-            x, y = face.normal(face.parameter((float(place[0]), float(place[1]))))
-            pushes.append((-x, -y))
-        object.__setattr__(self, "pegs", pegs)
-        object.__setattr__(self, "pushes", np.array(pushes))
-
-    @property
-    def toolkit(self) -> Toolkit:
-        """What holds the part."""
-        return self.query.toolkit
-
-    def point_of(self, hole: tuple[str, int, int]) -> tuple[float, float]:
-        """The place of a hole in the part's coordinates."""
-        name, column, row = hole
-        place = self.toolkit.carrier(name).place(column, row, self.fixture.jaw_separation)
-        x, y = self.fixture.pose.inverse.apply(*place)
-        return float(x), float(y)
-
-    def pad_room(self, hole: tuple[str, int, int]) -> float:
-        """The slack in mm by which a pad keeps its rules."""
-        asked, point = self.request, self.point_of(hole)
-        loops = self.query.workpiece.loops if asked.bottom is None else asked.bottom
-        room = room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
-        room -= asked.pad_radius + asked.pad_margin
-        for peg, place in zip(self.fixture.pegs, self.pegs, strict=True):
-            if peg in self.fixture.placed:
-                body = self.toolkit.carrier(peg.carrier).body_radius
-                room = min(room, hypot(point[0] - place[0], point[1] - place[1]) - asked.pad_radius - body)
-        return room
-
-    def tip_room(self, point: tuple[float, float]) -> float:
-        """The slack in mm by which the tip keeps the rules of the top."""
-        asked = self.request
-        loops = self.query.workpiece.loops if asked.top is None else asked.top
-        room = room_on(loops, [zone.loop for zone in asked.top_zones], point) - asked.tip_radius
-        if asked.reach is not None:
-            x, y = self.fixture.pose.apply(*point)
-            rings = [
-                min(hypot(x - a, y - b) - low, high - hypot(x - a, y - b)) for a, b, low, high in asked.reach
-            ]
-            room = min(room, max(rings, default=-inf))
-        return room
-
-    def travel(self, holes: Sequence[tuple[str, int, int]]) -> tuple[bool, float | None]:
-        """Whether pegs and supports fit their plates, and the opening of what moves."""
-        toolkit, plates = self.toolkit, self.toolkit.plates
-        taken: dict[str, list[tuple[int, int]]] = {plate.name: [] for plate in plates}
-        for name, column, row in holes:
-            taken[name].append((column, row))
-        lines = {
-            name: ([column for column, _ in places], [row for _, row in places])
-            for name, places in taken.items()
-        }
-        for peg in self.fixture.pegs:
-            carrier = toolkit.carrier(peg.carrier)
-            for axis, number in enumerate((peg.column, peg.row)):
-                if carrier.stands_on in lines and carrier.counted[axis]:
-                    lines[carrier.stands_on][axis].append(number)
-        fits = True
-        every_row = [row for one in lines.values() for row in one[1]]
-        for plate in plates:
-            columns = lines[plate.name][0]
-            if plate.columns is not None and columns:
-                fits &= max(columns) - min(columns) < plate.columns
-            if plate.rows is not None:
-                fits &= max(every_row) - min(every_row) < plate.rows
-            if toolkit.wall is not None and plate.travel is None:
-                fits &= min(every_row) >= 0 and (plate.rows is None or max(every_row) < plate.rows)
-        moving = next((plate for plate in plates if plate.travel is not None), None)
-        if moving is None or moving.travel is None:
-            return fits, None
-        axis = 0 if len(plates) > 1 else 1
-        step, own = moving.pitch[axis], lines[moving.name][axis]
-        opened = self.fixture.jaw_separation + min(own) * step
-        count = (moving.columns, moving.rows)[axis]
-        room = inf if count is None else count - 1 - max(own) + min(own)
-        for plate in plates:
-            if plate is not moving and plate.name != moving.name:
-                other = lines[plate.name][axis]
-                opened += ((plate.columns or 0) - 1 - max(other)) * step
-                room += (plate.columns or 0) - 1 - max(other) + min(other)
-        most = moving.travel.most
-        back = 0 if most is None else max(ceil((opened - most - 1e-9) / step), 0)
-        opened -= back * step
-        fits = fits and back <= room and opened >= moving.travel.least - AGREEMENT
-        if fits and len(plates) > 1 and any(plate.blocked for plate in plates):
-            clear = opened_clear_of_blocked(toolkit, self.fixture, [*holes])
-            return clear is not None, clear
-        return fits, opened
+            nx, ny = face.normal(face.parameter((x, y)))
+            pushes.append((-nx, -ny))
+        return np.array(pushes)
 
     def balances(self, supports: Array) -> Array:
         """Support forces (K, 3, 7) per unit of each right side of the balance, at the corners of the bands.
@@ -288,7 +199,7 @@ class SupportsJudge:
             if at is None or len(at) != 2:
                 yield f"the {name} clamp point is missing"
                 continue
-            shares, arm = self.shares(solved, at), self.side(supports, at)
+            shares, arm = self.shares(solved, at), inside_of(supports, *at)
             if self.tip_room((at[0], at[1])) < -AGREEMENT or arm < self.request.inside - AGREEMENT:
                 yield f"the clamp may not stand at the {name} point"
                 continue
@@ -302,16 +213,16 @@ class SupportsJudge:
             if self.loads:
                 known["support_force"] = max(0.0, float((need * shares + most).max()))
             yield from other_figures(name, figures, known)
-        center = self.side(supports, area_center(self.query.workpiece.loop_segments))
+        center = inside_of(supports, *area_center(self.query.workpiece.loop_segments))
         if differs(part.standing, center):
             yield f"standing is {center:.9g}, and is written as {part.standing:.9g}"
         points = [point for load in self.loads for point in load.points]
         if points:
-            over = max(-self.side(supports, point) for point in points)
+            over = max(-inside_of(supports, *point) for point in points)
             if differs(part.overhang, over):
                 yield f"overhang is {over:.9g}, and is written as {part.overhang}"
         if self.tip_room((part.arm_at[0], part.arm_at[1])) < -AGREEMENT or differs(
-            part.arm, self.side(supports, part.arm_at)
+            part.arm, inside_of(supports, *part.arm_at)
         ):
             yield f"the arm is not {part.arm:.9g}"
         yield from self.better_places(part, supports, solved, least)
@@ -322,7 +233,7 @@ class SupportsJudge:
             if i + j >= GRID:
                 continue
             x, y = np.array([i, j, GRID - i - j]) / GRID @ supports
-            arm = self.side(supports, (x, y))
+            arm = inside_of(supports, x, y)
             if arm < self.request.inside:
                 continue
             need = max(0.0, float((-least / self.shares(solved, (x, y))).max()))
@@ -330,15 +241,6 @@ class SupportsJudge:
             if (cheaper or arm > part.arm * (1 + AGREEMENT) + AGREEMENT) and self.tip_room((x, y)) > 0:
                 yield f"the clamp is better placed at ({x:.6g}, {y:.6g})"
                 return
-
-    def side(self, supports: Array, point: Sequence[float]) -> float:
-        """How far a point is inside the triangle, in mm."""
-        p, (a, b, c) = np.asarray(point, float), supports
-        turn = np.sign((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
-        ways = ((a, b), (b, c), (c, a))
-        return float(
-            min(turn * ((f - e)[0] * (p - e)[1] - (f - e)[1] * (p - e)[0]) / hypot(*(f - e)) for e, f in ways)
-        )
 
 
 def differs(written: float | None, own: float) -> bool:
@@ -351,6 +253,45 @@ def other_figures(name: str, figures: ClampFiguresPart, known: dict[str, float])
     for key, value in known.items():
         if differs(getattr(figures, key), value):
             yield f"{key} at the {name} point is {value:.9g}, and is written as {getattr(figures, key)}"
+
+
+def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
+    """The centre of area of the part, from integrals along its border (Gauss-Legendre along each segment)."""
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    area = first = second = 0.0
+    for one in (segment for loop in loops for segment in loop):
+        if isinstance(one, Arc):
+            low = one.mid_angle - one.sign * one.half_sweep
+            sweep = 2 * one.sign * one.half_sweep
+            angle = low + sweep * (nodes + 1) / 2
+            x, y = one.center[0] + one.radius * np.cos(angle), one.center[1] + one.radius * np.sin(angle)
+            dx, dy = -one.radius * np.sin(angle) * sweep / 2, one.radius * np.cos(angle) * sweep / 2
+        else:
+            (x0, y0), (x1, y1) = one.start, one.end
+            x, y = x0 + (x1 - x0) * (nodes + 1) / 2, y0 + (y1 - y0) * (nodes + 1) / 2
+            dx, dy = np.full(len(nodes), (x1 - x0) / 2), np.full(len(nodes), (y1 - y0) / 2)
+        area += float(weights @ (x * dy))
+        first += float(weights @ (x * x * dy)) / 2
+        second -= float(weights @ (y * y * dx)) / 2
+    return first / area, second / area
+
+
+def band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iterator[str]:
+    """A fault for each peg whose band is not that of the faces of the solid that it touches."""
+    bands, by_segment = request.bands, query.workpiece.numbered.bands
+    if query.workpiece.solid is None or bands is None:
+        return
+    for peg, written in zip(fixture.pegs, bands, strict=True):
+        faces = [by_segment[number] for number in (peg.face, peg.beside) if number is not None]
+        known = [band for band in faces if band is not None]
+        own = [min(low for low, _ in known), max(high for _, high in known)] if known else []
+        own = [min(height, request.thickness) for height in own]
+        if len(own) != len(written or ()) or any(
+            abs(a - b) > SAME_HEIGHT for a, b in zip(written or (), own, strict=True)
+        ):
+            has = "no band" if written is None else f"the band {written[0]:g} to {written[1]:g}"
+            solids = f"{own[0]:g} to {own[1]:g}" if own else "none"
+            yield f"a peg on face {peg.face} has {has}, and that of the solid is {solids}"
 
 
 def verify_supports_file(path: str | Path) -> Verification:

@@ -32,7 +32,7 @@ from collections.abc import Iterator
 from attrs import frozen
 from flint import arb
 
-__all__ = ["Finding", "number", "rule"]
+__all__ = ["Finding", "number", "rule", "written"]
 
 # mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at
 # most this; a contact may lie so far past a tangent joint, and lies more than this inside any other end.
@@ -111,11 +111,21 @@ class Finding:
     reason: str
 
 
-def rule(slack: arb, broken: str, edge: str) -> Iterator[Finding]:
-    """Nothing when a slack is certainly positive, otherwise the finding in the words for its case."""
+def rule(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
+    """Nothing when a slack is certainly positive, otherwise the finding in the words for its case.
+
+    Where there are none for the edge, those for a broken rule do.
+    """
     if not slack > 0:
         definite = bool(slack < 0)
-        yield Finding(definite, broken if definite else edge)
+        yield Finding(definite, broken if definite or not edge else edge)
+
+
+def written(name: str, value: float, derived: arb, spare: arb) -> Iterator[Finding]:
+    """Whether a number of the file is the derived one, to a hair and what may be spared besides."""
+    slack = HAIR + spare - abs(derived - value)
+    if not slack > 0:
+        yield from rule(slack, f"{name} is {value:.12g} in the file and comes to {float(derived.mid()):.12g}")
 
 
 def number(value: arb) -> str:

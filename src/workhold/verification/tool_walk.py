@@ -30,7 +30,7 @@ from workhold.model.query import Query
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.tolerances import AGREEMENT
 
-__all__ = ["Element", "Nearest", "ToolWalk", "program_fault", "walk_of"]
+__all__ = ["Element", "ToolWalk", "element_name", "elements_of", "program_fault", "walk_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -183,10 +183,7 @@ class ToolWalk:
         waiting, low, moves = self.stretches(), inf, self.program.moves
         if line is not None:
             waiting = waiting.take((moves.line[waiting.move] == line) & (moves.tool[waiting.move] == tool))
-        start, rise = (
-            self.program.moves.start[:, 2],
-            (self.program.moves.end - self.program.moves.start)[:, 2],
-        )
+        start, rise = moves.start[:, 2], (moves.end - moves.start)[:, 2]
         for _ in range(MOST_HALVINGS):
             move = waiting.move
             one, other = (start[move] + t * rise[move] + waiting.under for t in (waiting.first, waiting.last))
@@ -235,13 +232,9 @@ class ToolWalk:
         move = stretches.move
         one, other = self.at(move, stretches.first), self.at(move, stretches.last)
         sweep = np.abs(self.sweep[move]) * (stretches.last - stretches.first)
-        sagitta = np.where(
-            self.is_round[move],
-            np.where(sweep < np.pi, 2.0 * self.radius[move] * np.sin(np.minimum(sweep, np.pi) / 4) ** 2, inf),
-            0.0,
-        )
+        bow = 2.0 * np.sin(np.minimum(sweep, np.pi) / 4) ** 2
         # An arc of half a turn or more is within its radius of its chord's ends.
-        sagitta = np.where(np.isinf(sagitta), 2.0 * self.radius[move], sagitta)
+        sagitta = np.where(self.is_round[move], np.where(sweep < np.pi, bow, 2.0) * self.radius[move], 0.0)
         off = self.chord_distances(one, other, element)
         for k in np.flatnonzero(boxed).tolist():
             start, end = self.program.moves.start[move[k], :2], self.program.moves.end[move[k], :2]
@@ -308,7 +301,8 @@ def program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str
         return "" if said is None else f"its {PROGRAM_FIGURE.words} is given, and there is no program"
     program, height = query.passed
     walk, least = walk_of(program), Nearest(inf, inf, -1)
-    for element in elements_of(fixture, hardware, height):
+    elements = list(elements_of(fixture, hardware, height))
+    for element in elements:
         near = walk.nearest(element)
         if near.high < program.clearance - AGREEMENT:
             return (
@@ -323,7 +317,7 @@ def program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str
         )
     if said is not None and not least.low - AGREEMENT <= said <= least.high + AGREEMENT:
         return f"its {PROGRAM_FIGURE.words} is {said:.12g} in the file and comes to {least.high:.9g}"
-    return passing_fault(fixture, walk, list(elements_of(fixture, hardware, height)), least)
+    return passing_fault(fixture, walk, elements, least)
 
 
 def passing_fault(fixture: Fixture, walk: ToolWalk, elements: Sequence[Element], least: Nearest) -> str:
@@ -362,13 +356,20 @@ def elements_of(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iter
         yield Element(f"the {wall.noun}", wall.noun, seen(0.0, 0.0), up, 0.0, top, True, low)
     for name, peg in hardware.placed(fixture):
         carrier = hardware.carriers[peg.carrier]
-        place = f"{carrier.peg} {peg.hole}" if carrier.has_lattice else peg.hole
         low, top = carrier.heights or (0.0, height)
         ends = seen(peg.x, peg.y), seen(*behind(peg, carrier))
-        whole = Element(name, place, *ends, carrier.peg_radius, top, low=low)
+        whole = Element(name, element_name(peg, hardware), *ends, carrier.peg_radius, top, low=low)
         yield whole
         if carrier.body_radius > carrier.peg_radius:
             yield evolve(whole, radius=carrier.body_radius, height=0.0, low=0.0)
+
+
+def element_name(peg: Peg, hardware: ToolkitRules) -> str:
+    """What files call a place at which something holds the part: by its hole, or by the wall."""
+    carrier = hardware.carriers[peg.carrier]
+    if carrier in hardware.walls:
+        return carrier.noun
+    return f"{carrier.peg} {peg.hole}" if carrier.has_lattice else peg.hole
 
 
 def behind(peg: Peg, carrier: Carrier) -> tuple[float, float]:

@@ -58,7 +58,6 @@ __all__ = [
     "Barrier",
     "barriers",
     "edge_distances",
-    "end_distance",
     "length_of",
     "on_circle",
     "on_line",
@@ -68,25 +67,14 @@ __all__ = [
 Barrier = tuple[arb, arb]
 
 
-def end_distance(side: Side, radius: arb, beside: Iterable[Barrier], center: Point) -> arb:
-    """Distance in mm along its contact feature from a peg's centre to the nearer end.
-
-    A whole circle has no end; half its circumference counts. Nothing trims it: whatever else there is lies
-    beyond the material behind it.
-    """
-    if isinstance(side, ArcSide) and side.whole:
-        return arb.pi() * side.reach(radius)
-    slacks = side.slacks(center, radius)
-    place, nearest = slacks[0], slacks[0].min(slacks[1])
-    for low, high in beside:
-        nearest = nearest.min(low - place if place.mid() < low.mid() else place - high)
-    return nearest
-
-
 def edge_distances(
     side: Side, radius: arb, beside: Iterable[Barrier], center: Point, smooth: tuple[bool, bool]
 ) -> list[arb]:
-    """Distances to every barrier and to those ends of the side that ``smooth`` calls no tangent joints."""
+    """Distances in mm along its contact feature from a peg's centre to every barrier and to ends of the side.
+
+    The ends are those that ``smooth`` calls no tangent joints. A whole circle has none. Nothing trims it:
+    whatever else there is lies beyond the material behind it.
+    """
     if isinstance(side, ArcSide) and side.whole:
         return []
     slacks = side.slacks(center, radius)

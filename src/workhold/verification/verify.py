@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from math import isnan
 from pathlib import Path
 from typing import Literal
@@ -19,7 +20,8 @@ from workhold.model.workpiece import Workpiece
 from workhold.verification.account import account_faults, seat_faults
 from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, norm
 from workhold.verification.contacts import Balance, BallContact, BallPose, closure_findings, met_by
-from workhold.verification.figures import Measure, figure_missing
+from workhold.verification.figures import Measure, figure_missing, written_numbers
+from workhold.verification.force_walk import program_force_findings
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, listing_of, read_listing
 from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
@@ -31,7 +33,6 @@ from workhold.verification.seating import SeatingJudge
 from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
 from workhold.verification.tool_walk import program_fault
 from workhold.verification.touching import touching_findings
-from workhold.verification.written_numbers import pair_numbers, program_force_findings, written_numbers
 
 __all__ = [
     "Judge",
@@ -86,21 +87,26 @@ class Judge:
     Parameters
     ----------
     query : what is asked.
-    hardware : the rules of its toolkit.
-    diameter, wrench_length : of the part, and L of the wrenches, half that of the peg-centre locus; in mm.
+    measures : by the bits of a precision, as far as known.
     """
 
     query: Query
     measures: dict[int, Measure] = field(factory=dict, init=False)
-    hardware: ToolkitRules = field(init=False)
-    diameter: float = field(init=False)
-    wrench_length: float = field(init=False)
 
-    def __attrs_post_init__(self) -> None:
-        hardware, diameter = ToolkitRules.of(self.query), outline_diameter(self.query.workpiece)
-        object.__setattr__(self, "hardware", hardware)
-        object.__setattr__(self, "diameter", diameter)
-        object.__setattr__(self, "wrench_length", diameter / 2 + hardware.largest_radius)
+    @cached_property
+    def hardware(self) -> ToolkitRules:
+        """The rules of the toolkit."""
+        return ToolkitRules.of(self.query)
+
+    @cached_property
+    def diameter(self) -> float:
+        """The diameter of the part, in mm."""
+        return outline_diameter(self.query.workpiece)
+
+    @cached_property
+    def wrench_length(self) -> float:
+        """L of the wrenches in mm, half the diameter of the peg-centre locus."""
+        return self.diameter / 2 + self.hardware.largest_radius
 
     def rule_on(self, fixture: Fixture) -> Ruling:
         """The ruling on one fixture, at the lowest precision that decides it."""
@@ -175,7 +181,7 @@ class Judge:
         yield from loose
         if loose:
             return
-        yield from pair_numbers(pair, hardware.names, seat)
+        yield from seat.number_findings(pair, hardware.names)
         yield from self.figure_findings(fixture, contacts, pose, measure, seat)
         if is_proven:
             standing = SeatOnPlate.of(fixture, contacts, pose, self.query, hardware, measure.outline)
@@ -193,7 +199,7 @@ class Judge:
         names, faces = self.hardware.names, self.hardware.shared_faces(fixture, contacts)
         figures = measure.figures(contacts, faces, pose, balance)
         yield from written_numbers(fixture, names, balance, figures)
-        yield from program_force_findings(fixture, self.query, self.hardware, contacts, pose, balance)
+        yield from program_force_findings(fixture, self.query, self.hardware, balance)
 
 
 def flat_findings(
@@ -210,8 +216,8 @@ def flat_findings(
         elif not isnan(peg.flat_deg) and isinstance(contact.side, LineSide):
             sine, cosine = ((arb(peg.flat_deg) - arb(fixture.pose.theta_deg)) / 180).sin_cos_pi()
             off = norm((cosine + contact.side.normal[0], sine + contact.side.normal[1]))
-            words = f"the flat of {name} looks {number(off * 180 / arb.pi())} degrees past its face"
-            yield from rule(AGREEMENT - off, words, words)
+            past = number(off * 180 / arb.pi())
+            yield from rule(AGREEMENT - off, f"the flat of {name} looks {past} degrees past its face")
 
 
 # What a result in any toolkit alone cannot show, beside what ``not_shown`` says.
@@ -342,28 +348,19 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         rulings.append((verdict, reason))
         doubtful += verdict != "proven"
         progress((place + 1) / len(everything), doubtful)
-    unproven = [
-        Unproven(place, verdict, reason)
-        for place, (verdict, reason) in enumerate(rulings)
-        if verdict != "proven"
-    ]
-    tally = {
-        name: sum(verdict == name for verdict, _ in rulings) for name in ("proven", "refuted", "undecided")
-    }
+    unproven = [Unproven(place, *ruling) for place, ruling in enumerate(rulings) if ruling[0] != "proven"]
+    refuted = {one.index for one in unproven if one.verdict == "refuted"}
     faults = [
         *listing.faults,
         *account_faults(listing, turning.order),
         *order_faults(everything, query, judge.hardware),
+        *pattern_faults(everything, query),
+        *seat_faults(listing, refuted),
     ]
-    faults += pattern_faults(everything, query)
-    faults += seat_faults(
-        listing, {place for place, (verdict, _) in enumerate(rulings) if verdict == "refuted"}
-    )
-    if not tally["refuted"] and turning.is_certain:
+    if not refuted and turning.is_certain:
         faults += distinct_faults(listing, seen)
-    return Verification(
-        tally["proven"], tally["refuted"], tally["undecided"], tuple(unproven), tuple(faults), bits
-    )
+    tally = len(rulings) - len(unproven), len(refuted), len(unproven) - len(refuted)
+    return Verification(*tally, tuple(unproven), tuple(faults), bits)
 
 
 def distinct_faults(listing: Listing, seen: KnownFixtures) -> Iterator[str]:

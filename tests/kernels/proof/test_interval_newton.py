@@ -13,8 +13,8 @@ from workhold.kernels.contact.record import LARGEST_RADIUS, PSI, RECORD_LENGTH, 
 from workhold.kernels.proof import interval_newton as in_doubles
 from workhold.kernels.proof import variation as variations
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, OPEN
+from workhold.proof.ball_contacts import CandidateBox
 from workhold.proof.interval_newton import solutions_in
-from workhold.proof.narrowing import CandidateBox
 
 LENGTH = 20.0
 LIMITS = Limits(-100.0, 0.0, LENGTH, 9.0, 1.0, 0.0, 0.0)

@@ -129,10 +129,9 @@ class ToolkitRules:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The pegs of a fixture, in their order, as messages call them."""
-        total, seen, out = Counter[str](), Counter[str](), list[str]()
-        for carrier, count in self.groups:
-            total[carrier.peg] += count
-        for carrier in (carrier for carrier, count in self.groups for _ in range(count)):
+        carriers = [carrier for carrier, count in self.groups for _ in range(count)]
+        total, seen, out = Counter(carrier.peg for carrier in carriers), Counter[str](), list[str]()
+        for carrier in carriers:
             seen[carrier.peg] += 1
             number = seen[carrier.peg]
             if carrier.is_wall:
@@ -250,14 +249,13 @@ class ToolkitRules:
 
     def contacts(self, fixture: Fixture, outline: BallOutline) -> list[BallContact]:
         """The contacts of all pegs of a fixture, in their order; each of two clamps has its own travel."""
-        sides = [outline.faces[peg.face] for peg in fixture.pegs]
-        ends: Iterator[WallContact] = iter(())
-        if self.walls:
-            on_wall = [side for peg, side in zip(fixture.pegs, sides, strict=True) if peg.is_on_wall]
-            ends = iter(wall_contacts(on_wall, met_by(outline, WALL), BallPose.written(fixture.pose)))
-        out: list[BallContact] = []
-        for peg, side in zip(fixture.pegs, sides, strict=True):
-            out.append(next(ends) if peg.is_on_wall else self.contact(peg, side))
+        on_wall = [outline.faces[peg.face] for peg in fixture.pegs if peg.is_on_wall]
+        written = BallPose.written(fixture.pose)
+        ends = iter(wall_contacts(on_wall, met_by(outline, WALL), written) if on_wall else ())
+        out = [
+            next(ends) if peg.is_on_wall else self.contact(peg, outline.faces[peg.face])
+            for peg in fixture.pegs
+        ]
         if fixture.pair is not None:
             out[-1] = evolve(out[-1], travel=1)
         return out
@@ -289,9 +287,8 @@ class ToolkitRules:
                 "xy", (peg.x, peg.y), self.place(peg), self.way(peg), strict=True
             ):
                 off = abs(hole + arb(travel) * way - written)
-                if not off < AGREEMENT:
-                    words = f"the {axis} of {name} is {number(off)} mm from that of its {noun}"
-                    yield from rule(AGREEMENT - off, words, words)
+                words = f"the {axis} of {name} is {number(off)} mm from that of its {noun}"
+                yield from rule(AGREEMENT - off, words)
 
     def asked_findings(self, fixture: Fixture) -> Iterator[Finding]:
         """Whether a fixture has the pegs of its type in different holes, and directions as asked for."""

@@ -148,12 +148,10 @@ def flush_findings(
 ) -> Iterator[Finding]:
     """Whether the part lies flush on a wall called ``noun``, its two named ends where they are written."""
     (left, _), (right, _) = places = [contact.place(pose) for _, _, contact in ends]
-    words = f"the part does not lie flush on the {noun}"
-    yield from rule(right - left - LEAST_FLUSH, words, words)
+    yield from rule(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
     for piece in pieces(outline, pose):
         (x, low), face = piece.lowest(pose), piece.faces[0]
-        words = f"the part enters the {noun} at face {face} by {number(-low)} mm"
-        yield from rule(low + 2 * FLUSH, words, words)
+        yield from rule(low + 2 * FLUSH, f"the part enters the {noun} at face {face} by {number(-low)} mm")
         beyond = (left - x).max(x - right) - 2 * FLUSH
         if not (low > FLUSH / 2 or beyond < 0):
             words = f"the part lies on the {noun} at face {face}, beyond its stated ends"
@@ -165,4 +163,4 @@ def flush_findings(
             off = abs(derived - written)
             if not isnan(written) and not off < AGREEMENT:
                 words = f"the {axis} of {name} is {number(off)} mm from where the part touches"
-                yield from rule(AGREEMENT - off, words, words)
+                yield from rule(AGREEMENT - off, words)
