@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 
 Number = TypeVar("Number", np.float64, np.int64)
 
@@ -27,9 +27,6 @@ def with_room(array: NDArray[Number], count: int) -> NDArray[Number]:
     """A (N, M) array with room for another row after ``count``: the array itself, or a grown copy when it is
     full."""
     return grown(array) if count == array.shape[0] else array
-
-
-Array = NDArray[np.float64]
 
 
 @inner

@@ -22,21 +22,18 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+import numpy as np
+from numpy.typing import NDArray
+
 from workhold.errors import InputError
 from workhold.kernels.base.built import KERNELS, Library, library_name, source_hash
 from workhold.limits import refuse_little_space
 
-__all__ = [
-    "are_stored",
-    "cache_folder",
-    "compiled",
-    "compiled_making_arrays",
-    "inner",
-    "inner_making_arrays",
-    "is_first_run",
-]
-
 Function = TypeVar("Function", bound=Callable[..., Any])
+# What kernels take: reals, whole numbers, and verdicts or flags.
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+ByteArray = NDArray[np.int8]
 
 FOLDERS_KEPT = 3
 # Bytes of address space: with less, numba and its compiler end the process by a signal or with an error of

@@ -10,9 +10,8 @@ from __future__ import annotations
 from math import atan2, cos, hypot, inf, pi, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import compiled, compiled_making_arrays, inner
+from workhold.kernels.base.compiling import Array, compiled, compiled_making_arrays, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -27,8 +26,6 @@ from workhold.kernels.base.feature import (
     off_shallow,
     point_at,
 )
-
-Array = NDArray[np.float64]
 
 
 @inner

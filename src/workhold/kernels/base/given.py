@@ -9,12 +9,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
+from workhold.kernels.base.compiling import Array
 
 __all__ = ["Features", "Lattice", "Limits", "Setting"]
-
-Array = NDArray[np.float64]
 
 
 class Features(NamedTuple):

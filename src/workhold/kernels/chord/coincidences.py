@@ -35,11 +35,8 @@ from __future__ import annotations
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import EXACT, SAME_CENTER
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
 from workhold.kernels.base.interval import (
     TURN,
@@ -59,7 +56,6 @@ from workhold.kernels.base.interval import (
 )
 from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 
-Array = NDArray[np.float64]
 Motion = tuple[float, float, float, float, float, float]
 MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 

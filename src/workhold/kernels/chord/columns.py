@@ -45,8 +45,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
+from workhold.kernels.base.compiling import Array, IntArray
 
 TAIL, HEAD, COLUMN_STEP, ROW_STEP, CENTER, FIRST_STRETCH, END_STRETCH = range(7)
 CURVE_INTEGERS = 7
@@ -61,16 +60,16 @@ class Curves(NamedTuple):
     """Chord curves: whole numbers (C, 7), reals (C, 14), and their stretches (S, 13), see
     ``chord.stretches``."""
 
-    integers: NDArray[np.int64]
-    reals: NDArray[np.float64]
-    stretches: NDArray[np.float64]
+    integers: IntArray
+    reals: Array
+    stretches: Array
 
 
 class SlidingPairs(NamedTuple):
     """Sliding pairs: whole numbers (P, 7) and reals (P, 5)."""
 
-    integers: NDArray[np.int64]
-    reals: NDArray[np.float64]
+    integers: IntArray
+    reals: Array
 
 
 (

@@ -36,11 +36,8 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import EXACT
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -79,7 +76,6 @@ from workhold.kernels.chord.columns import (
 )
 from workhold.kernels.chord.shallow import line_to_shallow, shallow_to_arc
 
-Array = NDArray[np.float64]
 Chord = tuple[float, float, float, float, float, float]
 State = tuple[float, float, float, float, float, float, float, float, float, float]
 

@@ -16,10 +16,9 @@ from __future__ import annotations
 from math import acos, atan2, cos, hypot, pi, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import EXACT, PARALLEL, SQUARE
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -42,8 +41,6 @@ from workhold.kernels.chord.coincidences import (
 )
 from workhold.kernels.chord.evaluation import chord, parameter_on
 from workhold.kernels.chord.shallow import arcs_cosine, is_turned, tangent_off
-
-Array = NDArray[np.float64]
 
 MOST_EVENTS = 16
 # Kinds of events: an end of a feature is reached (ranges are merged over it when the chord exists on both

@@ -15,10 +15,7 @@ from __future__ import annotations
 
 from math import atan2, cos, hypot, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -43,7 +40,6 @@ from workhold.kernels.base.interval import (
     outward,
 )
 
-Array = NDArray[np.float64]
 Chord = tuple[float, float, float, float, float, float]
 
 

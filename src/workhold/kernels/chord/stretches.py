@@ -42,10 +42,9 @@ from __future__ import annotations
 from math import atan2, hypot, inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.kernels.base.arrays import with_room
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
 from workhold.kernels.base.interval import (
     Interval,
@@ -69,7 +68,6 @@ from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, FROM, LENGTH, TA
 from workhold.kernels.chord.evaluation import chord, curvature
 from workhold.kernels.chord.shallow import shallow_turn_size
 
-Array = NDArray[np.float64]
 # Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of
 # contact.
 NEAR = 0.5

@@ -15,16 +15,13 @@ from math import atan, degrees, hypot, inf
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLOSURE, NO_REACTION
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import compiled, compiled_making_arrays, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, compiled_making_arrays, inner
 
 __all__ = ["CLAMP_LENGTH", "PAIR_LENGTH", "PUSH", "Clamps", "Hardware", "closures_of", "pairs_of"]
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Columns of a clamp: what locators take up per unit of force on its face (3), its push per unit of its own
 # force, how far the former may be off, and the place of its tip in mm.

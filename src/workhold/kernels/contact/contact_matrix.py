@@ -20,11 +20,8 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, nan, pi, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.kernels.base.arrays import eliminate
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -38,9 +35,6 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.chord.evaluation import distance_to_end, parameter_on
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @inner

@@ -10,16 +10,11 @@ from __future__ import annotations
 
 from math import atan, cos, degrees, inf, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.contact.clamp_pairs import closure_margin
 
 __all__ = ["BOUND_LENGTH", "FORCE_LENGTH", "bounds_of_pairs"]
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Columns of a clamp's forces per unit of its own: three locators', that on its face, and how far they may be
 # off.

@@ -15,11 +15,8 @@ from __future__ import annotations
 from math import hypot, inf, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import compiled, inner
-
-Array = NDArray[np.float64]
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 
 FORCE, POINT_X, POINT_Y, MOMENT, LOW_X, LOW_Y, HIGH_X, HIGH_Y, MIDDLE_X, MIDDLE_Y, HALF = range(11)
 LOAD_LENGTH = 11
@@ -70,8 +67,6 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
                     most = max(most, moment * c + force * largest_value(a - py * c, b + px * c, load))
     return most
 
-
-IntArray = NDArray[np.int64]
 
 # No unit. Wrenches nearer than this to a plane are on it, and three with a smaller cross product are on a
 # line.

@@ -8,16 +8,11 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled
+from workhold.kernels.base.compiling import Array, IntArray, compiled
 from workhold.kernels.contact.record import COLUMNS, PSI, ROWS, TAIL_X, TAIL_Y
 
 __all__ = ["ASIDE", "numbers_of_seats"]
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # What mixes two coordinates to one number.
 ASIDE = 0.7548776662

@@ -15,15 +15,11 @@ from __future__ import annotations
 from math import hypot, inf
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.distance import piece_distance
 
 __all__ = ["LEAF", "SweptTree", "nearest_swept"]
 
-Array = NDArray[np.float64]
 
 # Pieces in a leaf, and the nodes that wait at most: a tree is less deep.
 LEAF, DEPTH = 4, 64
@@ -57,9 +53,9 @@ def nearest_swept(
     starts: Array,
     ends: Array,
     tree: SweptTree,
-    waiting: NDArray[np.int64],
+    waiting: IntArray,
     least: Array,
-    which: NDArray[np.int64],
+    which: IntArray,
 ) -> None:
     """The least distance less radius in mm, and the piece it is to, from straight pieces to what is swept.
 

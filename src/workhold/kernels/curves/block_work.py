@@ -11,9 +11,8 @@ from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
 from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.chord.columns import COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, Curves
 from workhold.kernels.contact.record import (
@@ -32,8 +31,6 @@ from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH
 
 __all__ = ["TRIPLE_ROWS", "BlockWork", "block_work"]
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought,
 # four contacts examined, and those that may be inside their features.

@@ -6,10 +6,9 @@ The workpiece stands still there, and each row of the moving carrier meets each 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN
 from workhold.kernels.base.given import Limits
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle, place_peg
@@ -17,8 +16,6 @@ from workhold.kernels.contact.rules import minor_band, outward_normal
 from workhold.kernels.curves.block_work import BlockWork, add_listed
 from workhold.kernels.curves.piece_bounds import HAIR
 from workhold.kernels.curves.rows import height_range, lines_between, row_meets
-
-Array = NDArray[np.float64]
 
 
 @inner

@@ -31,10 +31,9 @@ from __future__ import annotations
 from math import cos, hypot, inf, isfinite, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import EXACT
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y, is_shallow
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.chord.coincidences import (
@@ -77,8 +76,6 @@ from workhold.kernels.chord.columns import (
 )
 from workhold.kernels.chord.evaluation import HEIGHT, State, chord_state, parameter_on, regular_error, valued
 from workhold.kernels.chord.shallow import shallow_half
-
-Array = NDArray[np.float64]
 
 
 @inner

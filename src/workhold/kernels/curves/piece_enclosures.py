@@ -16,10 +16,7 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, isfinite, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.chord.columns import (
     ACROSS_LEAST,
@@ -76,8 +73,6 @@ from workhold.kernels.curves.piece_bounds import (
     write_all_force_directions,
     write_force_directions,
 )
-
-Array = NDArray[np.float64]
 
 # The directions of a piece are given only if its pegs' contacts turn by less than this, in radians.
 MOST_TURN = 1.0

@@ -16,10 +16,9 @@ from math import cos, floor, inf, isfinite, pi, sin
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.chord.columns import (
@@ -62,9 +61,6 @@ from workhold.kernels.chord.stretches import (
 )
 from workhold.kernels.curves.piece_bounds import is_farther, write_edge
 from workhold.kernels.curves.piece_enclosures import second_derivative_beside, write_beside, write_steady
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class PieceCell(NamedTuple):

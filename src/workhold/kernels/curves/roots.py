@@ -16,9 +16,8 @@ from __future__ import annotations
 from math import ceil, cos, floor, isfinite, isinf, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.interval import slope_range, value_bounds
 from workhold.kernels.chord.columns import (
     CURVE,
@@ -40,8 +39,6 @@ from workhold.kernels.chord.columns import (
 )
 from workhold.kernels.chord.evaluation import chord_state, valued
 from workhold.kernels.curves.piece_bounds import SAME, value_disc
-
-Array = NDArray[np.float64]
 
 # Ranges narrower than this, in radians, are not split any further: at a double root the clamping force is
 # then below ``contact.rules.LEAST_CLAMPING`` throughout.

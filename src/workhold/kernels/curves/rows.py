@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from math import atan2, ceil, floor, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import LEAST_CLAMPING
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -22,8 +19,6 @@ from workhold.kernels.base.feature import (
     is_shallow,
     middle_of,
 )
-
-Array = NDArray[np.float64]
 
 # Points of an arc this far beyond its ends, in mm, count as points of it: more than ``END_SLACK`` and
 # rounding.

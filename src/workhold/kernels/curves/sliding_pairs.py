@@ -15,11 +15,16 @@ from math import acos, atan2, ceil, cos, hypot, pi, sin
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL, SQUARE
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import compiled_making_arrays, inner, inner_making_arrays
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    compiled_making_arrays,
+    inner,
+    inner_making_arrays,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.base.interval import TURN
@@ -69,9 +74,6 @@ from workhold.kernels.curves.block_work import (
 from workhold.kernels.curves.moving_pegs import add_moving_pegs
 from workhold.kernels.curves.rows import height_range, lines_between, row_meets
 from workhold.kernels.curves.three_and_one import heads_share_a_line
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Rounding of a sliding pair's orientation in radians.
 ROUNDING = 4e-15

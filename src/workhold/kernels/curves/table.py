@@ -5,10 +5,9 @@ from __future__ import annotations
 from math import cos, hypot, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.kernels.base.arrays import with_room
-from workhold.kernels.base.compiling import compiled_making_arrays, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.chord.columns import (
     CENTER,
@@ -35,9 +34,6 @@ from workhold.kernels.chord.intervals import NARROW, SLIVER, chord_intervals
 from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
 from workhold.kernels.curves.piece_bounds import tail_disc
 from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Rounding of distances in mm, generously counted.
 ROUNDING = 1e-9

@@ -14,11 +14,10 @@ from __future__ import annotations
 from math import ceil, floor
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import compiled_making_arrays, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.chord.columns import (
     ACROSS_LEAST,
@@ -52,9 +51,6 @@ from workhold.kernels.curves.block_work import (
 from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
 from workhold.kernels.curves.pieces import cell_pieces
 from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
 (

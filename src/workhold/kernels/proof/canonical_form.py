@@ -5,17 +5,11 @@ from __future__ import annotations
 
 from math import pi
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import LEAST_SPAN
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.record import NULL, take_pegs, touch
 from workhold.kernels.proof.newton_kantorovich import held, wrenches
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @compiled

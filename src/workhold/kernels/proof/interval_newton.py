@@ -22,9 +22,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import compiled_making_arrays, inner, inner_making_arrays
+from workhold.kernels.base.compiling import (
+    Array,
+    ByteArray,
+    compiled_making_arrays,
+    inner,
+    inner_making_arrays,
+)
 from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.record import (
     LARGEST_RADIUS,
@@ -55,9 +60,6 @@ from workhold.kernels.proof.variation import (
     move_to,
     spread,
 )
-
-Array = NDArray[np.float64]
-Verdicts = NDArray[np.int8]
 
 # A box is given up after so many parts; the sides of what remains of one are made larger by this part, for
 # rounding.
@@ -317,7 +319,7 @@ def solutions_in_all(
     setting: Setting,
     frames: Array,
     space: NewtonWorkSpace,
-    verdicts: Verdicts,
+    verdicts: ByteArray,
     roots: Array,
 ) -> int:
     """Writes the verdict on each box and the roots of all, see :func:`interval_newton`, and returns how many
@@ -333,7 +335,7 @@ def solutions_in_all(
 @compiled_making_arrays
 def interval_newton(
     records: Array, features: Array, setting: Setting, frames: Array
-) -> tuple[Verdicts, Array]:
+) -> tuple[ByteArray, Array]:
     """Contracts boxes one by one.
 
     Parameters

@@ -28,7 +28,6 @@ from __future__ import annotations
 from math import cos, inf, pi, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import (
     GAP_SLACK,
@@ -39,7 +38,7 @@ from workhold.conventions import (
     LEAST_SPAN,
     TOUCHING,
 )
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, ByteArray, compiled, inner
 from workhold.kernels.base.distance import segment_distance
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, largest_number
 from workhold.kernels.base.given import Setting
@@ -60,9 +59,6 @@ from workhold.kernels.contact.record import (
     touch,
 )
 from workhold.kernels.contact.rules import minor_band, minors, outward_normal
-
-Array = NDArray[np.float64]
-Verdicts = NDArray[np.int8]
 
 DISCARDED, OPEN, PROVEN = -1, 0, 1
 ROUNDS = 3
@@ -299,7 +295,7 @@ def certified(
     discs: Array,
     setting: Setting,
     solutions: Array,
-    verdicts: Verdicts,
+    verdicts: ByteArray,
     w: Array,
     pairs: Array,
 ) -> None:

@@ -10,11 +10,8 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y, is_shallow, local_size
 from workhold.kernels.base.given import Setting
 from workhold.kernels.contact.record import (
@@ -28,8 +25,6 @@ from workhold.kernels.contact.record import (
 )
 from workhold.kernels.contact.rules import ROUNDING, minors
 from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, nearest_end
-
-Array = NDArray[np.float64]
 
 # Half a unit in the last place, and rounding in mm of ends and gaps.
 HALF_UNIT = 1.2e-16

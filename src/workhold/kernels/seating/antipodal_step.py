@@ -11,10 +11,7 @@ from __future__ import annotations
 
 from math import atan2, cos, floor, hypot, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import DescentWorkSpace, Obstacles
 from workhold.kernels.seating.obstacles import (
@@ -24,8 +21,6 @@ from workhold.kernels.seating.obstacles import (
     off_wall,
     turned_place,
 )
-
-Array = NDArray[np.float64]
 
 # mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; pegs may be in the part by
 # the last.

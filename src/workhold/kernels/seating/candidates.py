@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from math import cos, inf, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.chord.columns import HEAD, TAIL
 from workhold.kernels.seating.columns import (
@@ -45,9 +42,6 @@ from workhold.kernels.seating.three_contacts import (
 )
 from workhold.kernels.seating.two_contact_curves import END, PairState, is_on_its_pieces, pair_at
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 # Pivots of the balance below this are none.
 SINGULAR = 1e-14
 # mm. Pegs farther than this from what they are said to touch do not touch it.
@@ -55,7 +49,7 @@ MISFIT = 1e-6
 # No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left
 # so.
 BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
-# Verdicts on a candidate: it is no equilibrium, it is one, or it is in doubt.
+# ByteArray on a candidate: it is no equilibrium, it is one, or it is in doubt.
 NO_BALANCE, IN_BALANCE, DOUBTFUL = 0, 1, 2
 
 
@@ -325,7 +319,7 @@ def settle(candidates: Array, given: Given, size: float, balance: Array, normal:
 
 
 @compiled
-def judge_balance(candidates: Array, slack: float, slack_in_doubt: float, verdicts: NDArray[np.int8]) -> None:
+def judge_balance(candidates: Array, slack: float, slack_in_doubt: float, verdicts: ByteArray) -> None:
     """Writes whether all contacts of candidates (N, 24) press and balance, or whether that is in doubt.
 
     Parameters

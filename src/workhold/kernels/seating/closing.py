@@ -14,10 +14,7 @@ from __future__ import annotations
 
 from math import floor, inf, pi, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.antipodal_step import antipodal_step
 from workhold.kernels.seating.columns import (
@@ -32,9 +29,6 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.linear_program import Four, best_step, shortest_out
 from workhold.kernels.seating.obstacles import add_wall, cosine_and_sine
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # How a descent ended.
 GAVE_UP, AT_REST, AT_THE_STOP = 0, 1, 2
@@ -279,7 +273,7 @@ def close_jaws(
     obstacles: Obstacles,
     seats: Array,
     work: DescentWorkSpace,
-    ends: NDArray[np.int8],
+    ends: ByteArray,
     begins: IntArray,
     nodes: Array,
 ) -> None:

@@ -10,10 +10,7 @@ from __future__ import annotations
 
 from math import cos, inf, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.cell_middles import COSINE, SINE, pair_in
 from workhold.kernels.seating.columns import (
@@ -44,8 +41,6 @@ from workhold.kernels.seating.two_contact_curves import (
     pair_at,
     root_between,
 )
-
-Array = NDArray[np.float64]
 
 # Ranges narrower than this, in radians, are not halved.
 NARROWEST = 1e-9
@@ -182,7 +177,7 @@ def two_pairs(
     given: Given,
     two_cells: Array,
     stack: Array,
-    reaching: NDArray[np.int64],
+    reaching: IntArray,
     out: Array,
 ) -> int:
     """Orientations at which a pair of the left jaw and one of the right have one height; how many, or -1.

@@ -19,10 +19,7 @@ from __future__ import annotations
 
 from math import acos, atan2, cos, floor, hypot, inf, isnan, nan, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
 from workhold.kernels.seating.obstacles import (
@@ -34,8 +31,6 @@ from workhold.kernels.seating.obstacles import (
     turned_place,
 )
 from workhold.kernels.seating.two_contact_curves import gap
-
-Array = NDArray[np.float64]
 
 # Intervals of a jaw that are kept at one place, and crossings that are looked at.
 MOST_INTERVALS, MOST_CROSSINGS = 6, 256

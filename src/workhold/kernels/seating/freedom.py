@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from math import hypot, inf
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import END_SLACK
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.seating.columns import (
     CONTACTS,
     PEG,
@@ -28,9 +25,6 @@ from workhold.kernels.seating.obstacles import (
     turned_place,
 )
 from workhold.kernels.seating.two_contact_curves import gap
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # mm. Pegs this near touch, and may be in the part by as much.
 TOUCHES = 1e-7

@@ -17,10 +17,7 @@ from __future__ import annotations
 
 from math import hypot, inf, pi
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.seating.candidates import add_fourths
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -34,8 +31,6 @@ from workhold.kernels.seating.columns import (
     Manifolds,
 )
 from workhold.kernels.seating.obstacles import length
-
-Array = NDArray[np.float64]
 
 FIRST, END, NUMBER, JAW, NAMES, SHIFT = 0, 1, 2, 3, 4, 8
 SUBSET_LENGTH = 11
@@ -127,8 +122,6 @@ def gathered(
                 count += 1
     return -1 if count < 0 else add_rows(after, stop, widest, out, count)
 
-
-IntArray = NDArray[np.int64]
 
 # mm. How much farther than to the next of its steps a place may be from a set in which it lies.
 BESIDE = 0.02

@@ -7,13 +7,9 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.seating.columns import DescentWorkSpace
 
-Array = NDArray[np.float64]
 Four = tuple[float, float, float, float]
 
 # mm. What is entered by less is not; how often what is met may change on one way out.

@@ -13,10 +13,9 @@ from __future__ import annotations
 from math import atan2, cos, hypot, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import END_SLACK, PARALLEL
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import MOTION, PEG, PIECE, SECOND, SEPARATION, Given
@@ -31,8 +30,6 @@ from workhold.kernels.seating.slides import (
     SLIDE_TWO,
 )
 from workhold.kernels.seating.two_contact_curves import END
-
-Array = NDArray[np.float64]
 
 # Radians by which the orientation is changed to see on which side a chord goes on.
 STEP = 1e-6

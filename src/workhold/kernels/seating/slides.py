@@ -11,11 +11,8 @@ from __future__ import annotations
 
 from math import acos, atan2, ceil, cos, hypot, nan, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import END_SLACK
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.chord.columns import FROM, TO
 from workhold.kernels.seating.candidates import place_third, write_pair, write_pose
@@ -36,9 +33,6 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.obstacles import on_piece
 from workhold.kernels.seating.two_contact_curves import TURN, height, is_on_its_pieces, pair_at
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 SLIDE_FIRST, SLIDE_SECOND, SLIDE_ONE, SLIDE_TWO, SLIDE_LOW, SLIDE_HIGH, SLIDE_PSI = range(7)
 SLIDE_LENGTH = 7

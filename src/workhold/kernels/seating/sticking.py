@@ -9,14 +9,9 @@ from __future__ import annotations
 
 from math import copysign, hypot, inf, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.kernels.base.arrays import eliminate
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Cubic = tuple[float, float, float, float]
 
 # No unit. Coefficients of a cubic, per the largest, that are none, and all of them; and how far, per 1 +

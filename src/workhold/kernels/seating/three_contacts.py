@@ -17,10 +17,7 @@ from __future__ import annotations
 
 from math import asin, cos, inf, pi, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import Interval, idivide, imul
 from workhold.kernels.chord.columns import HEAD, TAIL
@@ -51,8 +48,6 @@ from workhold.kernels.seating.two_contact_curves import (
     root_between,
 )
 
-Array = NDArray[np.float64]
-
 # Ranges narrower than this, in radians, are not halved, but where values differ over them that are near 0 and
 # P moves by more than some mm, as beside a tangency; none is that is as narrow as the last.
 NARROWEST, STILL, LAST = 2e-8, 1e-3, 1e-13
@@ -61,7 +56,7 @@ ROUNDING = 2e-12
 # Columns of what is found: ROOT_PAIR, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT.
 ROOT_PAIR, ROOT_PEG, ROOT_PIECE, ROOT_SIDE, ROOT_PSI, ROOT_DOUBT = range(6)
 ROOT_LENGTH = 6
-# Verdicts on a range.
+# ByteArray on a range.
 NOTHING, HALVES, MAYBE = 0, 1, 2
 
 

@@ -24,10 +24,7 @@ from __future__ import annotations
 
 from math import cos, floor, hypot, inf, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.chord.coincidences import NONE
 from workhold.kernels.chord.columns import (
@@ -64,7 +61,6 @@ from workhold.kernels.seating.obstacles import angle_from_middle, foot, length, 
 
 __all__ = ["Ray", "foot_is_off", "ray_of"]
 
-Array = NDArray[np.float64]
 PairState = tuple[float, float, float, float, float, float, float, float, float, float]
 
 TURN = 2.0 * pi

@@ -12,11 +12,8 @@ from __future__ import annotations
 from math import ceil, cos, pi, sin
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import SAME_CENTER
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.interval import Interval, imul, ineg, iscale, ishift, isub
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import DOUBT, MOTION, PEG, PIECE, SECOND, SEPARATION
@@ -34,8 +31,6 @@ from workhold.kernels.seating.turning import (
     to_look_at,
     write_shape,
 )
-
-Array = NDArray[np.float64]
 
 # Radians. Ranges into which a run is cut first.
 CELL = 0.3
@@ -62,7 +57,7 @@ class Stood(NamedTuple):
 
     rows: Array
     discs: Array
-    parts: NDArray[np.int64]
+    parts: IntArray
     hull: Array
     runs: Array
     pegs: Array
