@@ -198,10 +198,8 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
     points : (..., 2) in mm.
     """
     dx, dy = points[..., 0] - rows[..., X], points[..., 1] - rows[..., Y]
-    along, across = (
-        dx * rows[..., AXIS_X] + dy * rows[..., AXIS_Y],
-        rows[..., AXIS_X] * dy - rows[..., AXIS_Y] * dx,
-    )
+    along = dx * rows[..., AXIS_X] + dy * rows[..., AXIS_Y]
+    across = rows[..., AXIS_X] * dy - rows[..., AXIS_Y] * dx
     is_arc = rows[..., IS_ARC] != 0.0
     place, unit = np.where(is_arc, np.arctan2(across, along), along), np.where(is_arc, rows[..., RADIUS], 1.0)
     half = rows[..., HALF_EXTENT]

@@ -27,7 +27,7 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 from workhold.proof.narrowing import CandidateBox, axis_length, contact_value, from_origin, value_of_ray
 
 __all__ = ["BoxContacts", "contact_values", "end_slacks", "is_empty", "places", "slacks", "wrench_minors"]

@@ -16,7 +16,7 @@ from flint import arb
 
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X, REST_Y, X, Y
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 
 __all__ = ["CandidateBox", "axis_length", "contact_value", "from_origin", "narrowed", "value_of_ray"]
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from workhold.contact.beside import keeps_of
 from workhold.contact.problem import Frame, Problem
+from workhold.contact.swept import keeps_of
 from workhold.contact.trimming import most_in_the_way
 from workhold.errors import InputError
 from workhold.model.query import Query

@@ -20,7 +20,7 @@ import numpy as np
 from attrs import define, frozen
 from numpy.typing import NDArray
 
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CURVE_INTEGERS,
     CURVE_REALS,
     DIRECTION,

@@ -10,7 +10,7 @@ import pytest
 
 from seating_examples import cells_by_pair, solved
 from workhold.kernels.base.feature import IS_ARC
-from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.cell_middles import pair_in, ray_in
 from workhold.kernels.seating.columns import DEPTH, FIRST_PEG, HIGH, KIND, LOW, PAIR, SOURCE, VAGUE
 from workhold.kernels.seating.obstacles import foot, on_piece, share_normals

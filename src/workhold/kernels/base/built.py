@@ -34,19 +34,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = [
-    "DESCRIPTION",
-    "ELEMENTS",
-    "KNOWN",
-    "LIBRARY_NAME",
-    "REFUSED",
-    "RELEASE",
-    "CheckedKernel",
-    "Library",
-    "library_name",
-    "source_hash",
-]
-
 # Names that the library exports besides those of its kernels.
 DESCRIPTION, RELEASE, KNOWN = "workhold_description", "workhold_release", "workhold_known"
 # Elements of arrays. The library needs to know where Python keeps the type of arrays and those of each of

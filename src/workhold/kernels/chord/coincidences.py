@@ -54,7 +54,7 @@ from workhold.kernels.base.interval import (
     isub,
     outward,
 )
-from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
+from workhold.kernels.base.tables import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 
 Motion = tuple[float, float, float, float, float, float]
 MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]

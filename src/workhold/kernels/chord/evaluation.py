@@ -52,17 +52,7 @@ from workhold.kernels.base.feature import (
     is_shallow,
     local_size,
 )
-from workhold.kernels.chord.coincidences import (
-    ARCS,
-    CONCENTRIC,
-    NONE,
-    are_concentric,
-    are_one_chord_apart,
-    coincidence,
-    misfit,
-    motion,
-)
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     BACKWARD_ERROR,
     BRANCH,
     COINCIDENCE,
@@ -73,6 +63,16 @@ from workhold.kernels.chord.columns import (
     SHIFT,
     SIDE,
     SINE,
+)
+from workhold.kernels.chord.coincidences import (
+    ARCS,
+    CONCENTRIC,
+    NONE,
+    are_concentric,
+    are_one_chord_apart,
+    coincidence,
+    misfit,
+    motion,
 )
 from workhold.kernels.chord.shallow import line_to_shallow, shallow_to_arc
 
@@ -279,10 +279,8 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
     tangency
     """
     d = curve[LENGTH]
-    wx, wy = (
-        d * (cosine * curve[COSINE] - sine * curve[SINE]),
-        d * (sine * curve[COSINE] + cosine * curve[SINE]),
-    )
+    wx = d * (cosine * curve[COSINE] - sine * curve[SINE])
+    wy = d * (sine * curve[COSINE] + cosine * curve[SINE])
     kappa, kind = curve[KAPPA], curve[COINCIDENCE]
     if kind != NONE and kind != CONCENTRIC:
         regular, u = motion(a, b, curve, psi)

@@ -125,19 +125,13 @@ def arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float
     ka, kb = 1.0 / a[RADIUS], 1.0 / b[RADIUS]
     # Middles and differences are rounded once or so.
     qx, qy = isub(outward(bx, bx), outward(ax, ax)), isub(outward(by, by), outward(ay, ay))
-    vx, vy = (
-        isub(iscale(kb, outward(a[AXIS_X], a[AXIS_X])), iscale(ka, outward(b[AXIS_X], b[AXIS_X]))),
-        isub(iscale(kb, outward(a[AXIS_Y], a[AXIS_Y])), iscale(ka, outward(b[AXIS_Y], b[AXIS_Y]))),
-    )
+    vx = isub(iscale(kb, outward(a[AXIS_X], a[AXIS_X])), iscale(ka, outward(b[AXIS_X], b[AXIS_X])))
+    vy = isub(iscale(kb, outward(a[AXIS_Y], a[AXIS_Y])), iscale(ka, outward(b[AXIS_Y], b[AXIS_Y])))
     drift = iadd(imul(qx, vx), imul(qy, vy))
     bend = iscale(0.5 * ka * kb, ishift(d * d, iadd(isquare(qx), isquare(qy))))
     both = iadd(drift, bend)
-    lx, ly, mx, my = (
-        a[AXIS_X] - b[AXIS_X],
-        a[AXIS_Y] - b[AXIS_Y],
-        a[AXIS_X] + b[AXIS_X],
-        a[AXIS_Y] + b[AXIS_Y],
-    )
+    lx, ly = a[AXIS_X] - b[AXIS_X], a[AXIS_Y] - b[AXIS_Y]
+    mx, my = a[AXIS_X] + b[AXIS_X], a[AXIS_Y] + b[AXIS_Y]
     less = iscale(0.5, iadd(isquare(outward(lx, lx)), isquare(outward(ly, ly))))
     more = iscale(0.5, iadd(isquare(outward(mx, mx)), isquare(outward(my, my))))
     swing = d * ka * kb * hypot(b[X] - a[X], b[Y] - a[Y])

@@ -63,8 +63,8 @@ from workhold.kernels.base.interval import (
     isub,
     outward,
 )
+from workhold.kernels.base.tables import BRANCH, COINCIDENCE, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
 from workhold.kernels.chord.coincidences import ARCS, CONCENTRIC, NONE, motion_box
-from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
 from workhold.kernels.chord.evaluation import chord, curvature
 from workhold.kernels.chord.shallow import shallow_turn_size
 

@@ -20,9 +20,6 @@ from workhold.conventions import GAP_SLACK, LEAST_CLOSURE, NO_REACTION
 from workhold.kernels.base.arrays import grown
 from workhold.kernels.base.compiling import Array, IntArray, compiled, compiled_making_arrays, inner
 
-__all__ = ["CLAMP_LENGTH", "PAIR_LENGTH", "PUSH", "Clamps", "Hardware", "closures_of", "pairs_of"]
-
-
 # Columns of a clamp: what locators take up per unit of force on its face (3), its push per unit of its own
 # force, how far the former may be off, and the place of its tip in mm.
 TAKEN, PUSH, DOUBT, TIP = 0, 3, 4, 5
@@ -230,14 +227,8 @@ def add_pair(
     if first < 0:
         return count
     row = out[count]
-    row[SEAT], row[KIND], row[CLAMPS], row[CLAMPS + 1], row[HOLES], row[HOLES + 1] = (
-        number,
-        kind,
-        i,
-        j,
-        first,
-        second,
-    )
+    row[SEAT], row[KIND] = number, kind
+    row[CLAMPS], row[CLAMPS + 1], row[HOLES], row[HOLES + 1] = i, j, first, second
     row[COUNT], row[FREEDOM], row[MARGIN] = 1.0, max(degrees(atan(high) - atan(low)), 0.0), margin
     row[OPEN] = 1.0 if lead - doubt <= 0.0 else 0.0
     return count + 1

@@ -51,12 +51,8 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
     most = 0.0
     for m in range(len(loads)):
         load = loads[m]
-        force, px, py, moment = (
-            load[FORCE],
-            load[POINT_X] / length,
-            load[POINT_Y] / length,
-            load[MOMENT] / length,
-        )
+        force, moment = load[FORCE], load[MOMENT] / length
+        px, py = load[POINT_X] / length, load[POINT_Y] / length
         for j in range(inverse.shape[1]):
             for i in range(inverse.shape[1]):
                 if i != j:

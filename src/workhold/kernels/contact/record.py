@@ -46,8 +46,7 @@ import numpy as np
 from workhold.kernels.base.arrays import eliminate
 from workhold.kernels.base.compiling import Array, IntArray, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow, off_shallow
-from workhold.kernels.base.given import Lattice
-from workhold.kernels.chord.columns import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL
+from workhold.kernels.base.tables import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL, Lattice
 
 # An orientation psi in radians, its cosine and its sine.
 Angle = tuple[float, float, float]

@@ -25,8 +25,7 @@ import numpy as np
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.kernels.base.compiling import Array, IntArray, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.base.given import Features, Limits
-from workhold.kernels.chord.columns import COLUMN_STEP, ROW_STEP
+from workhold.kernels.base.tables import COLUMN_STEP, ROW_STEP, Features, Limits
 from workhold.kernels.chord.evaluation import end_slack
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle
 

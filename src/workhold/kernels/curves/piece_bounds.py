@@ -3,7 +3,7 @@
 Glossary
 --------
 disc : holds the tails of a chord whose orientation is known to a radius only, tangencies included.
-edge : a chord at an end of a piece, with what pieces need of it (see ``chord.columns``). It serves the pieces
+edge : a chord at an end of a piece, with what pieces need of it (see ``base.tables``). It serves the pieces
     on both of its sides, also where they are in neighbouring cells. It says for how long after it the curve's
     pegs stand too far along x for another peg to stand farther.
 force direction : a direction in which the two pegs of a piece can push together.
@@ -36,17 +36,7 @@ from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y, is_shallow
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.chord.coincidences import (
-    CONCENTRIC,
-    NONE,
-    TOUCHING,
-    from_coincidence,
-    is_regular,
-    misfit,
-    regular_radius,
-    touching_speed,
-)
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     BACKWARD_ERROR,
     COINCIDENCE,
     EDGE_ACROSS,
@@ -73,6 +63,16 @@ from workhold.kernels.chord.columns import (
     SIDE,
     TAIL_NORMAL_X,
     TAIL_NORMAL_Y,
+)
+from workhold.kernels.chord.coincidences import (
+    CONCENTRIC,
+    NONE,
+    TOUCHING,
+    from_coincidence,
+    is_regular,
+    misfit,
+    regular_radius,
+    touching_speed,
 )
 from workhold.kernels.chord.evaluation import HEIGHT, State, chord_state, parameter_on, regular_error, valued
 from workhold.kernels.chord.shallow import shallow_half
@@ -363,10 +363,8 @@ def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) 
         sign = -1.0 if k == 0 else 1.0
         bottom, top = edge_force(low, sign, share, at_ends)
         first, last = edge_force(high, sign, share, at_ends)
-        row[RIGHTWARD_LOW + 2 * k], row[RIGHTWARD_HIGH + 2 * k] = (
-            min(bottom, first) - between,
-            max(top, last) + between,
-        )
+        row[RIGHTWARD_LOW + 2 * k] = min(bottom, first) - between
+        row[RIGHTWARD_HIGH + 2 * k] = max(top, last) + between
         if bottom > top and first > last:
             row[RIGHTWARD_LOW + 2 * k], row[RIGHTWARD_HIGH + 2 * k] = 2.0, -2.0
         elif bottom > top or first > last:

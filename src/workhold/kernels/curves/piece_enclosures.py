@@ -9,7 +9,7 @@ contact direction turns at the rate p / R, which changes by at most K / R. A fun
 derivative B is within B w^2 / 8 of its linear interpolation over a range w. Beside a tangency the second
 derivative is bounded on one side only, by X^3 P'.
 
-Directions of forces are described in ``curves.piece_bounds``, and columns in ``chord.columns``.
+Directions of forces are described in ``curves.piece_bounds``, and columns in ``base.tables``.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from math import cos, hypot, inf, isfinite, sin
 
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     ACROSS_LEAST,
     ACROSS_MOST,
     EDGE_ACROSS,
@@ -133,10 +133,8 @@ def write_steady(
 ) -> None:
     """Writes the enclosures of a piece whose instant centre moves at a bounded speed."""
     speed, sag = stretch[SPEED], width * width / 8.0
-    error, with_backward_error = (
-        max(low[EDGE_ERROR], high[EDGE_ERROR]),
-        max(low[EDGE_CENTER_ERROR], high[EDGE_CENTER_ERROR]),
-    )
+    error = max(low[EDGE_ERROR], high[EDGE_ERROR])
+    with_backward_error = max(low[EDGE_CENTER_ERROR], high[EDGE_CENTER_ERROR])
     center = max(low[EDGE_CENTER], high[EDGE_CENTER]) + speed * width + with_backward_error
     arm = max(low[EDGE_ARM], high[EDGE_ARM]) + speed * width + with_backward_error
     curved = curve[KAPPA]

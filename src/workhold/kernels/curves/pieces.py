@@ -7,7 +7,7 @@ piece : a chord curve over a range inside one cell and inside one stretch. It ha
     ends and an enclosure of its second derivative. From these follow enclosures of its value, of the place of
     its pegs along x, and of the directions in which they can push together.
 
-What encloses a piece stands in ``curves.piece_enclosures``, and columns in ``chord.columns``.
+What encloses a piece stands in ``curves.piece_enclosures``, and columns in ``base.tables``.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from workhold.kernels.base.arrays import grown
 from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     COLUMN_STEP,
     CURVE,
     EDGE_LENGTH,
@@ -166,10 +166,8 @@ def add_pieces(
             row[VALUE_LOW], row[SLOPE_LOW] = at_low[EDGE_VALUE], at_low[EDGE_SLOPE]
             row[VALUE_HIGH], row[SLOPE_HIGH] = at_high[EDGE_VALUE], at_high[EDGE_SLOPE]
             row[VALUE_ERROR_LOW], row[SLOPE_ERROR_LOW] = at_low[EDGE_VALUE_ERROR], at_low[EDGE_SLOPE_ERROR]
-            row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = (
-                at_high[EDGE_VALUE_ERROR],
-                at_high[EDGE_SLOPE_ERROR],
-            )
+            row[VALUE_ERROR_HIGH] = at_high[EDGE_VALUE_ERROR]
+            row[SLOPE_ERROR_HIGH] = at_high[EDGE_SLOPE_ERROR]
             steady = steady and isfinite(row[SLOPE_ERROR_LOW]) and isfinite(row[SLOPE_ERROR_HIGH])
             if circles and steady:
                 unwind(row, a, b, curve)

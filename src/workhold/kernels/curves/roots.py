@@ -19,7 +19,7 @@ import numpy as np
 
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.interval import slope_range, value_bounds
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CURVE,
     HEAD,
     HIGH,
@@ -250,12 +250,8 @@ def crossings(
     v1, s1, v2, s2 = first[VALUE_LOW], first[SLOPE_LOW], second[VALUE_LOW], second[SLOPE_LOW]
     w1, t1, w2, t2 = first[VALUE_HIGH], first[SLOPE_HIGH], second[VALUE_HIGH], second[SLOPE_HIGH]
     # Errors of values (e) and slopes (g) at the low end, and at the high end (c and q).
-    e1, g1, e2, g2 = (
-        first[VALUE_ERROR_LOW],
-        first[SLOPE_ERROR_LOW],
-        second[VALUE_ERROR_LOW],
-        second[SLOPE_ERROR_LOW],
-    )
+    e1, g1 = first[VALUE_ERROR_LOW], first[SLOPE_ERROR_LOW]
+    e2, g2 = second[VALUE_ERROR_LOW], second[SLOPE_ERROR_LOW]
     c1, q1 = first[VALUE_ERROR_HIGH], first[SLOPE_ERROR_HIGH]
     c2, q2 = second[VALUE_ERROR_HIGH], second[SLOPE_ERROR_HIGH]
     if is_inside(low, first[LOW], first[SLOPE_LOW]):

@@ -9,7 +9,7 @@ import numpy as np
 from workhold.kernels.base.arrays import with_room
 from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CENTER,
     COLUMN_STEP,
     CURVE_INTEGERS,
@@ -100,7 +100,7 @@ def tail_curves(
     Returns
     -------
     (integers, reals, sliding pair integers, sliding pair reals, stretches)
-        See ``curves.columns``. The orientations of sliding pairs, alpha - shift, are still to be brought into
+        See ``base.tables``. The orientations of sliding pairs, alpha - shift, are still to be brought into
         range by the caller, and the curves' stretches are counted from 0 for this tail.
     """
     integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
@@ -163,10 +163,5 @@ def tail_curves(
 @inner
 def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
     """Writes the whole numbers of a curve or sliding pair."""
-    row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP], row[CENTER] = (
-        tail,
-        head,
-        column_step,
-        row_step,
-        center,
-    )
+    row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP] = tail, head, column_step, row_step
+    row[CENTER] = center

@@ -7,7 +7,7 @@ from math import pi
 
 from workhold.conventions import LEAST_SPAN
 from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
-from workhold.kernels.base.given import Setting
+from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import NULL, take_pegs, touch
 from workhold.kernels.proof.newton_kantorovich import held, wrenches
 

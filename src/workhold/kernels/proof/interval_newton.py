@@ -30,7 +30,7 @@ from workhold.kernels.base.compiling import (
     inner,
     inner_making_arrays,
 )
-from workhold.kernels.base.given import Setting
+from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import (
     LARGEST_RADIUS,
     MOVING,

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from workhold.kernels.base.compiling import Array, IntArray, compiled
 
-__all__ = ["merge_boxes"]
-
 
 @compiled
 def merge_boxes(low: Array, high: Array, may: IntArray, heads: IntArray) -> int:

@@ -41,7 +41,7 @@ from workhold.conventions import (
 from workhold.kernels.base.compiling import Array, ByteArray, compiled, inner
 from workhold.kernels.base.distance import segment_distance
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, largest_number
-from workhold.kernels.base.given import Setting
+from workhold.kernels.base.tables import Setting
 from workhold.kernels.chord.evaluation import end_slack
 from workhold.kernels.contact.record import (
     FEATURES,
@@ -239,10 +239,8 @@ def judged(
         verdict = min(verdict, sign_of(abs(null[3]) - LEAST_SEAT, band))
         facing = pairs[1, 3, 0] * cos(w[UNKNOWNS, 0]) + pairs[1, 3, 1] * sin(w[UNKNOWNS, 0])
         return min(verdict, sign_of(setting.limits.clamping * facing - LEAST_PUSH, swing + radius / length))
-    low, high = (
-        min(min(null[0], null[1]), min(null[2], null[3])),
-        max(max(null[0], null[1]), max(null[2], null[3])),
-    )
+    low = min(min(null[0], null[1]), min(null[2], null[3]))
+    high = max(max(null[0], null[1]), max(null[2], null[3]))
     sign = 1.0 if high >= -low else -1.0
     closure = low if sign > 0.0 else -high
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.

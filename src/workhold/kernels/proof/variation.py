@@ -13,7 +13,7 @@ from math import cos, hypot, inf, sin, sqrt
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y, is_shallow, local_size
-from workhold.kernels.base.given import Setting
+from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import (
     FEATURES,
     MOVING,

@@ -203,10 +203,8 @@ def antipodal_step(
     sx, sy = tangent_at(a, ax, ay)
     tx, ty = tangent_at(b, bx, by)
     us, ut = ux * sx + uy * sy, ux * tx + uy * ty
-    haa, hbb = (
-        (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy),
-        (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy),
-    )
+    haa = (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy)
+    hbb = (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy)
     along_a, along_b = newton_step(haa, -(sx * tx + sy * ty - us * ut) / d, hbb, -us, ut, longest)
     asked = hypot(along_a, along_b)
     a_unit = a[RADIUS] if a[IS_ARC] != 0.0 else 1.0

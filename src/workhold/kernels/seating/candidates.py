@@ -6,7 +6,7 @@ from math import cos, inf, sin, sqrt
 
 from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import (
     ANGLE,
     CANDIDATE_LENGTH,
@@ -171,10 +171,8 @@ def complete_two(roots: Array, given: Given, pocket_pieces: IntArray, out: Array
             continue
         cosine, sine = cos(psi), sin(psi)
         p, q = int(one[FIRST_PEG]), int(two[FIRST_PEG])
-        x, y = (
-            given.pegs[p, 0] - (cosine * s[0] + sine * s[1]),
-            given.pegs[p, 1] - (cosine * s[1] - sine * s[0]),
-        )
+        x = given.pegs[p, 0] - (cosine * s[0] + sine * s[1])
+        y = given.pegs[p, 1] - (cosine * s[1] - sine * s[0])
         row = out[count]
         write_pose(row, -psi, x, y, 4)
         row[SEPARATION] = x - (given.pegs[q, 0] - (cosine * t[0] + sine * t[1]))

@@ -10,12 +10,9 @@ from __future__ import annotations
 from math import cos, inf, sin
 
 from workhold.kernels.base.compiling import Array, compiled, inner
-from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import HIGH, KIND, LOW, PAIR, SOURCE, SPEED, VAGUE, Given
 from workhold.kernels.seating.two_contact_curves import PairState, Ray, pair_at, ray_of
-
-__all__ = ["COSINE", "MIDDLE_LENGTH", "SINE", "pair_in", "ray_in", "ray_over", "write_middles"]
-
 
 COSINE, SINE, HELD, RAY = 0, 1, 2, 12
 MIDDLE_LENGTH = 19

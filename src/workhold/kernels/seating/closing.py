@@ -79,13 +79,8 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
     count, near = 0, work.near
     cosine, sine = cosine_and_sine(config[0], work.turn)
     if config[3] - obstacles.stop <= reach:
-        near[0, 0], near[0, 1], near[0, 2], near[0, 3], near[0, 4] = (
-            0.0,
-            0.0,
-            0.0,
-            1.0,
-            config[3] - obstacles.stop,
-        )
+        near[0, 0], near[0, 1], near[0, 2], near[0, 3] = 0.0, 0.0, 0.0, 1.0
+        near[0, 4] = config[3] - obstacles.stop
         near[0, 5], near[0, 6] = -1.0, -1.0
         count = 1
     if obstacles.most - config[3] <= reach:
@@ -115,10 +110,8 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
                 if abs(off) > reach:
                     continue
                 # An angle from the middle is less than another where its cosine is more.
-                forth, end = (
-                    dx * row[AXIS_X] + dy * row[AXIS_Y],
-                    3 if dy * row[AXIS_X] > dx * row[AXIS_Y] else 2,
-                )
+                forth = dx * row[AXIS_X] + dy * row[AXIS_Y]
+                end = 3 if dy * row[AXIS_X] > dx * row[AXIS_Y] else 2
                 if row[HALF_EXTENT] < pi and forth < size * obstacles.spans[k, end]:
                     continue
             if count >= near.shape[0]:

@@ -68,7 +68,7 @@ class Given(NamedTuple):
     Parameters
     ----------
     pairs : (H, 7), see above.
-    curves, reals : (C, 7) and (C, 14) of the chord curves, see ``curves.columns``.
+    curves, reals : (C, 7) and (C, 14) of the chord curves, see ``base.tables``.
     rows : (N, 10) pieces of the boundary on which the pegs' centres lie.
     pegs : (4, 2) places of the pegs at jaw separation 0, in mm.
     right : (4,) 1 for pegs of the right jaw, which moves along x, 0 for others.

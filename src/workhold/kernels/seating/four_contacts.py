@@ -234,12 +234,8 @@ def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack
         cell, middle = cells[number], middles[number]
         pair = given.pairs[int(cell[PAIR])]
         tail, head = int(pair[FIRST_PEG]), int(pair[SECOND_PEG])
-        reach, s, at_low, at_high = (
-            (cell[HIGH] - cell[LOW]) / 2.0,
-            pair_in(middle),
-            pair_in(middle),
-            pair_in(middle),
-        )
+        reach, s = (cell[HIGH] - cell[LOW]) / 2.0, pair_in(middle)
+        at_low, at_high = s, s
         if cell[VAGUE] != 0.0:
             at_low, at_high = pair_at(pair, given, cell[LOW]), pair_at(pair, given, cell[HIGH])
         for third in range(given.pegs.shape[0]):

@@ -111,10 +111,8 @@ def keep_free(motions: SelfMotions, around: Obstacles, seen: Array) -> int:
         if good > 0:
             for n in range(length):
                 for j in range(4):
-                    motions.configs[at + n, j], motions.clear[at + n, j] = (
-                        motions.configs[begin + n, j],
-                        motions.clear[begin + n, j],
-                    )
+                    motions.configs[at + n, j] = motions.configs[begin + n, j]
+                    motions.clear[at + n, j] = motions.clear[begin + n, j]
             for j in range(4):
                 motions.pegs[count, j], motions.pieces[count, j] = motions.pegs[w, j], motions.pieces[w, j]
             motions.across[count, 0], motions.across[count, 1] = motions.across[w, 0], motions.across[w, 1]
@@ -219,10 +217,8 @@ def write_touching(config: Array, clear: Array, touched: IntArray, around: Obsta
     for peg in range(clear.shape[0]):
         if abs(clear[peg]) < TOUCHES:
             known = touched[peg] if peg < touched.shape[0] else -1
-            row[PEG + count], row[PIECE + count] = (
-                peg,
-                known if known >= 0 else touched_piece(config, peg, around),
-            )
+            row[PEG + count] = peg
+            row[PIECE + count] = known if known >= 0 else touched_piece(config, peg, around)
             count += 1
     row[CONTACTS] = count
 

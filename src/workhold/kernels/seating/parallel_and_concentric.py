@@ -189,11 +189,8 @@ def on_three_faces(slides: Array, given: Given, stop: float, widest: float, out:
     for n in range(slides.shape[0]):
         slide = slides[n]
         first, second = int(slide[SLIDE_FIRST]), int(slide[SLIDE_SECOND])
-        one, mate, theta = (
-            given.rows[int(slide[SLIDE_ONE])],
-            given.rows[int(slide[SLIDE_TWO])],
-            -slide[SLIDE_PSI],
-        )
+        one, mate = given.rows[int(slide[SLIDE_ONE])], given.rows[int(slide[SLIDE_TWO])]
+        theta = -slide[SLIDE_PSI]
         c, d = cos(theta), sin(theta)
         # The face's direction and its outward normal in the frame of the pegs.
         tx, ty = c * one[AXIS_X] - d * one[AXIS_Y], d * one[AXIS_X] + c * one[AXIS_Y]
@@ -230,13 +227,8 @@ def on_three_faces(slides: Array, given: Given, stop: float, widest: float, out:
                 if count >= out.shape[0]:
                     return -1
                 row = out[count]
-                row[OF_SLIDE], row[THIRD], row[ON_THIRD], row[AT_THETA], row[AT_SEPARATION] = (
-                    n,
-                    k,
-                    number,
-                    theta,
-                    s,
-                )
+                row[OF_SLIDE], row[THIRD], row[ON_THIRD], row[AT_THETA] = n, k, number, theta
+                row[AT_SEPARATION] = s
                 row[AT_LOW], row[AT_HIGH] = low, high
                 count += 1
     return count
@@ -296,12 +288,8 @@ def add_about(
         off = (1.0 - 2.0 * (way % 2)) * sqrt(square)
         # The centre, at separation 0 of the jaw of p and b, and the two pegs from it.
         x, y = given.pegs[p, 0] + (along * dx - off * dy) / d, given.pegs[p, 1] + (along * dy + off * dx) / d
-        px, py, bx, by = (
-            given.pegs[p, 0] - x,
-            given.pegs[p, 1] - y,
-            given.pegs[b, 0] - x,
-            given.pegs[b, 1] - y,
-        )
+        px, py = given.pegs[p, 0] - x, given.pegs[p, 1] - y
+        bx, by = given.pegs[b, 0] - x, given.pegs[b, 1] - y
         theta = atan2(by, bx) - atan2(ey, ex)
         qy = given.pegs[q, 1] - y
         level = other[RADIUS] * other[RADIUS] - qy * qy

@@ -14,7 +14,7 @@ from math import acos, atan2, ceil, cos, hypot, nan, pi, sin, sqrt
 from workhold.conventions import END_SLACK
 from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.chord.columns import FROM, TO
+from workhold.kernels.base.tables import FROM, TO
 from workhold.kernels.seating.candidates import place_third, write_pair, write_pose
 from workhold.kernels.seating.columns import (
     ANGLE,

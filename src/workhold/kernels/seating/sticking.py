@@ -105,16 +105,9 @@ def presses(
     for way in range(3):
         # Forces are square to two of the three components, of the two that are largest.
         m, n = (0 if way != 1 else 1), (1 if way == 0 else 2)
-        ai, aj, ak = (
-            straight[i, m] + fi * across[i, m],
-            straight[j, m] + fj * across[j, m],
-            straight[k, m] + fk * across[k, m],
-        )
-        bi, bj, bk = (
-            straight[i, n] + fi * across[i, n],
-            straight[j, n] + fj * across[j, n],
-            straight[k, n] + fk * across[k, n],
-        )
+        ai, bi = straight[i, m] + fi * across[i, m], straight[i, n] + fi * across[i, n]
+        aj, bj = straight[j, m] + fj * across[j, m], straight[j, n] + fj * across[j, n]
+        ak, bk = straight[k, m] + fk * across[k, m], straight[k, n] + fk * across[k, n]
         ci, cj, ck = aj * bk - ak * bj, ak * bi - ai * bk, ai * bj - aj * bi
         most = max(abs(ci), abs(cj), abs(ck))
         if most > size:

@@ -20,7 +20,7 @@ from math import asin, cos, inf, pi, sin
 from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import Interval, idivide, imul
-from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.chord.stretches import center_motion
 from workhold.kernels.seating.cell_middles import COSINE, SINE, pair_in, ray_in, ray_over
 from workhold.kernels.seating.columns import (

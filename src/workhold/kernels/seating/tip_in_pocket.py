@@ -19,9 +19,6 @@ from workhold.kernels.seating.obstacles import on_piece
 from workhold.kernels.seating.turning import END, NONE, ROOT, judged, to_look_at
 from workhold.kernels.seating.wall_equilibria import LOCATOR, ON_WALL, TIP, Stood, heights
 
-__all__ = ["tip_in_pocket"]
-
-
 Waves = tuple[float, float, float, float, float]
 # Of a sum of coefficients: rounding of the polynomial.
 ROUNDING = 2e-15
@@ -116,10 +113,8 @@ def write_pocketed(
     """
     piece, theta = int(stood.runs[m, 0]), found[0]
     c, s = cos(theta), sin(theta)
-    hx, hy = (
-        c * stood.hull[piece, 0] - s * stood.hull[piece, 1],
-        s * stood.hull[piece, 0] + c * stood.hull[piece, 1],
-    )
+    hx = c * stood.hull[piece, 0] - s * stood.hull[piece, 1]
+    hy = s * stood.hull[piece, 0] + c * stood.hull[piece, 1]
     ahead, up = c * pocket[0] - s * pocket[1], s * pocket[0] + c * pocket[1]
     x, y = stood.pegs[TIP, 0] - ahead, stood.pegs[TIP, 1] - up
     at = 0

@@ -42,21 +42,6 @@ from workhold.kernels.base.interval import (
     outward,
 )
 
-__all__ = [
-    "AWAY",
-    "HALVES",
-    "NONE",
-    "ROOT",
-    "SHAPE_LENGTH",
-    "Contact",
-    "contact",
-    "has_none",
-    "judged",
-    "meet",
-    "to_look_at",
-    "write_shape",
-]
-
 # Radians. Ranges narrower than the first are not halved, and a root known to less than the second is in
 # doubt.
 NARROWEST, KNOWN = 2e-8, 1e-8

@@ -26,8 +26,7 @@ from math import cos, floor, hypot, inf, pi, sin, sqrt
 
 from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.chord.coincidences import NONE
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     BACKWARD_ERROR,
     COINCIDENCE,
     END_STRETCH,
@@ -38,6 +37,7 @@ from workhold.kernels.chord.columns import (
     LENGTH,
     TAIL,
 )
+from workhold.kernels.chord.coincidences import NONE
 from workhold.kernels.chord.evaluation import chord_state
 from workhold.kernels.chord.stretches import PARTS, STRETCH_HIGH
 from workhold.kernels.chord.stretches import SPEED as STRETCH_SPEED
@@ -58,8 +58,6 @@ from workhold.kernels.seating.columns import (
     Given,
 )
 from workhold.kernels.seating.obstacles import angle_from_middle, foot, length, on_piece
-
-__all__ = ["Ray", "foot_is_off", "ray_of"]
 
 PairState = tuple[float, float, float, float, float, float, float, float, float, float]
 

@@ -189,10 +189,8 @@ def write_balance(
     if count >= out.shape[0]:
         return -1
     c, s = cos(theta), sin(theta)
-    hx, hy = (
-        c * stood.hull[piece, 0] - s * stood.hull[piece, 1],
-        s * stood.hull[piece, 0] + c * stood.hull[piece, 1],
-    )
+    hx = c * stood.hull[piece, 0] - s * stood.hull[piece, 1]
+    hy = s * stood.hull[piece, 0] + c * stood.hull[piece, 1]
     place, speed = (one[2][0] + one[2][1]) / 2.0, (one[3][0] + one[3][1]) / 2.0
     # The centre of the piece, and how it moves as the part turns.
     if upright:
