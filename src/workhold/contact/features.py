@@ -189,7 +189,7 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
     """Distances (..., 2) in mm along features from the feet of points to the low and to the high end.
 
     Negative past an end, infinite on a whole circle, which has none.
-    ``kernels.contact.contact_matrix.end_distance`` is its compiled form for one point; verification, the
+    ``kernels.chord.evaluation.distance_to_end`` is its compiled form for one point; verification, the
     algebra and the proof in balls have their own on purpose.
 
     Parameters

@@ -25,7 +25,6 @@ from workhold.kernels.curves import block_work, sliding_pairs, table, three_and_
 from workhold.kernels.proof import canonical_form, interval_newton, merging, newton_kantorovich
 from workhold.kernels.seating import (
     candidates,
-    cell_middles,
     closing,
     descent_paths,
     four_contacts,
@@ -123,7 +122,7 @@ def contacts_in_balance() -> Calls:
     """The kernels of seating of which many evaluate pairs of contacts, half of the work."""
     jaw = JawCells(ROWS, 0, 0.0)
     yield two_contact_curves.make_cells, (GIVEN, ROWS, ROWS)
-    yield cell_middles.write_middles, (ROWS, GIVEN, ROWS)
+    yield two_contact_curves.write_middles, (ROWS, GIVEN, ROWS)
     yield three_contacts.three_contacts, (ROWS, ROWS, GIVEN, ROWS, 0.0, ROWS, ROWS, ROWS)
     yield four_contacts.two_pairs, (jaw, jaw, GIVEN, SQUARE, ROWS, NUMBERS, ROWS)
     yield four_contacts.third_of_jaw, (ROWS, ROWS, GIVEN, ROWS, ROWS, ROWS)

@@ -61,8 +61,7 @@ MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
 # Nearer than this to a coincidence, in radians, a chord's contacts share one line of action.
 SHARED = 1e-10
-# Kinds of coincidence a curve may have; chords between concentric arcs turn about the centre without changing
-# shape.
+# Kinds of coincidence of a curve; chords between concentric arcs turn about the centre as they are.
 NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC, TOUCHING = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 # Circles that touch inside one another count only if their radii differ by this part of the smaller one.
 # Lengths of circles that touch agree to this part of EXACT, for what they are off by grows with the radius

@@ -79,8 +79,7 @@ from workhold.kernels.chord.shallow import line_to_shallow, shallow_to_arc
 Chord = tuple[float, float, float, float, float, float]
 State = tuple[float, float, float, float, float, float, float, float, float, float]
 
-# Which value of a curve is meant. (Kernels are compiled anew for every whole number written as such; these
-# are not.)
+# Which value of a curve is meant. (For every whole number written as such kernels are compiled anew.)
 HEIGHT = 0.0
 POSITION = 1.0
 
@@ -216,8 +215,7 @@ def backward_error(a: Array, b: Array, d: float) -> float:
         )
     spread = 1.0
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
-        # The head's distance from its circle is found from that of the tail: an error grows with the ratio of
-        # radii.
+        # The head's distance is found from that of the tail: an error grows with the ratio of radii.
         spread = max(a[RADIUS] / b[RADIUS], b[RADIUS] / a[RADIUS])
         if are_concentric(a, b):
             return ROUNDINGS * size * spread + hypot(a[X] - b[X], a[Y] - b[Y])

@@ -51,8 +51,7 @@ END, TANGENCY, CUT = 0.0, 1.0, 2.0
 SLIVER = 1e-12
 # In ranges narrower than this, in radians, the test in the middle cannot be trusted near a tangency.
 NARROW = 1e-6
-# A chord this far from a tangency, by its X, moves along the features no faster than a hundred times its
-# length.
+# This far from a tangency, by X, a chord moves along features no faster than a hundred times its length.
 STEADY = 0.01
 # Ends of features are met with this much to spare, in mm: more than rounding, less than they were moved out.
 SPARE = 1e-8

@@ -1,4 +1,4 @@
-"""Chords one of whose features is a shallow arc (see ``base.shallow``), without numbers of the size of its
+"""Chords one of whose features is a shallow arc (see ``base.feature``), without numbers of the size of its
 radius.
 
 Let m be the arcs' middles, t their directions, k their curvatures and q = m_b - m_a. The law of cosines gives
@@ -140,7 +140,7 @@ def arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float
 
 @inner
 def shallow_turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
-    """Enclosure of abs(X) for alpha in [low, high]; see ``center_speeds.turn_size``."""
+    """Enclosure of abs(X) for alpha in [low, high]; see ``stretches.turn_size``."""
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
         near, far, swing, beta = arcs_cosine(a, b, d)
         part = imul(outward(swing, swing), icos((low - beta, high - beta)))
@@ -164,5 +164,5 @@ def shallow_turn_size(a: Array, b: Array, d: float, low: float, high: float) -> 
 @inner
 def shallow_half(a: Array, b: Array, turn: float, gap: float) -> float:
     """Half the chord that two circles have in common, by X, where an arc is shallow
-    (``discs.arcs_radius``)."""
+    (``piece_bounds.arcs_radius``)."""
     return a[RADIUS] * b[RADIUS] * abs(turn) / gap

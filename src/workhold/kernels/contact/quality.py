@@ -64,8 +64,7 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
     return most
 
 
-# No unit. Wrenches nearer than this to a plane are on it, and three with a smaller cross product are on a
-# line.
+# No unit. Wrenches nearer than this to a plane are on it; three with a smaller cross product are on a line.
 FLAT = 1e-12
 # A bound of a movement is rounded by less than this.
 SURELY = 1.0 + 1e-12
@@ -288,8 +287,7 @@ def figures(
     farthest = farthest_point(corners, arcs)
     for k in range(len(points)):
         inverse = inverses[k]
-        # The last row of the inverse: peg forces per unit of clamping force, in proportion to the null
-        # vector.
+        # The last row of the inverse: peg forces per unit of clamping force, as in the null vector.
         total, least, most = 0.0, inf, 0.0
         nearest, edge = inf, length
         for i in range(inverse.shape[1]):

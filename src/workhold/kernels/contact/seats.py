@@ -63,8 +63,7 @@ def numbers_of_seats(
         theta[n] = (angle - start) % (2.0 * pi)
 
 
-# Columns of a clamp's forces per unit of its own: three locators', that on its face, and how far they may be
-# off.
+# Columns of forces per unit of a clamp's own: three locators', that on its face, how far they may be off.
 LOCATOR, FACE, OFF = 0, 3, 4
 FORCE_LENGTH = 5
 # Columns of what bounds the pairs of a seat.

@@ -31,8 +31,7 @@ from workhold.kernels.contact.rules import minor_band, outward_normal
 from workhold.kernels.curves.block_work import BlockWork, add_listed
 from workhold.kernels.curves.piece_bounds import HAIR
 
-# Points of an arc this far beyond its ends, in mm, count as points of it: more than ``END_SLACK`` and
-# rounding.
+# mm. Points this far beyond an arc's ends count as points of it: more than ``END_SLACK`` and rounding.
 SPARE = 1e-6
 
 
@@ -56,8 +55,7 @@ def height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
         middle, reach = ax * row[X] + ay * row[Y], row[HALF_EXTENT] * abs(ax * row[AXIS_X] + ay * row[AXIS_Y])
         return (middle - reach, middle + reach)
     half = row[HALF_EXTENT] + SPARE / row[RADIUS]
-    # Its two highest places, from the arc's middle: at the top of its circle, if that belongs to it, and at
-    # an end.
+    # Its two highest places, from the arc's middle: at an end, and at its circle's top, if that is on it.
     along, across = ax * row[AXIS_X] + ay * row[AXIS_Y], row[AXIS_X] * ay - row[AXIS_Y] * ax
     top = atan2(across, along)
     if half >= pi:

@@ -129,8 +129,7 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
     there."""
     d, eta, kind = curve[LENGTH], curve[BACKWARD_ERROR], curve[COINCIDENCE]
     if kind == CONCENTRIC:
-        # The chord turns about the centre as it is; nearly along a diameter its place is known less well than
-        # its length.
+        # The chord turns about the centre; nearly along a diameter its length is known better than its place.
         return a[RADIUS] * reach + arcs_radius(a, b, state, eta, eta)
     radius = regular_radius(a, b, kind)
     gamma = from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
@@ -141,8 +140,7 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
         return regular_error(curve) + 2.6 * (d + radius) * reach
     e = d * reach + eta
     if is_regular(kind, radius, d, gamma):
-        # The computed chord is that of a part with exactly the lengths of the coincidence, others within
-        # reach are not.
+        # The computed chord has exactly the lengths of the coincidence, others within reach have not.
         e += EXACT
         eta += regular_error(curve)
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
@@ -203,8 +201,7 @@ def value_disc(
         return (cos(psi) * y - sin(psi) * x, radius + (abs(x) + abs(y) + radius) * reach)
     if a[IS_ARC] == 0.0:
         return (parameter_on(a, x, y), radius)
-    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either
-    # side.
+    # From an arc's centre a disc of up to half its radius R is seen under 1.1 radius / R to either side.
     return (parameter_on(a, x, y), 1.1 * radius / a[RADIUS] if radius <= 0.5 * a[RADIUS] else TURN)
 
 

@@ -141,8 +141,7 @@ def write_steady(
     turns_little = (curved * arm + 1.0) * width <= MOST_TURN
     turned = curved * (speed * sag + 2.0 * error) + DIRECTION_HAIR * width + SAME
     if mode == HEIGHT:
-        # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs
-        # along a line.
+        # x . P' by its parts along the contact directions, which have little along x on a chord along a line.
         tail = head = 1.0
         if turns_little:
             tail = largest_part(

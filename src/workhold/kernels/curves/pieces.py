@@ -262,7 +262,7 @@ def cell_pieces(
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m,
         each is at least m / (1 - 3 m) of any other.
     mode : ``HEIGHT`` or ``POSITION``.
-    kept : of the members, see ``edges.kept_edges``.
+    kept : of the members, see ``piece_bounds.kept_edges``.
     farthest : pieces may be left out whose rightmost peg stands farther right than this, in mm.
     room : (R, 24) that may be written over.
 

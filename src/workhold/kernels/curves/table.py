@@ -51,8 +51,7 @@ def may_reach(row: Array, x: float, y: float, radius: float) -> bool:
     s, off = abs(parameter_on(row, x, y)), radius + ROUNDING
     if row[IS_ARC] == 0.0:
         return not s > row[HALF_EXTENT] + off
-    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either
-    # side.
+    # From an arc's centre a disc of up to half its radius R is seen under 1.1 radius / R to either side.
     return not (off <= 0.5 * row[RADIUS] and s > row[HALF_EXTENT] + 1.1 * off / row[RADIUS])
 
 

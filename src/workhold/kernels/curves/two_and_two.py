@@ -168,8 +168,8 @@ def add_crossings(out: Array, count: int, number: int, one: int, two: int, work:
 
 @inner
 def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Array, work: BlockWork) -> int:
-    """Appends what comes of the pairs of two lists of roles, from the one at ``space.at`` on (see
-    ``work_space``).
+    """Appends what comes of the pairs of two lists of roles, from the one at ``work.at`` on (see
+    ``block_work``).
 
     Parameters
     ----------

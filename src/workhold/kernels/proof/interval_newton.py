@@ -35,7 +35,6 @@ from workhold.kernels.contact.record import (
     LARGEST_RADIUS,
     MOVING,
     NEWTON,
-    NULL,
     OFF,
     PSI,
     REACH,
@@ -61,8 +60,7 @@ from workhold.kernels.proof.variation import (
     spread,
 )
 
-# A box is given up after so many parts; the sides of what remains of one are made larger by this part, for
-# rounding.
+# A box is given up after so many parts; sides of what remains are made larger by this part, for rounding.
 MOST_PARTS = 200_000
 WIDER = 1e-12
 DEPTH = 256
@@ -82,7 +80,7 @@ class NewtonWorkSpace(NamedTuple):
 
     Parameters
     ----------
-    w, pairs : (19, 4) and (3, 4, 2), see ``contact.equations`` and ``variation``.
+    w, pairs : (19, 4) and (3, 4, 2), see ``contact.record`` and ``variation``.
     stack : (DEPTH, 2, 4) parts that wait, as middles and half widths.
     numbers : (10, 4), see ``variation``.
     slopes : (4, 4, 4), see :func:`combine`.
@@ -288,7 +286,7 @@ def solutions_in(
         size, _ = sizes(record, features, pairs[0])
         least = ROUNDINGS * (size + length)
         spread(record, features, size, setting, place, frame, w, pairs, b)
-        if is_broken(record, features, setting, w, pairs, w[NULL], b):
+        if is_broken(record, features, setting, w, pairs, b):
             steps = 0
             continue
         combine(frame, size, length, w, b, slopes)

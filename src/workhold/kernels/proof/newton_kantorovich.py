@@ -65,8 +65,7 @@ ROUNDS = 3
 # Determinants this small are singular; steps of more than this many mm lead to another contact.
 SINGULAR = 1e-300
 FARTHEST = 1.0
-# Roundings of half a unit in the last place in a contact equation, generously counted, and relative to its
-# terms.
+# Roundings of half a unit in the last place in a contact equation, relative to its terms, on the safe side.
 ROUNDINGS = 16.0 * 1.2e-16
 # Where an engine states nothing better, the exact contact is this near, in mm.
 LEAST_REACH = 1e-9
@@ -152,8 +151,7 @@ def certificate(
     if not (rest > 0.0 and inside > 0.0):
         return (inf, 0.0)
     radius = 1.01 * 2.0 * step / (rest + sqrt(inside))
-    # Points of the part's frame more than half a radius from an arc are outside the bound of the second
-    # derivatives.
+    # More than half a radius from an arc the second derivatives are not bounded.
     unique = min(0.99 * rest / curve, smallest / 16.0)
     return (radius, unique) if radius < unique else (inf, 0.0)
 
@@ -168,8 +166,8 @@ def nearest_end(record: Array, features: Array, points: Array) -> float:
 
 
 @inner
-def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, float]:
-    """How four contacts with forces ``null`` (4,) stand between the carriers.
+def held(w: Array, pairs: Array) -> tuple[float, float]:
+    """How four contacts in place stand between the carriers, with the null vector for forces.
 
     Returns
     -------
@@ -177,6 +175,7 @@ def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, f
     pegs along x)
     """
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
+    points, normals, null = pairs[0], pairs[1], w[NULL]
     standing, moving, push = -inf, inf, 0.0
     for k in range(4):
         along = points[k, 0] * cosine + points[k, 1] * sine
@@ -197,13 +196,13 @@ def sign_of(middle: float, doubt: float) -> int:
 
 
 @inner
-def wrenches(record: Array, features: Array, length: float, pairs: Array, null: Array) -> float:
+def wrenches(record: Array, features: Array, length: float, w: Array, pairs: Array) -> float:
     """Fills in the normals, at ``pairs[1]``, and the null vector, not scaled, of the contacts in place, and
     returns its sum of sizes."""
     for k in range(4):
         row = features[int(record[FEATURES + k])]
         pairs[1, k, 0], pairs[1, k, 1] = outward_normal(row, pairs[0, k, 0], pairs[0, k, 1])
-    return minors(pairs[0], pairs[1], length, null)
+    return minors(pairs[0], pairs[1], length, w[NULL])
 
 
 @inner
@@ -215,7 +214,6 @@ def judged(
     smallest: float,
     w: Array,
     pairs: Array,
-    null: Array,
 ) -> int:
     """Decides contacts in place by the signs of enclosures of five numbers that must all be positive: ends,
     gap, span, closure, clamping. Those of one of two clamps are ends, the determinant of the standing pegs'
@@ -226,9 +224,9 @@ def judged(
     radius : how far in mm the exact unknowns may be from those in place.
     smallest : radius of the smallest arc touched, infinite for lines.
     """
-    length = setting.limits.wrench_length
-    size = wrenches(record, features, length, pairs, null)
-    gap, push = held(w, pairs[0], pairs[1], null)
+    length, null = setting.limits.wrench_length, w[NULL]
+    size = wrenches(record, features, length, w, pairs)
+    gap, push = held(w, pairs)
     reach = 4.5 * radius
     swing = reach / smallest
     band = minor_band(swing, reach, length)
@@ -246,8 +244,7 @@ def judged(
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
     verdict = min(verdict, sign_of(gap - (setting.limits.gap - GAP_SLACK), 1.5 * radius + 1e-12))
     verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))
-    # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; at most three forces
-    # push.
+    # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; up to three forces push.
     verdict = min(verdict, sign_of(closure - LEAST_CLOSURE * size, 1.1 * band))
     doubt = 3.1 * band + size * (swing + radius / length)
     return min(verdict, sign_of(sign * setting.limits.clamping * push - LEAST_CLAMPING * size, doubt))
@@ -306,10 +303,9 @@ def certified(
     outline, discs : (S, 10) the part's faces, and :func:`discs_around` these and the pegs that touch them.
     solutions : (N, 4) receives the unknowns.
     verdicts : (N,) receives the verdicts; open where another solution may be in the record's box.
-    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null
-        vectors.
+    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.record``.
     """
-    length, points, null = setting.limits.wrench_length, pairs[0], w[NULL]
+    length, points = setting.limits.wrench_length, pairs[0]
     for n in range(records.shape[0]):
         record = records[n]
         take_pegs(record, setting.lattice, w)
@@ -323,7 +319,7 @@ def certified(
         # The exact contact may be this far, where the separation is the worst known.
         box = 2.0 * (record[LARGEST_RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
         if radius < inf and away + box <= unique:
-            verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs, null)
+            verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs)
             # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
             if verdicts[n] == PROVEN and not is_clear(points, w[MOVING], outline, discs, setting):
                 verdicts[n] = DISCARDED

@@ -18,6 +18,7 @@ from workhold.kernels.contact.record import (
     FEATURES,
     MOVING,
     NEWTON,
+    NULL,
     OFF,
     SLOPES,
     STEP_X,
@@ -157,11 +158,9 @@ def face_one_way(pairs: Array, b: Array) -> bool:
 
 
 @inner
-def is_broken(
-    record: Array, features: Array, setting: Setting, w: Array, pairs: Array, null: Array, b: Array
-) -> bool:
+def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs: Array, b: Array) -> bool:
     """Whether some rule is broken everywhere in a part."""
-    reach = 0.0
+    reach, null = 0.0, w[NULL]
     moving, standing = inf, -inf
     for k in range(4):
         row = features[int(record[FEATURES + k])]
@@ -194,13 +193,14 @@ def is_broken(
         return True
     size = max(size - doubt, 0.0)
     clamping = setting.limits.clamping
-    return not (may_clamp(1.0, clamping, size, w, null, b) or may_clamp(-1.0, clamping, size, w, null, b))
+    return not (may_clamp(1.0, clamping, size, w, b) or may_clamp(-1.0, clamping, size, w, b))
 
 
 @inner
-def may_clamp(sign: float, clamping: float, size: float, w: Array, null: Array, b: Array) -> bool:
+def may_clamp(sign: float, clamping: float, size: float, w: Array, b: Array) -> bool:
     """Whether forces of one sign may close and clamp; the force is the push of the standing pegs, and as well
     what the moving pegs take up. ``size`` is the least that the sizes of the minors add up to."""
+    null = w[NULL]
     standing = moving = 0.0
     for k in range(4):
         band = b[MINOR_BAND, k]

@@ -22,8 +22,7 @@ from workhold.kernels.seating.obstacles import (
     turned_place,
 )
 
-# mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; pegs may be in the part by
-# the last.
+# mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; how deep pegs may enter.
 TOUCHES, SHORTEST, GAIN, ENTERED = 1e-9, 1e-9, 1e-12, 1e-9
 # 1 / mm. Curvatures below this are counted as this.
 FLATTEST = 1e-9

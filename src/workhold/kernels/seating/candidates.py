@@ -49,7 +49,7 @@ MISFIT = 1e-6
 # No unit. Forces balance to this, per unit of jaw force; each is above the second; in doubt, what bounds left
 # so.
 BALANCED, LEAST_FORCE, BALANCED_IN_DOUBT = 1e-7, 1e-9, 1e-3
-# ByteArray on a candidate: it is no equilibrium, it is one, or it is in doubt.
+# Verdicts on a candidate: it is no equilibrium, it is one, or it is in doubt.
 NO_BALANCE, IN_BALANCE, DOUBTFUL = 0, 1, 2
 
 

@@ -37,11 +37,9 @@ LEAST_STEP, ENTERED, LEAST_GAIN = 1e-7, 1e-8, 1e-12
 MOST_STEPS = 4000
 # Of the part's size, how much farther around pegs pieces are listed than is asked for.
 AROUND = 0.1
-# How many times as wide as the one before a step's box is at most, and how many half widths a clearance falls
-# within one.
+# How many times as wide a step's box is than the last, at most; half widths that a clearance falls in one.
 WIDER, REACH = 3.0, 3.6
-# How many times as far as is looked at a way out leads at most: out of a narrow corner it is longer than what
-# is entered.
+# How many times as far as is looked at a way out leads at most, which is long out of a narrow corner.
 FAR = 8.0
 # Steps of linear programs that follow where an antipodal step found something in the way.
 WAIT = 3

@@ -21,8 +21,7 @@ A candidate is a configuration that may be an equilibrium.
 
 - THETA, PLACE_X, PLACE_Y, SEPARATION : the configuration.
 - CONTACTS : how many; four pegs from PEG on, four pieces from PIECE on, and four forces from FORCE on, per
-unit
-  of jaw force, have room for them.
+  unit of jaw force, have room for them.
 - SECOND : second derivative of the separation along what is left free, in any positive measure; 0 of four
   contacts. The direction of that motion is from MOTION on (theta, x, y).
 - DOUBT : 1 where bounds did not decide that it exists.
@@ -33,8 +32,8 @@ A node is a configuration (theta, x, y, S) on a descent path.
 
 - STEP, STEP_ALONG : how long the next steps are in mm, of linear programs and along both faces.
 - COSINE, SINE : of theta.
-- TURNED, MOVED : how far in radians and in mm the path has turned and moved since it began, all of it
-counted.
+- TURNED, MOVED : how far in radians and in mm the path has turned and moved since it
+  began, all of it counted.
 """
 
 from __future__ import annotations
@@ -63,7 +62,7 @@ DEPTH = 128
 
 
 class Given(NamedTuple):
-    """What is pair_at by what.
+    """What is held, and by what.
 
     Parameters
     ----------

@@ -179,11 +179,9 @@ def free_poses(
     return count
 
 
-# mm. A peg this near to a piece touches it, and one that is this deep in the part, as it may be where a way
-# down begins.
+# mm. A peg this near to a piece touches it, and one this deep in the part, as where a way down may begin.
 TOUCHED, ENTERED = 1e-4, 0.01
-# mm. So far a peg is taken off what it touches, so that the way along that is seen to be free as far as it
-# is.
+# mm. So far a peg is taken off what it touches, so that the way along that is seen to be free.
 LIFTED = 1e-6
 # Radians. Directions that pass an end by less meet it, and those that lead into what is touched by less go
 # along it; one range begins where another ends if no more is between: rounding.

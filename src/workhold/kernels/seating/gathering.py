@@ -33,7 +33,6 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.obstacles import length
 
 FIRST, END, NUMBER, JAW, NAMES, SHIFT = 0, 1, 2, 3, 4, 8
-SUBSET_LENGTH = 11
 SUBSET, ORIGIN = CANDIDATE_LENGTH, CANDIDATE_LENGTH + 1
 GATHERED_LENGTH = CANDIDATE_LENGTH + 2
 
@@ -66,10 +65,8 @@ def keep_reached(out: Array, count: int, end: int, stop: float, widest: float) -
 
 @inner
 def add_rows(rows: Array, stop: float, widest: float, out: Array, count: int) -> int:
-    """Adds candidates of no subset at separations that are reached; returns the new count, or -1.
-
-    -1 means that they do not fit.
-    """
+    """Adds candidates of no subset at separations that are reached; returns the new count, -1 where they do
+    not fit."""
     if count + rows.shape[0] > out.shape[0]:
         return -1
     for n in range(rows.shape[0]):

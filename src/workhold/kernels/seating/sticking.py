@@ -17,8 +17,7 @@ Cubic = tuple[float, float, float, float]
 # No unit. Coefficients of a cubic, per the largest, that are none, and all of them; and how far, per 1 +
 # |root|, two complex roots are apart that are counted as one that is real.
 NO_COEFFICIENT, NO_CUBIC, APART = 1e-13, 1e-14, 1e-7
-# No unit. Forces are above minus the first, which on the jaw is no force; vectors below the second have no
-# direction.
+# No unit. Forces are above minus the first, none on the jaw; vectors below the second have no direction.
 PULLS, NO_FORCE = 1e-9, 1e-12
 # Determinants that are none. A share by which less friction is less, and how often it is halved.
 SINGULAR, LESS, HALVINGS = 1e-14, 1e-7, 60
@@ -204,8 +203,7 @@ def balances(
 
     Some four of their six edges do then.
     """
-    # Edges no longer than about 1, whatever the friction: their determinant shows whether they are
-    # independent.
+    # Edges no longer than about 1, so that their determinant shows whether they are independent.
     along = 1.0 / max(1.0, friction)
     for left_out in range(4):
         # Of six edges, two are not used.

@@ -42,13 +42,11 @@ from workhold.kernels.base.interval import (
     outward,
 )
 
-# Radians. Ranges narrower than the first are not halved, and a root known to less than the second is in
-# doubt.
+# Radians. Ranges narrower than the first are not halved; a root known less well than the second is in doubt.
 NARROWEST, KNOWN = 2e-8, 1e-8
 # Ranges that are looked at of one function; what is left then is in doubt.
 MOST_RANGES = 20000
-# ByteArray on a range: to be left, to be looked at in halves or as far as it is left, a root, or one
-# in doubt.
+# Verdicts on a range: to be left, to be looked at in halves or as far as it is left, a root, one in doubt.
 NONE, HALVES, REST, ROOT, IN_DOUBT = range(5)
 
 
