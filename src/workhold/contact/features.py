@@ -24,7 +24,7 @@ from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.model.own_outlines import outline_met
-from workhold.model.requirements import Restrictions, Zone
+from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -132,7 +132,11 @@ def allowed_features(
         )
     left = touched
     for zone in restrictions.zones:
-        left = [kept for feature in left for kept in clear_of(feature, zone, body_radius)]
+        left = [
+            evolve(feature, segment=part)
+            for feature in left
+            for part in clear_parts(feature.segment, zone.segments, body_radius)
+        ]
     if not left:
         raise InputError(
             f"the keep-out zones cover every place along {workpiece.name} where a peg could stand: make them "
@@ -168,16 +172,9 @@ def face_of_segment(workpiece: Workpiece, number: int) -> int:
     )
 
 
-def clear_of(feature: ContactFeature, zone: Zone, body_radius: float) -> list[ContactFeature]:
-    """The parts of a contact feature on which a peg's body stays clear of a zone."""
-    parts = clear_parts(feature.segment, zone.segments, body_radius)
-    return [ContactFeature(feature.face, part, feature.cut_from) for part in parts]
-
-
 def passed_by(feature: ContactFeature, swept: Swept, beyond: float) -> list[ContactFeature]:
     """The parts of a contact feature that tools pass at their radius and so many mm ``beyond``."""
-    parts = parts_clear_of(feature.segment, swept, beyond)
-    return [ContactFeature(feature.face, part, feature.cut_from) for part in parts]
+    return [evolve(feature, segment=part) for part in parts_clear_of(feature.segment, swept, beyond)]
 
 
 def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
