@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strategies import random_row
+from workhold.kernels.base.tables import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
 from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.chord.columns import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
 from workhold.kernels.chord.evaluation import chord, write_curve
 from workhold.kernels.chord.intervals import chord_intervals
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from attrs import define
 
-from workhold.kernels.base.given import Lattice, Limits, Setting
+from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.kernels.contact.record import WORK_LENGTH, touch
 from workhold.kernels.contact.rules import minors, outward_normal
 

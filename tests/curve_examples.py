@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from chord_examples import KINDS, random_chord
 from strategies import random_row
 from workhold.contact.curves import CurveTable, LatticeSteps, curve_table
-from workhold.kernels.chord.columns import COLUMN_STEP, LENGTH, PIECE_LENGTH, ROW_STEP
+from workhold.kernels.base.tables import COLUMN_STEP, LENGTH, PIECE_LENGTH, ROW_STEP
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION
 from workhold.kernels.curves.piece_bounds import kept_edges
 from workhold.kernels.curves.pieces import cell_pieces

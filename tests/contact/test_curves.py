@@ -12,7 +12,7 @@ from workhold import Query, Vise, Workpiece, count_contacts
 from workhold.contact.curves import curve_table, loosened
 from workhold.contact.problem import Problem
 from workhold.conventions import LOOSE
-from workhold.kernels.chord.columns import BRANCH, FROM, HEAD, LENGTH, TAIL, TO
+from workhold.kernels.base.tables import BRANCH, FROM, HEAD, LENGTH, TAIL, TO
 from workhold.kernels.chord.intervals import NARROW, chord_intervals
 from workhold.search.toolkit_search import lattice_steps
 

@@ -21,7 +21,7 @@ from workhold.conventions import SAME_PLACE, SAME_POSE
 from workhold.geometry.symmetry import rotated
 from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact import record
-from workhold.kernels.contact.seat_numbers import ASIDE
+from workhold.kernels.contact.seats import ASIDE
 from workhold.listing import seat_order
 from workhold.listing.contact_groups import PackedContacts, SeatGroups
 from workhold.listing.ranking import is_worse, ranking_keys

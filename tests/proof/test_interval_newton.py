@@ -8,7 +8,7 @@ from flint import arb
 
 import ladders
 from exact_chords import exactly
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 from workhold.proof import interval_newton as settling
 from workhold.proof.ball_contacts import CandidateBox
 from workhold.proof.interval_newton import BoxOutcome, solutions_in

@@ -13,7 +13,7 @@ from flint import ctx
 from cad_parts import cad_part
 from workhold import design
 from workhold.files.toolkit_file import load_toolkit
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 from workhold.proof.ball_contacts import CandidateBox, narrowed
 from workhold.proof.interval_newton import PRECISIONS
 

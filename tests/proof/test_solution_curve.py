@@ -10,7 +10,7 @@ from flint import arb, arb_mat, ctx
 
 import ladders
 from exact_chords import exactly
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 from workhold.proof import solution_curve
 from workhold.proof.ball_contacts import CandidateBox
 from workhold.proof.interval_newton import PRECISIONS

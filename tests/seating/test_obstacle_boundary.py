@@ -14,7 +14,7 @@ from seating_examples import LEFT, RIGHT, STEP, held, moved, solved
 from workhold import Vise, Workpiece
 from workhold.contact.curves import LatticeSteps, curve_table
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
-from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.model.seating import SeatContact
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import LOOSE
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
-from workhold.kernels.chord.coincidences import are_concentric
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CENTER,
     END_STRETCH,
     FIRST_STRETCH,
@@ -27,6 +26,7 @@ from workhold.kernels.chord.columns import (
     Curves,
     SlidingPairs,
 )
+from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.curves.table import tail_curves
 
 __all__ = ["CurveTable", "LatticeSteps", "center_numbers", "curve_table", "joined", "loosened"]
@@ -57,7 +57,7 @@ class LatticeSteps:
 
 @define(frozen=True, eq=False)
 class CurveTable:
-    """Chord curves and sliding pairs of pairs of features, see ``kernels.chord.columns``."""
+    """Chord curves and sliding pairs of pairs of features, see ``kernels.base.tables``."""
 
     curves: Curves
     sliding_pairs: SlidingPairs

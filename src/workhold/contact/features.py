@@ -23,7 +23,7 @@ from workhold.fixels.pegs import Flat
 from workhold.geometry.offset import clear_parts, trimmed_offsets
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.model.requirements import Restrictions, Zone
+from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -131,7 +131,11 @@ def allowed_features(
         )
     left = touched
     for zone in restrictions.zones:
-        left = [kept for feature in left for kept in clear_of(feature, zone, body_radius)]
+        left = [
+            evolve(feature, segment=part)
+            for feature in left
+            for part in clear_parts(feature.segment, zone.segments, body_radius)
+        ]
     if not left:
         raise InputError(
             f"the keep-out zones cover every place along {workpiece.name} where a peg could stand: make them "
@@ -167,16 +171,9 @@ def face_of_segment(workpiece: Workpiece, number: int) -> int:
     )
 
 
-def clear_of(feature: ContactFeature, zone: Zone, body_radius: float) -> list[ContactFeature]:
-    """The parts of a contact feature on which a peg's body stays clear of a zone."""
-    parts = clear_parts(feature.segment, zone.segments, body_radius)
-    return [ContactFeature(feature.face, part, feature.cut_from) for part in parts]
-
-
 def passed_by(feature: ContactFeature, swept: Swept, beyond: float) -> list[ContactFeature]:
     """The parts of a contact feature that tools pass at their radius and so many mm ``beyond``."""
-    parts = parts_clear_of(feature.segment, swept, beyond)
-    return [ContactFeature(feature.face, part, feature.cut_from) for part in parts]
+    return [evolve(feature, segment=part) for part in parts_clear_of(feature.segment, swept, beyond)]
 
 
 def feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
@@ -188,7 +185,7 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
     """Distances (..., 2) in mm along features from the feet of points to the low and to the high end.
 
     Negative past an end, infinite on a whole circle, which has none.
-    ``kernels.contact.contact_matrix.end_distance`` is its compiled form for one point; verification, the
+    ``kernels.chord.evaluation.distance_to_end`` is its compiled form for one point; verification, the
     algebra and the proof in balls have their own on purpose.
 
     Parameters
@@ -197,10 +194,8 @@ def end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
     points : (..., 2) in mm.
     """
     dx, dy = points[..., 0] - rows[..., X], points[..., 1] - rows[..., Y]
-    along, across = (
-        dx * rows[..., AXIS_X] + dy * rows[..., AXIS_Y],
-        rows[..., AXIS_X] * dy - rows[..., AXIS_Y] * dx,
-    )
+    along = dx * rows[..., AXIS_X] + dy * rows[..., AXIS_Y]
+    across = rows[..., AXIS_X] * dy - rows[..., AXIS_Y] * dx
     is_arc = rows[..., IS_ARC] != 0.0
     place, unit = np.where(is_arc, np.arctan2(across, along), along), np.where(is_arc, rows[..., RADIUS], 1.0)
     half = rows[..., HALF_EXTENT]

@@ -16,7 +16,6 @@ import numpy as np
 from attrs import define, evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.beside import keeps_of, swept_of
 from workhold.contact.features import (
     ContactFeature,
     allowed_features,
@@ -24,13 +23,13 @@ from workhold.contact.features import (
     feature_rows,
     features_met,
 )
-from workhold.contact.swept import Swept
+from workhold.contact.swept import Swept, keeps_of, swept_of
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Carrier, Toolkit, Travel
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
-from workhold.kernels.base.given import Lattice, Limits, Setting
+from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.limits import refuse_many_steps
 from workhold.model.own_outlines import outline_diameter
 from workhold.model.query import Query
@@ -52,9 +51,9 @@ class Frame:
     """A toolkit as the search sees it: one carrier stands still, one slides along its rows or columns.
 
     What other toolkits must bring. Both carriers need one pitch only where both hold two pegs: Type I asks
-    for heights that differ by whole row pitches (``kernels.base.given.Lattice``). Chords are made of the
+    for heights that differ by whole row pitches (``kernels.base.tables.Lattice``). Chords are made of the
     steps of one lattice alone: a carrier of another pitch needs lattice steps and curves of its own
-    (``search.toolkit_search``, ``CurveTable.joined``), and ``equations.take_pegs`` its pitch. A single moving
+    (``search.toolkit_search``, ``CurveTable.joined``), and ``record.take_pegs`` its pitch. A single moving
     peg, such as a clamp on a line of holes of the locators' own plate, needs the pitch of its rows and their
     offset only.
 

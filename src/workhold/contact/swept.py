@@ -22,7 +22,9 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.conventions import STRAIGHT
+from workhold.fixels.carrier import Carrier
 from workhold.geometry.symmetry import rotated
+from workhold.kernels.base.distance import DEPTH, LEAF, SweptTree, nearest_swept
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -37,10 +39,10 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
-from workhold.kernels.contact.swept import DEPTH, LEAF, SweptTree, nearest_swept
 from workhold.model.program import PathVertex, Program, SweptPiece
+from workhold.model.query import Query
 
-__all__ = ["Swept", "path_of", "span_boxes", "swept_below"]
+__all__ = ["Swept", "keeps_of", "path_of", "span_boxes", "swept_below", "swept_beside", "swept_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -205,12 +207,8 @@ def span_rows(spans: Array) -> Array:
         shallow = half < SHALLOW
         center[shallow] = exact[shallow].astype(np.float64)
         rest = np.where(shallow[:, None], (exact - center).astype(np.float64), 0.0)
-        out[arcs, IS_ARC], out[arcs, RADIUS], out[arcs, SIGN], out[arcs, HALF_EXTENT] = (
-            1.0,
-            radius,
-            sign,
-            half,
-        )
+        out[arcs, IS_ARC], out[arcs, RADIUS], out[arcs, SIGN] = 1.0, radius, sign
+        out[arcs, HALF_EXTENT] = half
         columns = np.array([X, Y, AXIS_X, AXIS_Y, REST_X, REST_Y])
         out[np.ix_(arcs, columns)] = np.hstack([center, axis, rest])
     return out
@@ -285,3 +283,46 @@ def nodes_of(boxes: Array, radius: Array) -> Array:
         )
         levels.append(level)
     return np.ascontiguousarray(np.concatenate([np.full((1, 5), -inf), *levels[::-1]]))
+
+
+def keeps_of(query: Query, carrier: Carrier) -> list[tuple[Swept, float]]:
+    """What a query's program sweeps at the heights of a carrier's pegs, and what their centres keep besides.
+
+    Where pegs have a shoulder below the part, what is swept there follows, with what that keeps.
+    """
+    swept = swept_of(query, carrier)
+    if swept is None or query.program is None:
+        return []
+    pieces, clearance = swept
+    keeps = [(pieces, clearance + carrier.peg_radius)]
+    if carrier.body_radius > carrier.peg_radius:
+        keeps.append((swept_below(query.program, 0.0), clearance + carrier.body_radius))
+    return keeps
+
+
+def swept_of(query: Query, carrier: Carrier) -> tuple[Swept, float] | None:
+    """What a query's program sweeps at the heights of a carrier's pegs, and the clearance in mm.
+
+    None without a program.
+    """
+    if query.passed is None:
+        return None
+    program, height = query.passed
+    return swept_beside(program, height, carrier), program.clearance
+
+
+def swept_beside(program: Program, peg_height: float, carrier: Carrier) -> Swept:
+    """What a program sweeps at the heights of what stands on a carrier.
+
+    Parameters
+    ----------
+    peg_height : up to which a carrier without heights of its own reaches, in mm.
+    """
+    low, high = carrier.heights or (0.0, peg_height)
+    return swept_between(program, low, high) if low > 0.0 else swept_below(program, high)
+
+
+@lru_cache(maxsize=16)
+def swept_between(program: Program, low: float, high: float) -> Swept:
+    """What a program sweeps between two heights in mm."""
+    return Swept.of(program.iter_swept(low, high))

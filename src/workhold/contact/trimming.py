@@ -19,7 +19,7 @@ R + clearance + r of the axis, and is ruled out here.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +33,7 @@ __all__ = ["covered_parts", "most_in_the_way", "parts_clear_of"]
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# mm. Of what is left of a feature, shorter parts are dropped: a place on one is within half of this of what
-# is covered.
+# mm. Shorter parts left of a feature are dropped: their places are within half of this of covered ones.
 LEAST_PART = 1e-6
 
 
@@ -72,9 +71,7 @@ def most_in_the_way(segments: Sequence[Segment], swept: Swept, beyond: float) ->
         covered, lines = covered_parts(segment, swept, beyond)
         scale = segment.radius if isinstance(segment, Arc) else 1.0
         for line in np.unique(lines).tolist():
-            mine = covered[lines == line]
-            parts = left_of(segment, mine)
-            free = sum(2 * part.half_extent for part in parts)
+            free = sum(2 * part.half_extent for part in left_of(segment, covered[lines == line]))
             lengths[line] = lengths.get(line, 0.0) + (2 * segment.half_extent - free) * scale
     return max(lengths, key=lambda line: (lengths[line], -line)) if lengths else None
 
@@ -105,7 +102,9 @@ def covered_parts(segment: Segment, swept: Swept, beyond: float) -> tuple[Array,
     return ranges, lines
 
 
-def parts_where(own: Array, cuts: Array, is_covered: object) -> tuple[Array, IntArray]:
+def parts_where(
+    own: Array, cuts: Array, is_covered: Callable[[Array, Array], NDArray[np.bool_]]
+) -> tuple[Array, IntArray]:
     """Ranges (K, 2) between neighbouring cuts (P, C) of a segment's row whose middles are covered, and of
     which of P pieces (K,) each is.
 
@@ -117,7 +116,7 @@ def parts_where(own: Array, cuts: Array, is_covered: object) -> tuple[Array, Int
     inner = np.where(np.abs(cuts) < half, cuts, half)
     edges = np.sort(np.hstack([np.full((count, 1), -half), inner, np.full((count, 1), half)]), axis=1)
     middles = (edges[:, 1:] + edges[:, :-1]) / 2
-    covered = is_covered(*points_on(own, middles)) & (edges[:, 1:] > edges[:, :-1])  # type: ignore[operator]
+    covered = is_covered(*points_on(own, middles)) & (edges[:, 1:] > edges[:, :-1])
     piece, number = np.nonzero(covered)
     return np.stack([edges[piece, number], edges[piece, number + 1]], axis=1), piece
 

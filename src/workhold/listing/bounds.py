@@ -28,7 +28,7 @@ from workhold.conventions import NO_REACTION, SQUARE_TILT
 from workhold.geometry.segment import Arc
 from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.contact import record
-from workhold.kernels.contact.pair_bounds import (
+from workhold.kernels.contact.seats import (
     AMPLIFICATION,
     BOUND_LENGTH,
     FACE,
@@ -86,7 +86,7 @@ def pair_bounds(
     problems: Sequence[Problem],
     query: Query,
 ) -> Array:
-    """Bounds (S, 3) of the pairs of clamps at seats, see ``kernels.contact.pair_bounds``.
+    """Bounds (S, 3) of the pairs of clamps at seats, see ``kernels.contact.seats``.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def pair_bounds(
 
 
 def clamp_forces(records: Array, c: Candidates, problem: Problem) -> Array:
-    """Forces (N, 5) of contacts of three locators and a clamp, see ``kernels.contact.pair_bounds``.
+    """Forces (N, 5) of contacts of three locators and a clamp, see ``kernels.contact.seats``.
 
     Locators are in the order of their holes, whatever the direction of the clamp. Less than no doubt stands
     for a clamp that surely holds the part alone, and needs no other.

@@ -42,7 +42,7 @@ from workhold.conventions import SAME_PLACE, SAME_POSE, SQUARE_TILT
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
-from workhold.kernels.contact.seat_numbers import numbers_of_seats
+from workhold.kernels.contact.seats import numbers_of_seats
 from workhold.listing.bounds import BOUNDED, first_of_clamps, pair_bounds
 from workhold.listing.canonical_form import candidates_of
 from workhold.listing.contact_groups import PackedContacts, SeatGroups, in_order_of_bounds

@@ -37,7 +37,7 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
-from workhold.kernels.chord.columns import BRANCH, COLUMN_STEP, FROM, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, TO
+from workhold.kernels.base.tables import BRANCH, COLUMN_STEP, FROM, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, TO
 from workhold.kernels.chord.evaluation import chord, distance_to_end, parameter_on
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query

@@ -34,7 +34,7 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 
 __all__ = [
     "BoxContacts",

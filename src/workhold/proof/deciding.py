@@ -22,7 +22,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
-from workhold.kernels.base.given import Lattice, Setting
+from workhold.kernels.base.tables import Lattice, Setting
 from workhold.kernels.contact import record
 from workhold.kernels.contact.record import WORK_LENGTH
 from workhold.kernels.proof.interval_newton import interval_newton, jacobians

@@ -47,7 +47,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import DEPENDENT, PARALLEL, SAME_CENTER
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
-from workhold.kernels.base.given import Lattice
+from workhold.kernels.base.tables import Lattice
 from workhold.kernels.contact import record
 from workhold.kernels.proof.newton_kantorovich import LEAST_REACH
 

@@ -22,7 +22,7 @@ from flint import arb, arb_mat, ctx
 from workhold.contact.problem import Problem
 from workhold.conventions import STRAIGHT
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X, REST_Y, SIGN, X, Y
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 from workhold.model.clamps import LOCATORS
 from workhold.model.workpiece import Workpiece
 from workhold.proof.ball_contacts import BoxContacts, CandidateBox, places

@@ -19,7 +19,7 @@ from collections.abc import Callable
 from attrs import frozen
 from flint import arb, ctx
 
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 from workhold.model.search_report import AT_AN_EDGE, NEARLY_DOUBLE
 from workhold.proof.ball_contacts import CandidateBox, is_empty, narrowed, places, slacks, wrench_minors
 from workhold.proof.singular_frame import SingularFrame, is_smaller, thirds

@@ -17,7 +17,7 @@ from attrs import frozen
 from flint import arb, arb_mat
 from numpy.typing import NDArray
 
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 from workhold.proof.ball_contacts import BoxContacts, CandidateBox, contact_values, places
 
 __all__ = ["SingularFrame", "is_smaller", "newton_step", "thirds"]

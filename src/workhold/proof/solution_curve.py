@@ -25,7 +25,7 @@ from typing import Any
 from attrs import frozen
 from flint import arb, arb_mat, arb_series, ctx
 
-from workhold.kernels.base.given import Limits
+from workhold.kernels.base.tables import Limits
 from workhold.proof.ball_contacts import contact_values, is_empty
 from workhold.proof.singular_frame import SingularFrame, is_smaller, newton_step, thirds
 

@@ -15,9 +15,9 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.beside import keeps_of
 from workhold.contact.features import end_distances
 from workhold.contact.problem import Frame, Problem
+from workhold.contact.swept import keeps_of
 from workhold.contact.trimming import most_in_the_way
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
 from workhold.errors import InputError

@@ -23,8 +23,17 @@ from workhold.contact.problem import Frame, Problem
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK, PARALLEL
 from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, SEGMENT_LENGTH
-from workhold.kernels.base.given import Features, Limits
-from workhold.kernels.chord.columns import DIRECTION, FROM, HEAD, ORIENTATION, STEP_LENGTH, TAIL, TO
+from workhold.kernels.base.tables import (
+    DIRECTION,
+    FROM,
+    HEAD,
+    ORIENTATION,
+    STEP_LENGTH,
+    TAIL,
+    TO,
+    Features,
+    Limits,
+)
 from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATISTICS, STOPPED
 from workhold.kernels.curves.sliding_pairs import sliding_fixtures
 from workhold.kernels.curves.three_and_one import three_and_one_cells

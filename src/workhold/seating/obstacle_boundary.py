@@ -25,7 +25,7 @@ from workhold.contact.problem import centered
 from workhold.conventions import END_SLACK, SAME_CENTER
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
-from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import Obstacles
 from workhold.model.seating import SeatContact
 from workhold.model.workpiece import Workpiece

@@ -20,7 +20,7 @@ import numpy as np
 from attrs import define, frozen
 from numpy.typing import NDArray
 
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CURVE_INTEGERS,
     CURVE_REALS,
     DIRECTION,
@@ -32,7 +32,6 @@ from workhold.kernels.chord.columns import (
     TAIL,
 )
 from workhold.kernels.chord.stretches import STRETCH_LENGTH
-from workhold.kernels.seating.cell_middles import MIDDLE_LENGTH, write_middles
 from workhold.kernels.seating.columns import (
     ANGLE,
     CELL_LENGTH,
@@ -49,7 +48,7 @@ from workhold.kernels.seating.columns import (
     JawCells,
 )
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
-from workhold.kernels.seating.two_contact_curves import make_cells
+from workhold.kernels.seating.two_contact_curves import MIDDLE_LENGTH, make_cells, write_middles
 from workhold.seating.closing import filled
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern, PegSubset, jaw_subsets
@@ -73,7 +72,7 @@ class JawCurves:
     rows, curves, reals : ``holdings``, ``curves`` and ``reals`` of ``Given``, with pegs and curves counted
         from 0.
     cells, middles : (C, 7) and (C, 19) of all curves, one curve after the other, see
-        ``kernels.seating.cell_middles``.
+        ``kernels.seating.two_contact_curves``.
     slides : (S, 7) what is no curve over the orientation: ``kernels.seating.slides``.
     """
 

@@ -21,7 +21,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.chord.columns import CURVE_INTEGERS, CURVE_REALS
+from workhold.kernels.base.tables import CURVE_INTEGERS, CURVE_REALS
 from workhold.kernels.seating.candidates import fourths
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,

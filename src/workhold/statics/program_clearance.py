@@ -13,8 +13,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.contact.beside import swept_beside
-from workhold.contact.swept import Swept, path_of, swept_below
+from workhold.contact.swept import Swept, path_of, swept_below, swept_beside
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotated
 from workhold.model.fixture_table import FixtureTable, peg_places

@@ -25,6 +25,7 @@ from chord_examples import (
 )
 from exact_chords import ExactChord, dot, exact_chord, exact_distance, exactly, minus, within
 from strategies import seeds
+from workhold.kernels.base.tables import BACKWARD_ERROR, COINCIDENCE
 from workhold.kernels.chord.coincidences import (
     CONCENTRIC,
     NONE,
@@ -32,7 +33,6 @@ from workhold.kernels.chord.coincidences import (
     is_regular,
     regular_radius,
 )
-from workhold.kernels.chord.columns import BACKWARD_ERROR, COINCIDENCE
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state, curve_value, regular_error
 from workhold.kernels.chord.intervals import chord_intervals
 from workhold.kernels.curves.piece_bounds import chord_tail, tail_disc, tail_radius, value_disc

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from chord_examples import PAIRS, arc_row, curve_row, line_row, off_carrier, random_ranges, turn_at
+from workhold.kernels.base.tables import COINCIDENCE
 from workhold.kernels.chord.coincidences import NONE, are_one_chord_apart
-from workhold.kernels.chord.columns import COINCIDENCE
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord, chord_state, curve_value
 from workhold.kernels.chord.stretches import center_motion
 

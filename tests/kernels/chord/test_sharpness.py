@@ -28,9 +28,9 @@ from sharpness import Constant, changed, check_sharpness
 from strategies import random_row
 from workhold.conventions import EXACT
 from workhold.kernels.base.feature import is_shallow
+from workhold.kernels.base.tables import BACKWARD_ERROR, COINCIDENCE, KAPPA, MIDDLE
 from workhold.kernels.chord import coincidences, evaluation, intervals
 from workhold.kernels.chord.coincidences import NONE, are_concentric, coincidence
-from workhold.kernels.chord.columns import BACKWARD_ERROR, COINCIDENCE, KAPPA, MIDDLE
 from workhold.kernels.curves import piece_bounds
 
 Array = np.ndarray[Any, np.dtype[np.float64]]

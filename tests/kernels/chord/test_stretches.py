@@ -13,8 +13,8 @@ from hypothesis import given
 from chord_examples import SPECIAL, any_ranges, curve_row, is_rounded_coincidence, random_ranges, turn_at
 from exact_chords import cross, dot, exact_chord, exact_speed, exactly
 from strategies import seeds
+from workhold.kernels.base.tables import BRANCH, COINCIDENCE, FROM, LENGTH, TO
 from workhold.kernels.chord.coincidences import NONE
-from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, FROM, LENGTH, TO
 from workhold.kernels.chord.intervals import chord_intervals
 from workhold.kernels.chord.stretches import (
     ALONG_HIGH,

@@ -15,7 +15,7 @@ from contact_examples import held, limits
 from rounding import Rounded, error_of
 from sharpness import Constant, changed, check_sharpness
 from workhold.conventions import GAP_SLACK
-from workhold.kernels.base.given import Features
+from workhold.kernels.base.tables import Features
 from workhold.kernels.contact import rules
 from workhold.kernels.curves import rows
 

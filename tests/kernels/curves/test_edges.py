@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from curve_examples import HEIGHT, POSITION, pieces_of, pitch_of, random_table
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CURVE,
     EDGE_LENGTH,
     EDGE_X,

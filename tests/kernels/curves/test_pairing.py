@@ -20,7 +20,7 @@ from strategies import random_outline, seeds
 from workhold import Query, Vise, Workpiece
 from workhold.contact.problem import Problem
 from workhold.conventions import GAP_SLACK
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CENTER,
     CURVE,
     HEAD,
@@ -40,7 +40,7 @@ from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
 from workhold.kernels.contact.record import PEG_LENGTH, angle_of, place_peg
 from workhold.kernels.contact.rules import is_fixture, minors, outward_normal, share_a_carrier
 from workhold.kernels.curves.block_work import TRIPLE_ROWS, place_chord, place_triple
-from workhold.kernels.curves.moving_pegs import faces_away, may_close, write_triple
+from workhold.kernels.curves.moving_pegs import faces_away, height_range, may_close, row_meets, write_triple
 from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
 from workhold.kernels.curves.pieces import cell_pieces
 from workhold.kernels.curves.roots import (
@@ -52,7 +52,6 @@ from workhold.kernels.curves.roots import (
     crossings,
     may_meet,
 )
-from workhold.kernels.curves.rows import height_range, row_meets
 from workhold.kernels.curves.three_and_one import farthest_right
 from workhold.kernels.curves.two_and_two import (
     ROLE_LENGTH,

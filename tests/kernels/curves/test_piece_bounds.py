@@ -16,7 +16,7 @@ from exact_chords import dot, exact_chord, exact_speed, exactly, plus
 from strategies import seeds
 from workhold.contact.curves import curve_table
 from workhold.kernels.base.interval import slope_range
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     ACROSS_LEAST,
     ACROSS_MOST,
     BRANCH,

@@ -14,8 +14,7 @@ from curve_examples import HEIGHT, POSITION, pieces_of, random_table, sampled
 from exact_chords import exact_chord, exactly
 from workhold.contact.curves import LatticeSteps, curve_table
 from workhold.kernels.base.interval import slope_range
-from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     BRANCH,
     CURVE,
     FROM,
@@ -39,6 +38,7 @@ from workhold.kernels.chord.columns import (
     VALUE_HIGH,
     VALUE_LOW,
 )
+from workhold.kernels.chord.coincidences import NONE, coincidence
 
 
 def parts_in_cell(reals: np.ndarray, low: float, high: float) -> list[tuple[float, float]]:

@@ -15,8 +15,7 @@ from exact_chords import exact_chord, exactly
 from sharpness import changed
 from strategies import random_row
 from workhold.contact.curves import curve_table
-from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     BRANCH,
     CURVE,
     HEAD,
@@ -29,6 +28,7 @@ from workhold.kernels.chord.columns import (
     TAIL,
     VALUE_LOW,
 )
+from workhold.kernels.chord.coincidences import NONE, coincidence
 from workhold.kernels.curves.piece_bounds import value_disc
 from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, value_at
 

@@ -15,8 +15,7 @@ from flint import arb
 from chord_examples import any_ranges, curve_row
 from exact_chords import dot, exact_chord, exactly
 from sharpness import Constant, changed, check_sharpness
-from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     BACKWARD_ERROR,
     EDGE_LENGTH,
     EDGE_VALUE,
@@ -38,6 +37,7 @@ from workhold.kernels.chord.columns import (
     VALUE_MOST,
     X_MOVING,
 )
+from workhold.kernels.chord.coincidences import NONE, coincidence
 from workhold.kernels.chord.evaluation import HEIGHT
 from workhold.kernels.chord.stretches import SPEED, STRETCH_LENGTH, write_stretch
 from workhold.kernels.curves import piece_bounds, piece_enclosures

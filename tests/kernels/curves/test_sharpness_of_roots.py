@@ -17,14 +17,15 @@ from contact_examples import limits
 from exact_chords import exactly
 from sharpness import Constant, changed, check_sharpness
 from workhold.kernels.base.feature import FEATURE_LENGTH, SEGMENT_LENGTH
-from workhold.kernels.base.given import Features, Lattice
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CURVE_INTEGERS,
     CURVE_REALS,
     DIRECTION,
     SLIDING_PAIR_REALS,
     STEP_LENGTH,
     Curves,
+    Features,
+    Lattice,
 )
 from workhold.kernels.chord.stretches import STRETCH_LENGTH
 from workhold.kernels.contact.record import RECORD_LENGTH

@@ -10,7 +10,7 @@ import pytest
 
 from chord_examples import arc_row, line_row, off_carrier, overshoot
 from workhold.kernels.base.feature import point_at
-from workhold.kernels.chord.columns import COLUMN_STEP, HEAD, ROW_STEP, TAIL, SlidingPairs
+from workhold.kernels.base.tables import COLUMN_STEP, HEAD, ROW_STEP, TAIL, SlidingPairs
 from workhold.kernels.contact.record import (
     PEG_COLUMN,
     PEG_FEATURE,

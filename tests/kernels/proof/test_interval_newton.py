@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 import ladders
 from exact_chords import exactly
-from workhold.kernels.base.given import Lattice, Limits, Setting
+from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.kernels.contact.record import LARGEST_RADIUS, PSI, RECORD_LENGTH, SEPARATION, TAIL_X, TAIL_Y
 from workhold.kernels.proof import interval_newton as in_doubles
 from workhold.kernels.proof import variation as variations

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row, line_row
-from workhold.kernels.base.given import Lattice, Limits, Setting
+from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.kernels.contact.record import FEATURES, LARGEST_RADIUS, PSI, RECORD_LENGTH
 from workhold.kernels.proof import interval_newton as in_doubles
 from workhold.kernels.proof.variation import NUMBERS, TILT, face_one_way

@@ -10,8 +10,7 @@ import pytest
 
 from seating_examples import cells_by_pair, solved
 from workhold.kernels.base.feature import IS_ARC
-from workhold.kernels.chord.columns import HEAD, TAIL
-from workhold.kernels.seating.cell_middles import pair_in, ray_in
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import DEPTH, FIRST_PEG, HIGH, KIND, LOW, PAIR, SOURCE, VAGUE
 from workhold.kernels.seating.obstacles import foot, on_piece, share_normals
 from workhold.kernels.seating.three_contacts import (
@@ -23,7 +22,7 @@ from workhold.kernels.seating.three_contacts import (
     may_balance,
     three_contacts,
 )
-from workhold.kernels.seating.two_contact_curves import pair_at
+from workhold.kernels.seating.two_contact_curves import pair_at, pair_in, ray_in
 from workhold.seating.closing import filled
 from workhold.seating.pattern import Pattern
 from workhold.seating.two_contact_curves import TwoContactCurves

@@ -11,7 +11,7 @@ import pytest
 from lesson_page import BRACKET, EXAMPLES, STATIC, LessonPage
 
 import workhold
-from workhold.kernels.chord.columns import CURVE_REALS
+from workhold.kernels.base.tables import CURVE_REALS
 from workhold.kernels.chord.evaluation import chord_state, write_curve
 
 

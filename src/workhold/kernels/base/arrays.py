@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 
 Number = TypeVar("Number", np.float64, np.int64)
 
@@ -27,9 +27,6 @@ def with_room(array: NDArray[Number], count: int) -> NDArray[Number]:
     """A (N, M) array with room for another row after ``count``: the array itself, or a grown copy when it is
     full."""
     return grown(array) if count == array.shape[0] else array
-
-
-Array = NDArray[np.float64]
 
 
 @inner
@@ -55,18 +52,10 @@ def eliminate(matrix: Array, inverse: Array) -> float:
         if not determinant > 0.0:
             return determinant
         # With a name for each entry, the pivot's row is not read again for each row that it is taken from.
-        a, b, c, d = (
-            matrix[best, 0] / pivot,
-            matrix[best, 1] / pivot,
-            matrix[best, 2] / pivot,
-            matrix[best, 3] / pivot,
-        )
-        e, f, g, h = (
-            inverse[best, 0] / pivot,
-            inverse[best, 1] / pivot,
-            inverse[best, 2] / pivot,
-            inverse[best, 3] / pivot,
-        )
+        a, b = matrix[best, 0] / pivot, matrix[best, 1] / pivot
+        c, d = matrix[best, 2] / pivot, matrix[best, 3] / pivot
+        e, f = inverse[best, 0] / pivot, inverse[best, 1] / pivot
+        g, h = inverse[best, 2] / pivot, inverse[best, 3] / pivot
         for j in range(4):
             matrix[best, j], inverse[best, j] = matrix[k, j], inverse[k, j]
         matrix[k, 0], matrix[k, 1], matrix[k, 2], matrix[k, 3] = a, b, c, d

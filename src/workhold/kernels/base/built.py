@@ -34,23 +34,9 @@ from typing import Any
 
 import numpy as np
 
-__all__ = [
-    "DESCRIPTION",
-    "ELEMENTS",
-    "KNOWN",
-    "LIBRARY_NAME",
-    "REFUSED",
-    "RELEASE",
-    "CheckedKernel",
-    "Library",
-    "library_name",
-    "source_hash",
-]
-
 # Names that the library exports besides those of its kernels.
 DESCRIPTION, RELEASE, KNOWN = "workhold_description", "workhold_release", "workhold_known"
-# Elements of arrays. The library needs to know where Python keeps the type of arrays and those of each of
-# these.
+# Elements of arrays. The library needs to know where Python keeps the types of arrays and of these.
 ELEMENTS = ("f8", "i8", "i1")
 LIBRARY_NAME = "kernels.{platform}.so"
 # Appends the words of a value, and says whether it is taken.
@@ -64,12 +50,10 @@ SCALARS: dict[str, tuple[type[Any], tuple[type[Any], ...]]] = {
     "bool": (ctypes.c_bool, (bool, np.bool_)),
 }
 WORD = 8
-# Where an array's header holds what, in bytes, and its flags where elements are in order and aligned
-# (``ndarraytypes.h``).
+# Where an array's header holds what, in bytes, and flags of ordered, aligned elements (``ndarraytypes.h``).
 HEADER = {"type": 8, "data": 16, "dimensions": 24, "shape": 32, "strides": 40, "element": 56, "flags": 64}
 HEADER_BYTES, ORDERED = 68, 0x0001 | 0x0100
-# Words of an array that is handed back before its shape: two owners, number of elements, bytes of one,
-# address.
+# Words before the shape of an array handed back: two owners, number of elements, bytes of one, address.
 ARRAY_WORDS, ADDRESS = 5, 4
 
 

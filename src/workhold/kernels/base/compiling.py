@@ -22,29 +22,24 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+import numpy as np
+from numpy.typing import NDArray
+
 from workhold.errors import InputError
 from workhold.kernels.base.built import KERNELS, Library, library_name, source_hash
 from workhold.limits import refuse_little_space
 
-__all__ = [
-    "are_stored",
-    "cache_folder",
-    "compiled",
-    "compiled_making_arrays",
-    "inner",
-    "inner_making_arrays",
-    "is_first_run",
-]
-
 Function = TypeVar("Function", bound=Callable[..., Any])
+# What kernels take: reals, whole numbers, and verdicts or flags.
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+ByteArray = NDArray[np.int8]
 
 FOLDERS_KEPT = 3
-# Bytes of address space: with less, numba and its compiler end the process by a signal or with an error of
-# their own.
+# Bytes of address space: with less, numba and its compiler end the process by a signal or an own error.
 COMPILER_SPACE = 1_000_000_000
 # "numba" compiles on first use whatever was built; "building" besides neither reads nor keeps machine code;
-# "callable" makes kernels that only kernels call callable from Python as well, for tests, and takes longer to
-# compile.
+# "callable" makes kernels that only kernels call callable from Python as well, for tests, and takes longer.
 MODE = os.environ.get("WORKHOLD_KERNELS", "")
 ALL_CALLABLE = MODE == "callable"
 # Options of numba for kernels that make arrays, for those that make none, and besides for all of them, which
@@ -53,8 +48,7 @@ MAKING_ARRAYS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 WITHOUT_COUNTS: dict[str, Any] = {**MAKING_ARRAYS, "_nrt": False}
 NO_CALLBACK: dict[str, Any] = {"no_cfunc_wrapper": True}
 ONLY_INNER: dict[str, Any] = {"no_cpython_wrapper": True, **NO_CALLBACK}
-# The numba whose inner parts ``lean`` builds on. Any other compiles in its own way, which takes twice as
-# long.
+# The numba whose inner parts ``lean`` builds on. Any other compiles in its own way, in twice the time.
 LEAN_NUMBA = "0.68."
 # The modules and kernels that two processes compile last for a search: where both are stored, all are.
 LAST_OF_SEARCH = ("canonical_form.contacts_of", "quality.figures")

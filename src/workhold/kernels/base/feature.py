@@ -29,16 +29,11 @@ from __future__ import annotations
 
 from math import atan2, cos, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 
 IS_ARC, X, Y, AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN, REST_X, REST_Y, LOW_SLACK, HIGH_SLACK = range(12)
 SEGMENT_LENGTH, FEATURE_LENGTH = 10, 12
 
-
-Array = NDArray[np.float64]
 
 # Half sweeps in radians below which arcs are shallow: radii of more than fifty half chords.
 SHALLOW = 0.02

@@ -31,8 +31,6 @@ from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.llvm_bindings import create_pass_builder
 
-__all__ = ["InnerCompiler", "OuterCompiler"]
-
 # Numba's passes but those for what kernels are without: closures, blocks of ``with``, errors that are raised,
 # functions put in place of their calls, literals that are types, and expressions of whole arrays.
 PASSES = (

@@ -18,8 +18,6 @@ from numba.core import config as numba_config
 from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
 from numba.core.runtime.nrt import rtsys
 
-__all__ = ["LateCache"]
-
 # Bytes of the hash in front of machine code.
 SEAL = 32
 # Only one cache is opened at a time.

@@ -35,11 +35,8 @@ from __future__ import annotations
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import EXACT, SAME_CENTER
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
 from workhold.kernels.base.interval import (
     TURN,
@@ -57,16 +54,14 @@ from workhold.kernels.base.interval import (
     isub,
     outward,
 )
-from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
+from workhold.kernels.base.tables import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 
-Array = NDArray[np.float64]
 Motion = tuple[float, float, float, float, float, float]
 MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
 # Nearer than this to a coincidence, in radians, a chord's contacts share one line of action.
 SHARED = 1e-10
-# Kinds of coincidence a curve may have; chords between concentric arcs turn about the centre without changing
-# shape.
+# Kinds of coincidence of a curve; chords between concentric arcs turn about the centre as they are.
 NONE, ARCS, LINE_FIRST, ARC_FIRST, CONCENTRIC, TOUCHING = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 # Circles that touch inside one another count only if their radii differ by this part of the smaller one.
 # Lengths of circles that touch agree to this part of EXACT, for what they are off by grows with the radius

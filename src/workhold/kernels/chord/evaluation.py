@@ -36,11 +36,8 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import EXACT
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -55,17 +52,7 @@ from workhold.kernels.base.feature import (
     is_shallow,
     local_size,
 )
-from workhold.kernels.chord.coincidences import (
-    ARCS,
-    CONCENTRIC,
-    NONE,
-    are_concentric,
-    are_one_chord_apart,
-    coincidence,
-    misfit,
-    motion,
-)
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     BACKWARD_ERROR,
     BRANCH,
     COINCIDENCE,
@@ -77,14 +64,22 @@ from workhold.kernels.chord.columns import (
     SIDE,
     SINE,
 )
+from workhold.kernels.chord.coincidences import (
+    ARCS,
+    CONCENTRIC,
+    NONE,
+    are_concentric,
+    are_one_chord_apart,
+    coincidence,
+    misfit,
+    motion,
+)
 from workhold.kernels.chord.shallow import line_to_shallow, shallow_to_arc
 
-Array = NDArray[np.float64]
 Chord = tuple[float, float, float, float, float, float]
 State = tuple[float, float, float, float, float, float, float, float, float, float]
 
-# Which value of a curve is meant. (Kernels are compiled anew for every whole number written as such; these
-# are not.)
+# Which value of a curve is meant. (For every whole number written as such kernels are compiled anew.)
 HEIGHT = 0.0
 POSITION = 1.0
 
@@ -220,8 +215,7 @@ def backward_error(a: Array, b: Array, d: float) -> float:
         )
     spread = 1.0
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
-        # The head's distance from its circle is found from that of the tail: an error grows with the ratio of
-        # radii.
+        # The head's distance is found from that of the tail: an error grows with the ratio of radii.
         spread = max(a[RADIUS] / b[RADIUS], b[RADIUS] / a[RADIUS])
         if are_concentric(a, b):
             return ROUNDINGS * size * spread + hypot(a[X] - b[X], a[Y] - b[Y])
@@ -283,10 +277,8 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
     tangency
     """
     d = curve[LENGTH]
-    wx, wy = (
-        d * (cosine * curve[COSINE] - sine * curve[SINE]),
-        d * (sine * curve[COSINE] + cosine * curve[SINE]),
-    )
+    wx = d * (cosine * curve[COSINE] - sine * curve[SINE])
+    wy = d * (sine * curve[COSINE] + cosine * curve[SINE])
     kappa, kind = curve[KAPPA], curve[COINCIDENCE]
     if kind != NONE and kind != CONCENTRIC:
         regular, u = motion(a, b, curve, psi)

@@ -16,10 +16,9 @@ from __future__ import annotations
 from math import acos, atan2, cos, hypot, pi, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import EXACT, PARALLEL, SQUARE
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -43,8 +42,6 @@ from workhold.kernels.chord.coincidences import (
 from workhold.kernels.chord.evaluation import chord, parameter_on
 from workhold.kernels.chord.shallow import arcs_cosine, is_turned, tangent_off
 
-Array = NDArray[np.float64]
-
 MOST_EVENTS = 16
 # Kinds of events: an end of a feature is reached (ranges are merged over it when the chord exists on both
 # sides), the chord is a tangency, or ranges are cut for another reason.
@@ -54,8 +51,7 @@ END, TANGENCY, CUT = 0.0, 1.0, 2.0
 SLIVER = 1e-12
 # In ranges narrower than this, in radians, the test in the middle cannot be trusted near a tangency.
 NARROW = 1e-6
-# A chord this far from a tangency, by its X, moves along the features no faster than a hundred times its
-# length.
+# This far from a tangency, by X, a chord moves along features no faster than a hundred times its length.
 STEADY = 0.01
 # Ends of features are met with this much to spare, in mm: more than rounding, less than they were moved out.
 SPARE = 1e-8

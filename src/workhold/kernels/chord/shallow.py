@@ -1,4 +1,4 @@
-"""Chords one of whose features is a shallow arc (see ``base.shallow``), without numbers of the size of its
+"""Chords one of whose features is a shallow arc (see ``base.feature``), without numbers of the size of its
 radius.
 
 Let m be the arcs' middles, t their directions, k their curvatures and q = m_b - m_a. The law of cosines gives
@@ -15,10 +15,7 @@ from __future__ import annotations
 
 from math import atan2, cos, hypot, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -43,7 +40,6 @@ from workhold.kernels.base.interval import (
     outward,
 )
 
-Array = NDArray[np.float64]
 Chord = tuple[float, float, float, float, float, float]
 
 
@@ -129,19 +125,13 @@ def arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float
     ka, kb = 1.0 / a[RADIUS], 1.0 / b[RADIUS]
     # Middles and differences are rounded once or so.
     qx, qy = isub(outward(bx, bx), outward(ax, ax)), isub(outward(by, by), outward(ay, ay))
-    vx, vy = (
-        isub(iscale(kb, outward(a[AXIS_X], a[AXIS_X])), iscale(ka, outward(b[AXIS_X], b[AXIS_X]))),
-        isub(iscale(kb, outward(a[AXIS_Y], a[AXIS_Y])), iscale(ka, outward(b[AXIS_Y], b[AXIS_Y]))),
-    )
+    vx = isub(iscale(kb, outward(a[AXIS_X], a[AXIS_X])), iscale(ka, outward(b[AXIS_X], b[AXIS_X])))
+    vy = isub(iscale(kb, outward(a[AXIS_Y], a[AXIS_Y])), iscale(ka, outward(b[AXIS_Y], b[AXIS_Y])))
     drift = iadd(imul(qx, vx), imul(qy, vy))
     bend = iscale(0.5 * ka * kb, ishift(d * d, iadd(isquare(qx), isquare(qy))))
     both = iadd(drift, bend)
-    lx, ly, mx, my = (
-        a[AXIS_X] - b[AXIS_X],
-        a[AXIS_Y] - b[AXIS_Y],
-        a[AXIS_X] + b[AXIS_X],
-        a[AXIS_Y] + b[AXIS_Y],
-    )
+    lx, ly = a[AXIS_X] - b[AXIS_X], a[AXIS_Y] - b[AXIS_Y]
+    mx, my = a[AXIS_X] + b[AXIS_X], a[AXIS_Y] + b[AXIS_Y]
     less = iscale(0.5, iadd(isquare(outward(lx, lx)), isquare(outward(ly, ly))))
     more = iscale(0.5, iadd(isquare(outward(mx, mx)), isquare(outward(my, my))))
     swing = d * ka * kb * hypot(b[X] - a[X], b[Y] - a[Y])
@@ -150,7 +140,7 @@ def arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float
 
 @inner
 def shallow_turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
-    """Enclosure of abs(X) for alpha in [low, high]; see ``center_speeds.turn_size``."""
+    """Enclosure of abs(X) for alpha in [low, high]; see ``stretches.turn_size``."""
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
         near, far, swing, beta = arcs_cosine(a, b, d)
         part = imul(outward(swing, swing), icos((low - beta, high - beta)))
@@ -174,5 +164,5 @@ def shallow_turn_size(a: Array, b: Array, d: float, low: float, high: float) -> 
 @inner
 def shallow_half(a: Array, b: Array, turn: float, gap: float) -> float:
     """Half the chord that two circles have in common, by X, where an arc is shallow
-    (``discs.arcs_radius``)."""
+    (``piece_bounds.arcs_radius``)."""
     return a[RADIUS] * b[RADIUS] * abs(turn) / gap

@@ -42,10 +42,9 @@ from __future__ import annotations
 from math import atan2, hypot, inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.kernels.base.arrays import with_room
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
 from workhold.kernels.base.interval import (
     Interval,
@@ -64,14 +63,12 @@ from workhold.kernels.base.interval import (
     isub,
     outward,
 )
+from workhold.kernels.base.tables import BRANCH, COINCIDENCE, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
 from workhold.kernels.chord.coincidences import ARCS, CONCENTRIC, NONE, motion_box
-from workhold.kernels.chord.columns import BRANCH, COINCIDENCE, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
 from workhold.kernels.chord.evaluation import chord, curvature
 from workhold.kernels.chord.shallow import shallow_turn_size
 
-Array = NDArray[np.float64]
-# Circles whose centres are nearer than this part of the smaller radius have nearly the same directions of
-# contact.
+# Circles with centres nearer than this part of the smaller radius have nearly the same contact directions.
 NEAR = 0.5
 ChordBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 CenterMotion = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
@@ -168,8 +165,7 @@ def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval
     """
     if is_shallow(a) or is_shallow(b):
         return shallow_turn_size(a, b, d, low, high)
-    # Differences of coordinates are intervals too: what is left of them beside a tangency is of the size of
-    # their rounding.
+    # Differences of coordinates are intervals too: beside a tangency only their rounding is left of them.
     cx, cy = outward(b[X] - a[X], b[X] - a[X]), outward(b[Y] - a[Y], b[Y] - a[Y])
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         turn = icross(
@@ -178,8 +174,7 @@ def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval
         return isqrt(isquare(turn))
     if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0:
         line, arc = (a, b) if a[IS_ARC] == 0.0 else (b, a)
-        # The arc's centre from the line's middle, in direction of the normal, less the head's way in the same
-        # direction.
+        # The arc's centre from the line's middle along the normal, less the head's way along it.
         fixed = isub(iscale(line[AXIS_Y], cx), iscale(line[AXIS_X], cy))
         normal = atan2(-line[AXIS_X], line[AXIS_Y])
         across = isub(fixed, iscale(d, icos((low - normal, high - normal))))

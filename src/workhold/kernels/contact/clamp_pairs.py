@@ -15,16 +15,10 @@ from math import atan, degrees, hypot, inf
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLOSURE, NO_REACTION
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import compiled, compiled_making_arrays, inner
-
-__all__ = ["CLAMP_LENGTH", "PAIR_LENGTH", "PUSH", "Clamps", "Hardware", "closures_of", "pairs_of"]
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from workhold.kernels.base.compiling import Array, IntArray, compiled, compiled_making_arrays, inner
 
 # Columns of a clamp: what locators take up per unit of force on its face (3), its push per unit of its own
 # force, how far the former may be off, and the place of its tip in mm.
@@ -34,7 +28,6 @@ CLAMP_LENGTH = 7
 DIRECTION, LINE, FIRST_HOLE, END_HOLE = range(4)
 # Columns of a hole: column and row, place in mm, travel in mm.
 HOLE_COLUMN, HOLE_ROW, HOLE_X, HOLE_Y, TRAVEL = range(5)
-HOLE_LENGTH = 5
 # Columns of a pair: seat, kind, clamps (2), holes (2), how many pairs it stands for, clamp freedom in
 # degrees, closure margin, and 1 where it is not decided whether it closes.
 SEAT, KIND, CLAMPS, HOLES, COUNT, FREEDOM, MARGIN, OPEN = 0, 1, 2, 4, 6, 7, 8, 9
@@ -141,18 +134,17 @@ def ratio_range(one: Array, other: Array) -> tuple[float, float]:
 
 
 @inner
-def boxes_apart(
-    ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
-) -> float:
-    """Distance in mm between two pieces along the axes, from (ax, ay) to (bx, by) and from (cx, cy) to (dx,
-    dy)."""
+def boxes_apart(one: Array, hole: Array, other: Array, other_hole: Array) -> float:
+    """Distance in mm between the pieces along the axes from the tips of two clamps to their holes."""
+    ax, ay, bx, by = one[TIP], one[TIP + 1], hole[HOLE_X], hole[HOLE_Y]
+    cx, cy, dx, dy = other[TIP], other[TIP + 1], other_hole[HOLE_X], other_hole[HOLE_Y]
     across = max(min(ax, bx) - max(cx, dx), min(cx, dx) - max(ax, bx), 0.0)
     along = max(min(ay, by) - max(cy, dy), min(cy, dy) - max(ay, by), 0.0)
     return hypot(across, along)
 
 
 @inner
-def spread_of(seat: IntArray, clamps: Clamps, m: int, hole: Array, bolted: bool, out: IntArray) -> None:
+def spread_of(clamps: Clamps, m: int, hole: Array, bolted: bool, out: IntArray) -> None:
     """Widens ``out``, the least and largest column and row of what stands on the plate, by a clamp in a
     hole."""
     line = clamps.integers[m, LINE]
@@ -166,18 +158,28 @@ def spread_of(seat: IntArray, clamps: Clamps, m: int, hole: Array, bolted: bool,
             out[2], out[3] = min(out[2], int(hole[HOLE_ROW])), max(out[3], int(hole[HOLE_ROW]))
 
 
-@inner
-def best_holes(
-    seat: IntArray, clamps: Clamps, i: int, j: int, hardware: Hardware, spread: IntArray
-) -> tuple[int, int]:
-    """The holes of two clamps with the least total travel in which they have a place together, (-1, -1) for
-    none.
+class ClampedSeat(NamedTuple):
+    """A seat and what its pairs are made of.
 
     Parameters
     ----------
-    seat : (2,) the largest column and row of its locators, whose lowest are 0.
+    number : among the seats.
+    largest : (2,) column and row of its locators, whose lowest are 0.
     spread : (4,) work space.
     """
+
+    number: int
+    largest: IntArray
+    clamps: Clamps
+    hardware: Hardware
+    spread: IntArray
+
+
+@inner
+def best_holes(seat: ClampedSeat, i: int, j: int) -> tuple[int, int]:
+    """The holes of two clamps with the least total travel in which they have a place together, (-1, -1) for
+    none."""
+    clamps, hardware, spread = seat.clamps, seat.hardware, seat.spread
     best, one, other = inf, -1, -1
     holes, tips = clamps.holes, clamps.reals
     for a in range(clamps.integers[i, FIRST_HOLE], clamps.integers[i, END_HOLE]):
@@ -185,42 +187,22 @@ def best_holes(
             travel = holes[a, TRAVEL] + holes[b, TRAVEL]
             if travel >= best:
                 continue
-            spread[0], spread[1], spread[2], spread[3] = 0, seat[0], 0, seat[1]
-            spread_of(seat, clamps, i, holes[a], hardware.bolted, spread)
-            spread_of(seat, clamps, j, holes[b], hardware.bolted, spread)
+            spread[0], spread[1], spread[2], spread[3] = 0, seat.largest[0], 0, seat.largest[1]
+            spread_of(clamps, i, holes[a], hardware.bolted, spread)
+            spread_of(clamps, j, holes[b], hardware.bolted, spread)
             if spread[1] - spread[0] > hardware.columns or spread[3] - spread[2] > hardware.rows:
                 continue
-            apart = boxes_apart(
-                tips[i, TIP],
-                tips[i, TIP + 1],
-                holes[a, HOLE_X],
-                holes[a, HOLE_Y],
-                tips[j, TIP],
-                tips[j, TIP + 1],
-                holes[b, HOLE_X],
-                holes[b, HOLE_Y],
-            )
+            apart = boxes_apart(tips[i], holes[a], tips[j], holes[b])
             if apart >= hardware.apart - GAP_SLACK:
                 best, one, other = travel, a, b
     return (one, other)
 
 
 @inner
-def add_pair(
-    out: Array,
-    count: int,
-    number: int,
-    kind: int,
-    i: int,
-    j: int,
-    seat: IntArray,
-    clamps: Clamps,
-    hardware: Hardware,
-    spread: IntArray,
-) -> int:
+def add_pair(out: Array, count: int, kind: int, i: int, j: int, seat: ClampedSeat) -> int:
     """Appends a pair of clamps of a seat if it closes and has a place, and returns how many rows there
     are."""
-    one, other = clamps.reals[i], clamps.reals[j]
+    one, other = seat.clamps.reals[i], seat.clamps.reals[j]
     margin, lead = closure_margin(one, other)
     doubt = 1.1 * max(one[DOUBT], other[DOUBT]) + ROUNDING
     if lead + doubt <= 0.0:
@@ -229,18 +211,12 @@ def add_pair(
     if low >= high and lead - doubt > 0.0:
         # Reactions that are zero to rounding.
         return count
-    first, second = best_holes(seat, clamps, i, j, hardware, spread)
+    first, second = best_holes(seat, i, j)
     if first < 0:
         return count
     row = out[count]
-    row[SEAT], row[KIND], row[CLAMPS], row[CLAMPS + 1], row[HOLES], row[HOLES + 1] = (
-        number,
-        kind,
-        i,
-        j,
-        first,
-        second,
-    )
+    row[SEAT], row[KIND] = seat.number, kind
+    row[CLAMPS], row[CLAMPS + 1], row[HOLES], row[HOLES + 1] = i, j, first, second
     row[COUNT], row[FREEDOM], row[MARGIN] = 1.0, max(degrees(atan(high) - atan(low)), 0.0), margin
     row[OPEN] = 1.0 if lead - doubt <= 0.0 else 0.0
     return count + 1
@@ -274,54 +250,35 @@ def keep_best(out: Array, first: int, count: int) -> int:
 
 
 @inner
-def add_pairs_of_kind(
-    out: Array,
-    count: int,
-    number: int,
-    one: int,
-    two: int,
-    seat: IntArray,
-    clamps: Clamps,
-    hardware: Hardware,
-    spread: IntArray,
-) -> int:
+def add_pairs_of_kind(out: Array, count: int, one: int, two: int, seat: ClampedSeat) -> int:
     """Appends the pairs of two directions at a seat, and returns how many rows there are, -1 when there is
     no room for more."""
-    kind = hardware.kinds[one, two]
-    for i in range(clamps.starts[number], clamps.starts[number + 1]):
+    clamps, kind = seat.clamps, seat.hardware.kinds[one, two]
+    end = clamps.starts[seat.number + 1]
+    for i in range(clamps.starts[seat.number], end):
         if clamps.integers[i, DIRECTION] != one:
             continue
-        for j in range(i + 1, clamps.starts[number + 1]):
+        for j in range(i + 1, end):
             if clamps.integers[j, DIRECTION] != two:
                 continue
             if count == out.shape[0]:
                 return -1
-            count = add_pair(out, count, number, kind, i, j, seat, clamps, hardware, spread)
+            count = add_pair(out, count, kind, i, j, seat)
     return count
 
 
 @inner
-def add_pairs(
-    out: Array,
-    count: int,
-    number: int,
-    half: bool,
-    seat: IntArray,
-    clamps: Clamps,
-    hardware: Hardware,
-    every: bool,
-    spread: IntArray,
-) -> int:
+def add_pairs(out: Array, count: int, half: bool, seat: ClampedSeat, every: bool) -> int:
     """Appends the pairs of a seat, see :func:`pairs_of`, and returns how many rows there are, -1 when there
     is no room for more."""
     for one in range(4):
         for two in range(one, 4):
             # Opposite directions: half a turn makes such a pair one of the same kind.
             opposed = two == one + 1 and one % 2 == 0
-            if hardware.kinds[one, two] < 0 or (opposed and not half):
+            if seat.hardware.kinds[one, two] < 0 or (opposed and not half):
                 continue
             first = count
-            count = add_pairs_of_kind(out, count, number, one, two, seat, clamps, hardware, spread)
+            count = add_pairs_of_kind(out, count, one, two, seat)
             if count < 0:
                 return -1
             if not every:
@@ -347,9 +304,8 @@ def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardwa
     out, spread = np.empty((64, PAIR_LENGTH)), np.empty(4, np.int64)
     count, number = int(np.int64(0)), int(np.int64(0))
     while number < seats.shape[0]:
-        more = add_pairs(
-            out, count, number, halves[number] != 0, seats[number], clamps, hardware, every, spread
-        )
+        seat = ClampedSeat(number, seats[number], clamps, hardware, spread)
+        more = add_pairs(out, count, halves[number] != 0, seat, every)
         if more < 0:
             out = grown(out)
             continue

@@ -20,11 +20,8 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, nan, pi, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.kernels.base.arrays import eliminate
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -38,9 +35,6 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.chord.evaluation import distance_to_end, parameter_on
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @inner
@@ -101,8 +95,7 @@ def contact_matrices_of(
         for i in range(count):
             px, py = pegs[k, i, 0] - pose[k, 1], pegs[k, i, 1] - pose[k, 2]
             x, y = cosine * px + sine * py - center[0], cosine * py - sine * px - center[1]
-            # A face may have several features; the peg stands on one of them, and beyond the ends of the
-            # others.
+            # Of a face's features the peg stands on one, and beyond the ends of the others.
             nearest, chosen, parameter = -inf, -1, 0.0
             for f in range(starts[faces[k, i]], starts[faces[k, i] + 1]):
                 s = parameter_on(features[f], x, y)

@@ -15,11 +15,8 @@ from __future__ import annotations
 from math import hypot, inf, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import compiled, inner
-
-Array = NDArray[np.float64]
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 
 FORCE, POINT_X, POINT_Y, MOMENT, LOW_X, LOW_Y, HIGH_X, HIGH_Y, MIDDLE_X, MIDDLE_Y, HALF = range(11)
 LOAD_LENGTH = 11
@@ -54,12 +51,8 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
     most = 0.0
     for m in range(len(loads)):
         load = loads[m]
-        force, px, py, moment = (
-            load[FORCE],
-            load[POINT_X] / length,
-            load[POINT_Y] / length,
-            load[MOMENT] / length,
-        )
+        force, moment = load[FORCE], load[MOMENT] / length
+        px, py = load[POINT_X] / length, load[POINT_Y] / length
         for j in range(inverse.shape[1]):
             for i in range(inverse.shape[1]):
                 if i != j:
@@ -71,10 +64,7 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
     return most
 
 
-IntArray = NDArray[np.int64]
-
-# No unit. Wrenches nearer than this to a plane are on it, and three with a smaller cross product are on a
-# line.
+# No unit. Wrenches nearer than this to a plane are on it; three with a smaller cross product are on a line.
 FLAT = 1e-12
 # A bound of a movement is rounded by less than this.
 SURELY = 1.0 + 1e-12
@@ -297,8 +287,7 @@ def figures(
     farthest = farthest_point(corners, arcs)
     for k in range(len(points)):
         inverse = inverses[k]
-        # The last row of the inverse: peg forces per unit of clamping force, in proportion to the null
-        # vector.
+        # The last row of the inverse: peg forces per unit of clamping force, as in the null vector.
         total, least, most = 0.0, inf, 0.0
         nearest, edge = inf, length
         for i in range(inverse.shape[1]):

@@ -42,18 +42,14 @@ from __future__ import annotations
 from math import cos, hypot, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.kernels.base.arrays import eliminate
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, IntArray, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow, off_shallow
-from workhold.kernels.base.given import Lattice
-from workhold.kernels.chord.columns import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL
+from workhold.kernels.base.tables import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL, Lattice
 
-Array = NDArray[np.float64]
 # An orientation psi in radians, its cosine and its sine.
 Angle = tuple[float, float, float]
-IntArray = NDArray[np.int64]
 
 PEG_X, PEG_Y, PEG_FEATURE, PEG_COLUMN, PEG_ROW, PEG_RADIUS = range(6)
 PEG_LENGTH = 6

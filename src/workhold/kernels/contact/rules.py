@@ -21,17 +21,13 @@ breaks a rule everywhere within that radius is discarded.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, IntArray, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.base.given import Features, Limits
-from workhold.kernels.chord.columns import COLUMN_STEP, ROW_STEP
+from workhold.kernels.base.tables import COLUMN_STEP, ROW_STEP, Features, Limits
 from workhold.kernels.chord.evaluation import end_slack
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle
-
-Array = NDArray[np.float64]
 
 # Rounding of a minor.
 ROUNDING = 1e-14
@@ -96,9 +92,6 @@ def outward_normal(row: Array, x: float, y: float) -> tuple[float, float]:
         return (row[AXIS_Y], -row[AXIS_X])
     scale = row[SIGN] / row[RADIUS]
     return (scale * (x - row[X]), scale * (y - row[Y]))
-
-
-IntArray = NDArray[np.int64]
 
 
 @inner

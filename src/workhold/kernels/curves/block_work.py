@@ -11,11 +11,20 @@ from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner, inner_making_arrays
-from workhold.kernels.base.given import Features, Lattice, Limits
-from workhold.kernels.chord.columns import COLUMN_STEP, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, Curves
+from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
+from workhold.kernels.base.tables import (
+    COLUMN_STEP,
+    HEAD,
+    LENGTH,
+    ROW_STEP,
+    SHIFT,
+    TAIL,
+    Curves,
+    Features,
+    Lattice,
+    Limits,
+)
 from workhold.kernels.contact.record import (
     PEG_FEATURE,
     PEG_LENGTH,
@@ -30,11 +39,6 @@ from workhold.kernels.contact.record import (
 from workhold.kernels.contact.rules import is_fixture, is_listed
 from workhold.kernels.curves.piece_bounds import chord_tail
 from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH
-
-__all__ = ["TRIPLE_ROWS", "BlockWork", "block_work"]
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought,
 # four contacts examined, and those that may be inside their features.
@@ -124,11 +128,8 @@ def place_head(pegs: Array, place: int, curve: int, angle: Angle, reach: float, 
     """Writes the head of a curve's chord to a place, from the tail in the first; see ``place_tail``."""
     step, reals = curves.integers[curve], curves.reals[curve]
     d, alpha = reals[LENGTH], angle[0] + reals[SHIFT]
-    x, y, radius = (
-        pegs[0, PEG_X] + d * cos(alpha),
-        pegs[0, PEG_Y] + d * sin(alpha),
-        pegs[0, PEG_RADIUS] + d * reach,
-    )
+    x, y = pegs[0, PEG_X] + d * cos(alpha), pegs[0, PEG_Y] + d * sin(alpha)
+    radius = pegs[0, PEG_RADIUS] + d * reach
     line = pegs[0, PEG_ROW] + float(step[ROW_STEP])
     place_peg(pegs[place], x, y, step[HEAD], float(step[COLUMN_STEP]), line, radius)
 

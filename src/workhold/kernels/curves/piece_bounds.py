@@ -3,7 +3,7 @@
 Glossary
 --------
 disc : holds the tails of a chord whose orientation is known to a radius only, tangencies included.
-edge : a chord at an end of a piece, with what pieces need of it (see ``chord.columns``). It serves the pieces
+edge : a chord at an end of a piece, with what pieces need of it (see ``base.tables``). It serves the pieces
     on both of its sides, also where they are in neighbouring cells. It says for how long after it the curve's
     pegs stand too far along x for another peg to stand farther.
 force direction : a direction in which the two pegs of a piece can push together.
@@ -31,23 +31,12 @@ from __future__ import annotations
 from math import cos, hypot, inf, isfinite, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import EXACT
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, inner, inner_making_arrays
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y, is_shallow
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.chord.coincidences import (
-    CONCENTRIC,
-    NONE,
-    TOUCHING,
-    from_coincidence,
-    is_regular,
-    misfit,
-    regular_radius,
-    touching_speed,
-)
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     BACKWARD_ERROR,
     COINCIDENCE,
     EDGE_ACROSS,
@@ -75,10 +64,18 @@ from workhold.kernels.chord.columns import (
     TAIL_NORMAL_X,
     TAIL_NORMAL_Y,
 )
+from workhold.kernels.chord.coincidences import (
+    CONCENTRIC,
+    NONE,
+    TOUCHING,
+    from_coincidence,
+    is_regular,
+    misfit,
+    regular_radius,
+    touching_speed,
+)
 from workhold.kernels.chord.evaluation import HEIGHT, State, chord_state, parameter_on, regular_error, valued
 from workhold.kernels.chord.shallow import shallow_half
-
-Array = NDArray[np.float64]
 
 
 @inner
@@ -132,8 +129,7 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
     there."""
     d, eta, kind = curve[LENGTH], curve[BACKWARD_ERROR], curve[COINCIDENCE]
     if kind == CONCENTRIC:
-        # The chord turns about the centre as it is; nearly along a diameter its place is known less well than
-        # its length.
+        # The chord turns about the centre; nearly along a diameter its length is known better than its place.
         return a[RADIUS] * reach + arcs_radius(a, b, state, eta, eta)
     radius = regular_radius(a, b, kind)
     gamma = from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
@@ -144,8 +140,7 @@ def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reac
         return regular_error(curve) + 2.6 * (d + radius) * reach
     e = d * reach + eta
     if is_regular(kind, radius, d, gamma):
-        # The computed chord is that of a part with exactly the lengths of the coincidence, others within
-        # reach are not.
+        # The computed chord has exactly the lengths of the coincidence, others within reach have not.
         e += EXACT
         eta += regular_error(curve)
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
@@ -206,8 +201,7 @@ def value_disc(
         return (cos(psi) * y - sin(psi) * x, radius + (abs(x) + abs(y) + radius) * reach)
     if a[IS_ARC] == 0.0:
         return (parameter_on(a, x, y), radius)
-    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either
-    # side.
+    # From an arc's centre a disc of up to half its radius R is seen under 1.1 radius / R to either side.
     return (parameter_on(a, x, y), 1.1 * radius / a[RADIUS] if radius <= 0.5 * a[RADIUS] else TURN)
 
 
@@ -366,10 +360,8 @@ def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) 
         sign = -1.0 if k == 0 else 1.0
         bottom, top = edge_force(low, sign, share, at_ends)
         first, last = edge_force(high, sign, share, at_ends)
-        row[RIGHTWARD_LOW + 2 * k], row[RIGHTWARD_HIGH + 2 * k] = (
-            min(bottom, first) - between,
-            max(top, last) + between,
-        )
+        row[RIGHTWARD_LOW + 2 * k] = min(bottom, first) - between
+        row[RIGHTWARD_HIGH + 2 * k] = max(top, last) + between
         if bottom > top and first > last:
             row[RIGHTWARD_LOW + 2 * k], row[RIGHTWARD_HIGH + 2 * k] = 2.0, -2.0
         elif bottom > top or first > last:

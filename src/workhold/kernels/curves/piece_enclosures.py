@@ -9,19 +9,16 @@ contact direction turns at the rate p / R, which changes by at most K / R. A fun
 derivative B is within B w^2 / 8 of its linear interpolation over a range w. Beside a tangency the second
 derivative is bounded on one side only, by X^3 P'.
 
-Directions of forces are described in ``curves.piece_bounds``, and columns in ``chord.columns``.
+Directions of forces are described in ``curves.piece_bounds``, and columns in ``base.tables``.
 """
 
 from __future__ import annotations
 
 from math import cos, hypot, inf, isfinite, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     ACROSS_LEAST,
     ACROSS_MOST,
     EDGE_ACROSS,
@@ -76,8 +73,6 @@ from workhold.kernels.curves.piece_bounds import (
     write_all_force_directions,
     write_force_directions,
 )
-
-Array = NDArray[np.float64]
 
 # The directions of a piece are given only if its pegs' contacts turn by less than this, in radians.
 MOST_TURN = 1.0
@@ -138,18 +133,15 @@ def write_steady(
 ) -> None:
     """Writes the enclosures of a piece whose instant centre moves at a bounded speed."""
     speed, sag = stretch[SPEED], width * width / 8.0
-    error, with_backward_error = (
-        max(low[EDGE_ERROR], high[EDGE_ERROR]),
-        max(low[EDGE_CENTER_ERROR], high[EDGE_CENTER_ERROR]),
-    )
+    error = max(low[EDGE_ERROR], high[EDGE_ERROR])
+    with_backward_error = max(low[EDGE_CENTER_ERROR], high[EDGE_CENTER_ERROR])
     center = max(low[EDGE_CENTER], high[EDGE_CENTER]) + speed * width + with_backward_error
     arm = max(low[EDGE_ARM], high[EDGE_ARM]) + speed * width + with_backward_error
     curved = curve[KAPPA]
     turns_little = (curved * arm + 1.0) * width <= MOST_TURN
     turned = curved * (speed * sag + 2.0 * error) + DIRECTION_HAIR * width + SAME
     if mode == HEIGHT:
-        # x . P' by its parts along the contact directions, whose parts along x are small where the chord runs
-        # along a line.
+        # x . P' by its parts along the contact directions, which have little along x on a chord along a line.
         tail = head = 1.0
         if turns_little:
             tail = largest_part(

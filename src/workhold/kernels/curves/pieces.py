@@ -7,7 +7,7 @@ piece : a chord curve over a range inside one cell and inside one stretch. It ha
     ends and an enclosure of its second derivative. From these follow enclosures of its value, of the place of
     its pegs along x, and of the directions in which they can push together.
 
-What encloses a piece stands in ``curves.piece_enclosures``, and columns in ``chord.columns``.
+What encloses a piece stands in ``curves.piece_enclosures``, and columns in ``base.tables``.
 """
 
 from __future__ import annotations
@@ -16,13 +16,12 @@ from math import cos, floor, inf, isfinite, pi, sin
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import inner, inner_making_arrays
+from workhold.kernels.base.compiling import Array, IntArray, inner, inner_making_arrays
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     COLUMN_STEP,
     CURVE,
     EDGE_LENGTH,
@@ -62,9 +61,6 @@ from workhold.kernels.chord.stretches import (
 )
 from workhold.kernels.curves.piece_bounds import is_farther, write_edge
 from workhold.kernels.curves.piece_enclosures import second_derivative_beside, write_beside, write_steady
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class PieceCell(NamedTuple):
@@ -170,10 +166,8 @@ def add_pieces(
             row[VALUE_LOW], row[SLOPE_LOW] = at_low[EDGE_VALUE], at_low[EDGE_SLOPE]
             row[VALUE_HIGH], row[SLOPE_HIGH] = at_high[EDGE_VALUE], at_high[EDGE_SLOPE]
             row[VALUE_ERROR_LOW], row[SLOPE_ERROR_LOW] = at_low[EDGE_VALUE_ERROR], at_low[EDGE_SLOPE_ERROR]
-            row[VALUE_ERROR_HIGH], row[SLOPE_ERROR_HIGH] = (
-                at_high[EDGE_VALUE_ERROR],
-                at_high[EDGE_SLOPE_ERROR],
-            )
+            row[VALUE_ERROR_HIGH] = at_high[EDGE_VALUE_ERROR]
+            row[SLOPE_ERROR_HIGH] = at_high[EDGE_SLOPE_ERROR]
             steady = steady and isfinite(row[SLOPE_ERROR_LOW]) and isfinite(row[SLOPE_ERROR_HIGH])
             if circles and steady:
                 unwind(row, a, b, curve)
@@ -268,7 +262,7 @@ def cell_pieces(
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m,
         each is at least m / (1 - 3 m) of any other.
     mode : ``HEIGHT`` or ``POSITION``.
-    kept : of the members, see ``edges.kept_edges``.
+    kept : of the members, see ``piece_bounds.kept_edges``.
     farthest : pieces may be left out whose rightmost peg stands farther right than this, in mm.
     room : (R, 24) that may be written over.
 

@@ -16,11 +16,10 @@ from __future__ import annotations
 from math import ceil, cos, floor, isfinite, isinf, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.interval import slope_range, value_bounds
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CURVE,
     HEAD,
     HIGH,
@@ -41,10 +40,8 @@ from workhold.kernels.chord.columns import (
 from workhold.kernels.chord.evaluation import chord_state, valued
 from workhold.kernels.curves.piece_bounds import SAME, value_disc
 
-Array = NDArray[np.float64]
-
 # Ranges narrower than this, in radians, are not split any further: at a double root the clamping force is
-# then below ``contact.rules.LEAST_CLAMPING`` throughout.
+# then below ``conventions.LEAST_CLAMPING`` throughout.
 NARROWEST = 1e-8
 # A range over which a curve moves farther than this, in mm or radians, is split beyond the narrowest.
 FARTHEST = 1e-6
@@ -56,8 +53,7 @@ STACK_DEPTH = 256
 MOST_ROOTS = 1 << 15
 # Rounding of an interpolated value in mm or radians, generously counted.
 HAIR = 1e-9
-# Ranges in radians from which on chords are bounded as discs, where their slopes are unknown, and to which
-# those are split.
+# Radians. Ranges from which on chords of unknown slopes are bounded as discs, and to which they are split.
 WIDEST_DISC = 0.1
 NARROWEST_DISC = 1e-13
 # Columns of a root: ROOT_PSI and ROOT_RADIUS in radians, MULTIPLE (k of the target offset + k period).
@@ -253,12 +249,8 @@ def crossings(
     v1, s1, v2, s2 = first[VALUE_LOW], first[SLOPE_LOW], second[VALUE_LOW], second[SLOPE_LOW]
     w1, t1, w2, t2 = first[VALUE_HIGH], first[SLOPE_HIGH], second[VALUE_HIGH], second[SLOPE_HIGH]
     # Errors of values (e) and slopes (g) at the low end, and at the high end (c and q).
-    e1, g1, e2, g2 = (
-        first[VALUE_ERROR_LOW],
-        first[SLOPE_ERROR_LOW],
-        second[VALUE_ERROR_LOW],
-        second[SLOPE_ERROR_LOW],
-    )
+    e1, g1 = first[VALUE_ERROR_LOW], first[SLOPE_ERROR_LOW]
+    e2, g2 = second[VALUE_ERROR_LOW], second[SLOPE_ERROR_LOW]
     c1, q1 = first[VALUE_ERROR_HIGH], first[SLOPE_ERROR_HIGH]
     c2, q2 = second[VALUE_ERROR_HIGH], second[SLOPE_ERROR_HIGH]
     if is_inside(low, first[LOW], first[SLOPE_LOW]):
@@ -308,8 +300,7 @@ def crossings(
         else:
             bottom1, top1 = value_bounds(v1, w1, low1, high1, width)
             bottom2, top2 = value_bounds(v2, w2, low2, high2, width)
-            # Where a curve is steep, as beside a tangency, the chord still moves far over the narrowest
-            # range.
+            # Where a curve is steep, as beside a tangency, chords move far over the narrowest range.
             steep = max(max(-low1, high1), max(-low2, high2)) * width > FARTHEST
             smallest = NARROWEST_DISC if steep else NARROWEST
             # Where nothing is known of a curve's slopes, as beside a tangency, its chords themselves are

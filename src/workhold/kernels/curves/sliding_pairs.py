@@ -15,16 +15,19 @@ from math import acos, atan2, ceil, cos, hypot, pi, sin
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL, SQUARE
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import compiled_making_arrays, inner, inner_making_arrays
+from workhold.kernels.base.compiling import (
+    Array,
+    IntArray,
+    compiled_making_arrays,
+    inner,
+    inner_making_arrays,
+)
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.kernels.base.given import Features, Lattice, Limits
 from workhold.kernels.base.interval import TURN
-from workhold.kernels.chord.coincidences import are_one_chord_apart, shares_a_line
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     COLUMN_STEP,
     DIRECTION,
     FROM,
@@ -38,8 +41,12 @@ from workhold.kernels.chord.columns import (
     TAIL,
     TO,
     Curves,
+    Features,
+    Lattice,
+    Limits,
     SlidingPairs,
 )
+from workhold.kernels.chord.coincidences import are_one_chord_apart, shares_a_line
 from workhold.kernels.chord.evaluation import backward_error, parameter_on
 from workhold.kernels.chord.intervals import SLIVER
 from workhold.kernels.contact.record import (
@@ -66,12 +73,8 @@ from workhold.kernels.curves.block_work import (
     place_head,
     place_tail,
 )
-from workhold.kernels.curves.moving_pegs import add_moving_pegs
-from workhold.kernels.curves.rows import height_range, lines_between, row_meets
+from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range, lines_between, row_meets
 from workhold.kernels.curves.three_and_one import heads_share_a_line
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Rounding of a sliding pair's orientation in radians.
 ROUNDING = 4e-15
@@ -93,10 +96,8 @@ def line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
         middle = same * (
             (a[X] + d * cos(alpha) - b[X]) * b[AXIS_X] + (a[Y] + d * sin(alpha) - b[Y]) * b[AXIS_Y]
         )
-        low, high = (
-            max(-a[HALF_EXTENT], -b[HALF_EXTENT] - middle),
-            min(a[HALF_EXTENT], b[HALF_EXTENT] - middle),
-        )
+        low = max(-a[HALF_EXTENT], -b[HALF_EXTENT] - middle)
+        high = min(a[HALF_EXTENT], b[HALF_EXTENT] - middle)
         if low <= high:
             out[count, SLIDE_FROM], out[count, SLIDE_TO], out[count, DIRECTION] = low, high, alpha
             count += 1
@@ -119,10 +120,8 @@ def arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
     count = 0
     for lap in range(-1, 2):
         middle = turned + lap * TURN
-        low, high = (
-            max(-a[HALF_EXTENT], middle - b[HALF_EXTENT]),
-            min(a[HALF_EXTENT], middle + b[HALF_EXTENT]),
-        )
+        low = max(-a[HALF_EXTENT], middle - b[HALF_EXTENT])
+        high = min(a[HALF_EXTENT], middle + b[HALF_EXTENT])
         if low <= high:
             out[count, SLIDE_FROM], out[count, SLIDE_TO], out[count, DIRECTION] = low, high, alpha
             count += 1

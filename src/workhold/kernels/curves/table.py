@@ -5,12 +5,11 @@ from __future__ import annotations
 from math import cos, hypot, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.kernels.base.arrays import with_room
-from workhold.kernels.base.compiling import compiled_making_arrays, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CENTER,
     COLUMN_STEP,
     CURVE_INTEGERS,
@@ -36,9 +35,6 @@ from workhold.kernels.chord.stretches import STRETCH_LENGTH, add_stretches
 from workhold.kernels.curves.piece_bounds import tail_disc
 from workhold.kernels.curves.sliding_pairs import sliding_pairs_between
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 # Rounding of distances in mm, generously counted.
 ROUNDING = 1e-9
 
@@ -55,8 +51,7 @@ def may_reach(row: Array, x: float, y: float, radius: float) -> bool:
     s, off = abs(parameter_on(row, x, y)), radius + ROUNDING
     if row[IS_ARC] == 0.0:
         return not s > row[HALF_EXTENT] + off
-    # A disc of up to half the arc's radius is seen from its centre under at most 1.1 radius / R to either
-    # side.
+    # From an arc's centre a disc of up to half its radius R is seen under 1.1 radius / R to either side.
     return not (off <= 0.5 * row[RADIUS] and s > row[HALF_EXTENT] + 1.1 * off / row[RADIUS])
 
 
@@ -104,7 +99,7 @@ def tail_curves(
     Returns
     -------
     (integers, reals, sliding pair integers, sliding pair reals, stretches)
-        See ``curves.columns``. The orientations of sliding pairs, alpha - shift, are still to be brought into
+        See ``base.tables``. The orientations of sliding pairs, alpha - shift, are still to be brought into
         range by the caller, and the curves' stretches are counted from 0 for this tail.
     """
     integers, reals = np.empty((256, CURVE_INTEGERS), np.int64), np.empty((256, CURVE_REALS))
@@ -167,10 +162,5 @@ def tail_curves(
 @inner
 def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
     """Writes the whole numbers of a curve or sliding pair."""
-    row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP], row[CENTER] = (
-        tail,
-        head,
-        column_step,
-        row_step,
-        center,
-    )
+    row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP] = tail, head, column_step, row_step
+    row[CENTER] = center

@@ -9,14 +9,12 @@ from __future__ import annotations
 from math import cos, hypot, pi, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import compiled_making_arrays, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
-from workhold.kernels.base.given import Features, Lattice, Limits
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.tables import (
     CENTER,
     COLUMN_STEP,
     CURVE,
@@ -31,6 +29,9 @@ from workhold.kernels.chord.columns import (
     VALUE_MOST,
     X_STANDING,
     Curves,
+    Features,
+    Lattice,
+    Limits,
 )
 from workhold.kernels.chord.evaluation import POSITION
 from workhold.kernels.chord.intervals import share_one_line
@@ -47,14 +48,10 @@ from workhold.kernels.curves.block_work import (
     is_among,
     place_triple,
 )
-from workhold.kernels.curves.moving_pegs import add_moving_pegs
+from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range
 from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
 from workhold.kernels.curves.pieces import cell_pieces
 from workhold.kernels.curves.roots import ROOT_PSI, ROOT_RADIUS, crossings, may_meet
-from workhold.kernels.curves.rows import height_range
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Columns of a limb, one of the two chords of a triple: what the pairing of pieces looks at.
 LIMB_LOW, LIMB_HIGH, LIMB_VALUE_LEAST, LIMB_VALUE_MOST, LIMB_PIECE, LIMB_TAIL = range(6)

@@ -14,13 +14,11 @@ from __future__ import annotations
 from math import ceil, floor
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
 from workhold.kernels.base.arrays import grown
-from workhold.kernels.base.compiling import compiled_making_arrays, inner
-from workhold.kernels.base.given import Features, Lattice, Limits
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.compiling import Array, IntArray, compiled_making_arrays, inner
+from workhold.kernels.base.tables import (
     ACROSS_LEAST,
     ACROSS_MOST,
     CENTER,
@@ -36,6 +34,9 @@ from workhold.kernels.chord.columns import (
     VALUE_MOST,
     X_STANDING,
     Curves,
+    Features,
+    Lattice,
+    Limits,
 )
 from workhold.kernels.chord.evaluation import HEIGHT
 from workhold.kernels.contact.record import RECORD_LENGTH, angle_of, write_given_up
@@ -53,20 +54,9 @@ from workhold.kernels.curves.piece_bounds import HAIR, kept_edges
 from workhold.kernels.curves.pieces import cell_pieces
 from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
-(
-    ROLE_X,
-    ROLE_FORCE_LOW,
-    ROLE_FORCE_HIGH,
-    ROLE_VALUE_LEAST,
-    ROLE_VALUE_MOST,
-    ROLE_LOW,
-    ROLE_HIGH,
-    ROLE_PIECE,
-) = range(8)
+ROLE_X, ROLE_FORCE_LOW, ROLE_FORCE_HIGH, ROLE_VALUE_LEAST = range(4)
+ROLE_VALUE_MOST, ROLE_LOW, ROLE_HIGH, ROLE_PIECE = range(4, 8)
 ROLE_LENGTH = 8
 
 
@@ -178,8 +168,8 @@ def add_crossings(out: Array, count: int, number: int, one: int, two: int, work:
 
 @inner
 def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Array, work: BlockWork) -> int:
-    """Appends what comes of the pairs of two lists of roles, from the one at ``space.at`` on (see
-    ``work_space``).
+    """Appends what comes of the pairs of two lists of roles, from the one at ``work.at`` on (see
+    ``block_work``).
 
     Parameters
     ----------

@@ -5,17 +5,11 @@ from __future__ import annotations
 
 from math import pi
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import LEAST_SPAN
-from workhold.kernels.base.compiling import compiled, inner
-from workhold.kernels.base.given import Setting
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
+from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import NULL, take_pegs, touch
 from workhold.kernels.proof.newton_kantorovich import held, wrenches
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @compiled
@@ -41,20 +35,19 @@ def contacts_of(
     nulls : (N, 4) receives the null vectors scaled to sizes of sum 1, their sum not negative; all -1 where
         the wrenches do not span the space.
     forces : (N, 4) receives the forces per unit of clamping force.
-    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null
-        vectors.
+    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.record``.
     """
     length, null = setting.limits.wrench_length, w[NULL]
     for n in range(records.shape[0]):
         take_pegs(records[n], setting.lattice, w)
         touch(records[n], rows, length, w, pairs[0])
-        wrenches(records[n], rows, length, pairs, null)
+        wrenches(records[n], rows, length, w, pairs)
         total = null[0] + null[1] + null[2] + null[3]
         size = abs(null[0]) + abs(null[1]) + abs(null[2]) + abs(null[3])
         sign = 1.0 if total >= 0.0 else -1.0
         for k in range(4):
             null[k] = sign * null[k] / size if size > LEAST_SPAN else -1.0
-        gaps[n], push = held(w, pairs[0], pairs[1], null)
+        gaps[n], push = held(w, pairs)
         push *= setting.limits.clamping
         for k in range(4):
             points[n, k, 0], points[n, k, 1] = pairs[0, k, 0], pairs[0, k, 1]

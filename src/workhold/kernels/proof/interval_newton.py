@@ -22,15 +22,19 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.kernels.base.compiling import compiled_making_arrays, inner, inner_making_arrays
-from workhold.kernels.base.given import Setting
+from workhold.kernels.base.compiling import (
+    Array,
+    ByteArray,
+    compiled_making_arrays,
+    inner,
+    inner_making_arrays,
+)
+from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import (
     LARGEST_RADIUS,
     MOVING,
     NEWTON,
-    NULL,
     OFF,
     PSI,
     REACH,
@@ -56,11 +60,7 @@ from workhold.kernels.proof.variation import (
     spread,
 )
 
-Array = NDArray[np.float64]
-Verdicts = NDArray[np.int8]
-
-# A box is given up after so many parts; the sides of what remains of one are made larger by this part, for
-# rounding.
+# A box is given up after so many parts; sides of what remains are made larger by this part, for rounding.
 MOST_PARTS = 200_000
 WIDER = 1e-12
 DEPTH = 256
@@ -80,7 +80,7 @@ class NewtonWorkSpace(NamedTuple):
 
     Parameters
     ----------
-    w, pairs : (19, 4) and (3, 4, 2), see ``contact.equations`` and ``variation``.
+    w, pairs : (19, 4) and (3, 4, 2), see ``contact.record`` and ``variation``.
     stack : (DEPTH, 2, 4) parts that wait, as middles and half widths.
     numbers : (10, 4), see ``variation``.
     slopes : (4, 4, 4), see :func:`combine`.
@@ -286,7 +286,7 @@ def solutions_in(
         size, _ = sizes(record, features, pairs[0])
         least = ROUNDINGS * (size + length)
         spread(record, features, size, setting, place, frame, w, pairs, b)
-        if is_broken(record, features, setting, w, pairs, w[NULL], b):
+        if is_broken(record, features, setting, w, pairs, b):
             steps = 0
             continue
         combine(frame, size, length, w, b, slopes)
@@ -317,7 +317,7 @@ def solutions_in_all(
     setting: Setting,
     frames: Array,
     space: NewtonWorkSpace,
-    verdicts: Verdicts,
+    verdicts: ByteArray,
     roots: Array,
 ) -> int:
     """Writes the verdict on each box and the roots of all, see :func:`interval_newton`, and returns how many
@@ -333,7 +333,7 @@ def solutions_in_all(
 @compiled_making_arrays
 def interval_newton(
     records: Array, features: Array, setting: Setting, frames: Array
-) -> tuple[Verdicts, Array]:
+) -> tuple[ByteArray, Array]:
     """Contracts boxes one by one.
 
     Parameters

@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled
-
-__all__ = ["merge_boxes"]
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from workhold.kernels.base.compiling import Array, IntArray, compiled
 
 
 @compiled

@@ -28,7 +28,6 @@ from __future__ import annotations
 from math import cos, inf, pi, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from workhold.conventions import (
     GAP_SLACK,
@@ -39,10 +38,10 @@ from workhold.conventions import (
     LEAST_SPAN,
     TOUCHING,
 )
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, ByteArray, compiled, inner
 from workhold.kernels.base.distance import segment_distance
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, largest_number
-from workhold.kernels.base.given import Setting
+from workhold.kernels.base.tables import Setting
 from workhold.kernels.chord.evaluation import end_slack
 from workhold.kernels.contact.record import (
     FEATURES,
@@ -61,16 +60,12 @@ from workhold.kernels.contact.record import (
 )
 from workhold.kernels.contact.rules import minor_band, minors, outward_normal
 
-Array = NDArray[np.float64]
-Verdicts = NDArray[np.int8]
-
 DISCARDED, OPEN, PROVEN = -1, 0, 1
 ROUNDS = 3
 # Determinants this small are singular; steps of more than this many mm lead to another contact.
 SINGULAR = 1e-300
 FARTHEST = 1.0
-# Roundings of half a unit in the last place in a contact equation, generously counted, and relative to its
-# terms.
+# Roundings of half a unit in the last place in a contact equation, relative to its terms, on the safe side.
 ROUNDINGS = 16.0 * 1.2e-16
 # Where an engine states nothing better, the exact contact is this near, in mm.
 LEAST_REACH = 1e-9
@@ -156,8 +151,7 @@ def certificate(
     if not (rest > 0.0 and inside > 0.0):
         return (inf, 0.0)
     radius = 1.01 * 2.0 * step / (rest + sqrt(inside))
-    # Points of the part's frame more than half a radius from an arc are outside the bound of the second
-    # derivatives.
+    # More than half a radius from an arc the second derivatives are not bounded.
     unique = min(0.99 * rest / curve, smallest / 16.0)
     return (radius, unique) if radius < unique else (inf, 0.0)
 
@@ -172,8 +166,8 @@ def nearest_end(record: Array, features: Array, points: Array) -> float:
 
 
 @inner
-def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, float]:
-    """How four contacts with forces ``null`` (4,) stand between the carriers.
+def held(w: Array, pairs: Array) -> tuple[float, float]:
+    """How four contacts in place stand between the carriers, with the null vector for forces.
 
     Returns
     -------
@@ -181,6 +175,7 @@ def held(w: Array, points: Array, normals: Array, null: Array) -> tuple[float, f
     pegs along x)
     """
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
+    points, normals, null = pairs[0], pairs[1], w[NULL]
     standing, moving, push = -inf, inf, 0.0
     for k in range(4):
         along = points[k, 0] * cosine + points[k, 1] * sine
@@ -201,13 +196,13 @@ def sign_of(middle: float, doubt: float) -> int:
 
 
 @inner
-def wrenches(record: Array, features: Array, length: float, pairs: Array, null: Array) -> float:
+def wrenches(record: Array, features: Array, length: float, w: Array, pairs: Array) -> float:
     """Fills in the normals, at ``pairs[1]``, and the null vector, not scaled, of the contacts in place, and
     returns its sum of sizes."""
     for k in range(4):
         row = features[int(record[FEATURES + k])]
         pairs[1, k, 0], pairs[1, k, 1] = outward_normal(row, pairs[0, k, 0], pairs[0, k, 1])
-    return minors(pairs[0], pairs[1], length, null)
+    return minors(pairs[0], pairs[1], length, w[NULL])
 
 
 @inner
@@ -219,7 +214,6 @@ def judged(
     smallest: float,
     w: Array,
     pairs: Array,
-    null: Array,
 ) -> int:
     """Decides contacts in place by the signs of enclosures of five numbers that must all be positive: ends,
     gap, span, closure, clamping. Those of one of two clamps are ends, the determinant of the standing pegs'
@@ -230,9 +224,9 @@ def judged(
     radius : how far in mm the exact unknowns may be from those in place.
     smallest : radius of the smallest arc touched, infinite for lines.
     """
-    length = setting.limits.wrench_length
-    size = wrenches(record, features, length, pairs, null)
-    gap, push = held(w, pairs[0], pairs[1], null)
+    length, null = setting.limits.wrench_length, w[NULL]
+    size = wrenches(record, features, length, w, pairs)
+    gap, push = held(w, pairs)
     reach = 4.5 * radius
     swing = reach / smallest
     band = minor_band(swing, reach, length)
@@ -243,17 +237,14 @@ def judged(
         verdict = min(verdict, sign_of(abs(null[3]) - LEAST_SEAT, band))
         facing = pairs[1, 3, 0] * cos(w[UNKNOWNS, 0]) + pairs[1, 3, 1] * sin(w[UNKNOWNS, 0])
         return min(verdict, sign_of(setting.limits.clamping * facing - LEAST_PUSH, swing + radius / length))
-    low, high = (
-        min(min(null[0], null[1]), min(null[2], null[3])),
-        max(max(null[0], null[1]), max(null[2], null[3])),
-    )
+    low = min(min(null[0], null[1]), min(null[2], null[3]))
+    high = max(max(null[0], null[1]), max(null[2], null[3]))
     sign = 1.0 if high >= -low else -1.0
     closure = low if sign > 0.0 else -high
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
     verdict = min(verdict, sign_of(gap - (setting.limits.gap - GAP_SLACK), 1.5 * radius + 1e-12))
     verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))
-    # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; at most three forces
-    # push.
+    # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; up to three forces push.
     verdict = min(verdict, sign_of(closure - LEAST_CLOSURE * size, 1.1 * band))
     doubt = 3.1 * band + size * (swing + radius / length)
     return min(verdict, sign_of(sign * setting.limits.clamping * push - LEAST_CLAMPING * size, doubt))
@@ -299,7 +290,7 @@ def certified(
     discs: Array,
     setting: Setting,
     solutions: Array,
-    verdicts: Verdicts,
+    verdicts: ByteArray,
     w: Array,
     pairs: Array,
 ) -> None:
@@ -312,10 +303,9 @@ def certified(
     outline, discs : (S, 10) the part's faces, and :func:`discs_around` these and the pegs that touch them.
     solutions : (N, 4) receives the unknowns.
     verdicts : (N,) receives the verdicts; open where another solution may be in the record's box.
-    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.equations``; the last row of ``w`` is for null
-        vectors.
+    w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.record``.
     """
-    length, points, null = setting.limits.wrench_length, pairs[0], w[NULL]
+    length, points = setting.limits.wrench_length, pairs[0]
     for n in range(records.shape[0]):
         record = records[n]
         take_pegs(record, setting.lattice, w)
@@ -329,7 +319,7 @@ def certified(
         # The exact contact may be this far, where the separation is the worst known.
         box = 2.0 * (record[LARGEST_RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
         if radius < inf and away + box <= unique:
-            verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs, null)
+            verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs)
             # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
             if verdicts[n] == PROVEN and not is_clear(points, w[MOVING], outline, discs, setting):
                 verdicts[n] = DISCARDED

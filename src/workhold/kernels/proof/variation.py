@@ -10,17 +10,15 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y, is_shallow, local_size
-from workhold.kernels.base.given import Setting
+from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import (
     FEATURES,
     MOVING,
     NEWTON,
+    NULL,
     OFF,
     SLOPES,
     STEP_X,
@@ -28,8 +26,6 @@ from workhold.kernels.contact.record import (
 )
 from workhold.kernels.contact.rules import ROUNDING, minors
 from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, nearest_end
-
-Array = NDArray[np.float64]
 
 # Half a unit in the last place, and rounding in mm of ends and gaps.
 HALF_UNIT = 1.2e-16
@@ -162,11 +158,9 @@ def face_one_way(pairs: Array, b: Array) -> bool:
 
 
 @inner
-def is_broken(
-    record: Array, features: Array, setting: Setting, w: Array, pairs: Array, null: Array, b: Array
-) -> bool:
+def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs: Array, b: Array) -> bool:
     """Whether some rule is broken everywhere in a part."""
-    reach = 0.0
+    reach, null = 0.0, w[NULL]
     moving, standing = inf, -inf
     for k in range(4):
         row = features[int(record[FEATURES + k])]
@@ -199,13 +193,14 @@ def is_broken(
         return True
     size = max(size - doubt, 0.0)
     clamping = setting.limits.clamping
-    return not (may_clamp(1.0, clamping, size, w, null, b) or may_clamp(-1.0, clamping, size, w, null, b))
+    return not (may_clamp(1.0, clamping, size, w, b) or may_clamp(-1.0, clamping, size, w, b))
 
 
 @inner
-def may_clamp(sign: float, clamping: float, size: float, w: Array, null: Array, b: Array) -> bool:
+def may_clamp(sign: float, clamping: float, size: float, w: Array, b: Array) -> bool:
     """Whether forces of one sign may close and clamp; the force is the push of the standing pegs, and as well
     what the moving pegs take up. ``size`` is the least that the sizes of the minors add up to."""
+    null = w[NULL]
     standing = moving = 0.0
     for k in range(4):
         band = b[MINOR_BAND, k]

@@ -1,1 +1,0 @@
-"""Kernels of seating: what pegs can do with a part besides pair it in a fixture's pose."""

@@ -11,10 +11,7 @@ from __future__ import annotations
 
 from math import atan2, cos, floor, hypot, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import DescentWorkSpace, Obstacles
 from workhold.kernels.seating.obstacles import (
@@ -25,10 +22,7 @@ from workhold.kernels.seating.obstacles import (
     turned_place,
 )
 
-Array = NDArray[np.float64]
-
-# mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; pegs may be in the part by
-# the last.
+# mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; how deep pegs may enter.
 TOUCHES, SHORTEST, GAIN, ENTERED = 1e-9, 1e-9, 1e-12, 1e-9
 # 1 / mm. Curvatures below this are counted as this.
 FLATTEST = 1e-9
@@ -208,10 +202,8 @@ def antipodal_step(
     sx, sy = tangent_at(a, ax, ay)
     tx, ty = tangent_at(b, bx, by)
     us, ut = ux * sx + uy * sy, ux * tx + uy * ty
-    haa, hbb = (
-        (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy),
-        (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy),
-    )
+    haa = (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy)
+    hbb = (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy)
     along_a, along_b = newton_step(haa, -(sx * tx + sy * ty - us * ut) / d, hbb, -us, ut, longest)
     asked = hypot(along_a, along_b)
     a_unit = a[RADIUS] if a[IS_ARC] != 0.0 else 1.0

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from math import cos, inf, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import (
     ANGLE,
     CANDIDATE_LENGTH,
@@ -44,9 +41,6 @@ from workhold.kernels.seating.three_contacts import (
     slope_over,
 )
 from workhold.kernels.seating.two_contact_curves import END, PairState, is_on_its_pieces, pair_at
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Pivots of the balance below this are none.
 SINGULAR = 1e-14
@@ -177,10 +171,8 @@ def complete_two(roots: Array, given: Given, pocket_pieces: IntArray, out: Array
             continue
         cosine, sine = cos(psi), sin(psi)
         p, q = int(one[FIRST_PEG]), int(two[FIRST_PEG])
-        x, y = (
-            given.pegs[p, 0] - (cosine * s[0] + sine * s[1]),
-            given.pegs[p, 1] - (cosine * s[1] - sine * s[0]),
-        )
+        x = given.pegs[p, 0] - (cosine * s[0] + sine * s[1])
+        y = given.pegs[p, 1] - (cosine * s[1] - sine * s[0])
         row = out[count]
         write_pose(row, -psi, x, y, 4)
         row[SEPARATION] = x - (given.pegs[q, 0] - (cosine * t[0] + sine * t[1]))
@@ -325,7 +317,7 @@ def settle(candidates: Array, given: Given, size: float, balance: Array, normal:
 
 
 @compiled
-def judge_balance(candidates: Array, slack: float, slack_in_doubt: float, verdicts: NDArray[np.int8]) -> None:
+def judge_balance(candidates: Array, slack: float, slack_in_doubt: float, verdicts: ByteArray) -> None:
     """Writes whether all contacts of candidates (N, 24) press and balance, or whether that is in doubt.
 
     Parameters

@@ -14,10 +14,7 @@ from __future__ import annotations
 
 from math import floor, inf, pi, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.antipodal_step import antipodal_step
 from workhold.kernels.seating.columns import (
@@ -33,9 +30,6 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.linear_program import Four, best_step, shortest_out
 from workhold.kernels.seating.obstacles import add_wall, cosine_and_sine
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 # How a descent ended.
 GAVE_UP, AT_REST, AT_THE_STOP = 0, 1, 2
 # mm. Shorter steps move nothing; pegs this deep in the part are in it; smaller gains are none.
@@ -43,11 +37,9 @@ LEAST_STEP, ENTERED, LEAST_GAIN = 1e-7, 1e-8, 1e-12
 MOST_STEPS = 4000
 # Of the part's size, how much farther around pegs pieces are listed than is asked for.
 AROUND = 0.1
-# How many times as wide as the one before a step's box is at most, and how many half widths a clearance falls
-# within one.
+# How many times as wide a step's box is than the last, at most; half widths that a clearance falls in one.
 WIDER, REACH = 3.0, 3.6
-# How many times as far as is looked at a way out leads at most: out of a narrow corner it is longer than what
-# is entered.
+# How many times as far as is looked at a way out leads at most, which is long out of a narrow corner.
 FAR = 8.0
 # Steps of linear programs that follow where an antipodal step found something in the way.
 WAIT = 3
@@ -85,13 +77,8 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
     count, near = 0, work.near
     cosine, sine = cosine_and_sine(config[0], work.turn)
     if config[3] - obstacles.stop <= reach:
-        near[0, 0], near[0, 1], near[0, 2], near[0, 3], near[0, 4] = (
-            0.0,
-            0.0,
-            0.0,
-            1.0,
-            config[3] - obstacles.stop,
-        )
+        near[0, 0], near[0, 1], near[0, 2], near[0, 3] = 0.0, 0.0, 0.0, 1.0
+        near[0, 4] = config[3] - obstacles.stop
         near[0, 5], near[0, 6] = -1.0, -1.0
         count = 1
     if obstacles.most - config[3] <= reach:
@@ -121,10 +108,8 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
                 if abs(off) > reach:
                     continue
                 # An angle from the middle is less than another where its cosine is more.
-                forth, end = (
-                    dx * row[AXIS_X] + dy * row[AXIS_Y],
-                    3 if dy * row[AXIS_X] > dx * row[AXIS_Y] else 2,
-                )
+                forth = dx * row[AXIS_X] + dy * row[AXIS_Y]
+                end = 3 if dy * row[AXIS_X] > dx * row[AXIS_Y] else 2
                 if row[HALF_EXTENT] < pi and forth < size * obstacles.spans[k, end]:
                     continue
             if count >= near.shape[0]:
@@ -279,7 +264,7 @@ def close_jaws(
     obstacles: Obstacles,
     seats: Array,
     work: DescentWorkSpace,
-    ends: NDArray[np.int8],
+    ends: ByteArray,
     begins: IntArray,
     nodes: Array,
 ) -> None:

@@ -21,8 +21,7 @@ A candidate is a configuration that may be an equilibrium.
 
 - THETA, PLACE_X, PLACE_Y, SEPARATION : the configuration.
 - CONTACTS : how many; four pegs from PEG on, four pieces from PIECE on, and four forces from FORCE on, per
-unit
-  of jaw force, have room for them.
+  unit of jaw force, have room for them.
 - SECOND : second derivative of the separation along what is left free, in any positive measure; 0 of four
   contacts. The direction of that motion is from MOTION on (theta, x, y).
 - DOUBT : 1 where bounds did not decide that it exists.
@@ -33,8 +32,8 @@ A node is a configuration (theta, x, y, S) on a descent path.
 
 - STEP, STEP_ALONG : how long the next steps are in mm, of linear programs and along both faces.
 - COSINE, SINE : of theta.
-- TURNED, MOVED : how far in radians and in mm the path has turned and moved since it began, all of it
-counted.
+- TURNED, MOVED : how far in radians and in mm the path has turned and moved since it
+  began, all of it counted.
 """
 
 from __future__ import annotations
@@ -43,7 +42,8 @@ from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray
 
 KIND, SOURCE, FIRST_PEG, SECOND_PEG, ANGLE, PIVOT_X, PIVOT_Y = range(7)
 PAIR_LENGTH = 7
@@ -62,12 +62,12 @@ DEPTH = 128
 
 
 class Given(NamedTuple):
-    """What is pair_at by what.
+    """What is held, and by what.
 
     Parameters
     ----------
     pairs : (H, 7), see above.
-    curves, reals : (C, 7) and (C, 14) of the chord curves, see ``curves.columns``.
+    curves, reals : (C, 7) and (C, 14) of the chord curves, see ``base.tables``.
     rows : (N, 10) pieces of the boundary on which the pegs' centres lie.
     pegs : (4, 2) places of the pegs at jaw separation 0, in mm.
     right : (4,) 1 for pegs of the right jaw, which moves along x, 0 for others.
@@ -75,13 +75,13 @@ class Given(NamedTuple):
         one, touch.
     """
 
-    pairs: NDArray[np.float64]
-    curves: NDArray[np.int64]
-    reals: NDArray[np.float64]
-    rows: NDArray[np.float64]
-    pegs: NDArray[np.float64]
-    right: NDArray[np.int64]
-    parts: NDArray[np.int64]
+    pairs: Array
+    curves: IntArray
+    reals: Array
+    rows: Array
+    pegs: Array
+    right: IntArray
+    parts: IntArray
 
 
 class JawCells(NamedTuple):
@@ -95,7 +95,7 @@ class JawCells(NamedTuple):
     height : of its first peg in the pattern, in mm.
     """
 
-    cells: NDArray[np.float64]
+    cells: Array
     before: int
     height: float
 
@@ -118,16 +118,16 @@ class Obstacles(NamedTuple):
     most : the largest jaw separation, in mm.
     """
 
-    rows: NDArray[np.float64]
-    spans: NDArray[np.float64]
-    discs: NDArray[np.float64]
-    pegs: NDArray[np.float64]
-    right: NDArray[np.int64]
-    parts: NDArray[np.int64]
+    rows: Array
+    spans: Array
+    discs: Array
+    pegs: Array
+    right: IntArray
+    parts: IntArray
     size: float
     stop: float
-    hull: NDArray[np.float64]
-    half_plane: NDArray[np.float64]
+    hull: Array
+    half_plane: Array
     most: float = inf
 
 
@@ -144,13 +144,13 @@ class SelfMotions(NamedTuple):
     clear : (M, 4) clearances of these pegs in mm, -inf first where one of them hinders.
     """
 
-    configs: NDArray[np.float64]
-    counts: NDArray[np.int64]
-    closed: NDArray[np.int8]
-    across: NDArray[np.float64]
-    pegs: NDArray[np.int64]
-    pieces: NDArray[np.int64]
-    clear: NDArray[np.float64]
+    configs: Array
+    counts: IntArray
+    closed: ByteArray
+    across: Array
+    pegs: IntArray
+    pieces: IntArray
+    clear: Array
 
     @classmethod
     def room(cls, count: int, configs: int) -> SelfMotions:
@@ -184,11 +184,11 @@ class Manifolds(NamedTuple):
     across : (F, 2) direction in which the part gives way to both sides, NaN where it does not.
     """
 
-    rows: NDArray[np.float64]
-    configs: NDArray[np.float64]
-    begins: NDArray[np.int64]
-    closed: NDArray[np.int8]
-    across: NDArray[np.float64]
+    rows: Array
+    configs: Array
+    begins: IntArray
+    closed: ByteArray
+    across: Array
 
     @classmethod
     def room(cls, count: int, configs: int) -> Manifolds:
@@ -220,18 +220,18 @@ class DescentWorkSpace(NamedTuple):
     turn : (3,) an orientation in radians, its cosine and its sine; NaN before the first.
     """
 
-    near: NDArray[np.float64]
-    basis: NDArray[np.float64]
-    triangle: NDArray[np.float64]
-    step: NDArray[np.float64]
-    way: NDArray[np.float64]
-    trial: NDArray[np.float64]
-    members: NDArray[np.int64]
-    known: NDArray[np.float64]
-    lists: NDArray[np.int64]
-    counts: NDArray[np.int64]
-    places: NDArray[np.float64]
-    turn: NDArray[np.float64]
+    near: Array
+    basis: Array
+    triangle: Array
+    step: Array
+    way: Array
+    trial: Array
+    members: IntArray
+    known: Array
+    lists: IntArray
+    counts: IntArray
+    places: Array
+    turn: Array
 
     @classmethod
     def for_pieces(cls, count: int) -> DescentWorkSpace:

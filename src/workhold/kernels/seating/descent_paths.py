@@ -7,10 +7,7 @@ from __future__ import annotations
 
 from math import hypot, inf, pi, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, ByteArray, IntArray, compiled, inner
 from workhold.kernels.seating.antipodal_step import is_peg_free
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP
 from workhold.kernels.seating.columns import (
@@ -27,9 +24,6 @@ from workhold.kernels.seating.columns import (
     Obstacles,
 )
 from workhold.kernels.seating.gathering import first_of, lies_in
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # mm. How far from a pass a descent path begins, and how near it begins at least; and by which part of its
 # length the motion may have bent there.
@@ -148,7 +142,7 @@ def free_until(
     nodes: Array,
     begins: IntArray,
     shifts: Array,
-    others: NDArray[np.int8],
+    others: ByteArray,
     most: float,
     obstacles: Obstacles,
     known: Array,
@@ -189,11 +183,11 @@ def take_up(
     lasts: IntArray,
     nodes: Array,
     begins: IntArray,
-    how: NDArray[np.int8],
+    how: ByteArray,
     shifts: Array,
     ends: Array,
     lengths: Array,
-    left: NDArray[np.int8],
+    left: ByteArray,
 ) -> None:
     """Writes where paths off both sides of passes come without leaving what is known, and which are left.
 
@@ -307,8 +301,8 @@ def doubt_at(config: Array, doubtful: Array, count: int, size: float) -> int:
 @compiled
 def write_places(
     ends: Array,
-    how: NDArray[np.int8],
-    leaves: NDArray[np.int8],
+    how: ByteArray,
+    leaves: ByteArray,
     manifolds: Manifolds,
     lying: IntArray,
     falling: IntArray,

@@ -1,21 +1,17 @@
 """Four contacts: pairs of both jaws at one height, or a further peg of a pair's own jaw that touches.
 
-Both are roots of functions (``roots.APART``, ``roots.GAP``) whose first derivative is known at a place and
-whose second is bounded over a cell by the speed of the instant centres. A range is dropped where the function
-cannot vanish, solved where its derivative keeps its sign, and halved otherwise. What is too narrow to be
-halved is in doubt. (At a double root, which looks like two or none, nothing clamps.)
+Both are roots of functions, APART and GAP of ``two_contact_curves``. Their first derivative is known at a
+place, and their second is bounded over a cell by the speed of the instant centres. A range is dropped where
+the function cannot vanish, solved where its derivative keeps its sign, and halved otherwise. What is too
+narrow to be halved is in doubt. (At a double root, which looks like two or none, nothing clamps.)
 """
 
 from __future__ import annotations
 
 from math import cos, inf, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.cell_middles import COSINE, SINE, pair_in
 from workhold.kernels.seating.columns import (
     BOTTOM,
     CELL_LENGTH,
@@ -34,18 +30,20 @@ from workhold.kernels.seating.obstacles import length
 from workhold.kernels.seating.three_contacts import HALVES, MAYBE, NOTHING, write_root
 from workhold.kernels.seating.two_contact_curves import (
     APART,
+    COSINE,
     END,
     GAP,
+    SINE,
+    Function,
     PairState,
     gap,
     have_no_root,
     height,
     is_level,
     pair_at,
+    pair_in,
     root_between,
 )
-
-Array = NDArray[np.float64]
 
 # Ranges narrower than this, in radians, are not halved.
 NARROWEST = 1e-9
@@ -63,8 +61,7 @@ def verdict_on_two(p: Array, q: Array, low: float, high: float, given: Given) ->
     f = height(two, given, t[0], t[1], cosine, sine) - height(one, given, s[0], s[1], cosine, sine)
     gx, gy, speed = t[6] - s[6], t[7] - s[7], p[SPEED] + q[SPEED]
     apart = length(gx, gy)
-    # Two pegs in one place, and pairs that turn about one centre: the first cannot be, the second are loose
-    # throughout.
+    # Two pegs cannot be in one place, and pairs that turn about one centre are loose throughout.
     if (length(t[0] - s[0], t[1] - s[1]) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
         return NOTHING
     slope, bend = abs(cosine * gx + sine * gy), apart + speed * (1.0 + reach)
@@ -126,11 +123,11 @@ def roots_between(
     """
     one, two = given.pairs[int(p[PAIR])], given.pairs[int(q[PAIR])]
     vague = p[VAGUE] != 0.0 or q[VAGUE] != 0.0
-    piece, ox, oy, least = given.rows[0], 0.0, 0.0, ROUNDING
+    piece, ox, oy = given.rows[0], 0.0, 0.0
     if kind == GAP:
         piece, tail = given.rows[number], int(one[FIRST_PEG])
         ox, oy = given.pegs[peg, 0] - given.pegs[tail, 0], given.pegs[peg, 1] - given.pegs[tail, 1]
-    depth = 1
+    function, depth = Function(kind, one, two, piece, ox, oy, given), 1
     stack[0, 0], stack[0, 1] = max(p[LOW], q[LOW]), min(p[HIGH], q[HIGH])
     while depth > 0:
         depth -= 1
@@ -147,7 +144,7 @@ def roots_between(
             continue
         doubt = 0.0
         if verdict == MAYBE:
-            found, psi = root_between(kind, one, two, piece, ox, oy, given, low, high)
+            found, psi = root_between(function, low, high)
             if not found:
                 continue
         elif high - low > 2.0 * NARROWEST and depth < stack.shape[0] - 1:
@@ -156,7 +153,7 @@ def roots_between(
             depth += 2
             continue
         else:
-            if is_level(kind, one, two, piece, ox, oy, given, low, high, least):
+            if is_level(function, low, high, ROUNDING):
                 continue
             doubt = 1.0
         count = write_root(out, count, p[PAIR], peg, number if kind == GAP else int(q[PAIR]), 0.0, psi, doubt)
@@ -182,7 +179,7 @@ def two_pairs(
     given: Given,
     two_cells: Array,
     stack: Array,
-    reaching: NDArray[np.int64],
+    reaching: IntArray,
     out: Array,
 ) -> int:
     """Orientations at which a pair of the left jaw and one of the right have one height; how many, or -1.
@@ -197,8 +194,7 @@ def two_pairs(
     count = known = begun = 0
     for i in range(left.cells.shape[0]):
         write_in_pattern(i, left, p)
-        # The right cells that began before this one and reach into it are few; then come those that begin in
-        # it.
+        # Few right cells began before this one and reach into it; then come those that begin in it.
         kept = 0
         for k in range(known):
             if others[reaching[k], HIGH] >= p[LOW]:
@@ -239,12 +235,8 @@ def third_of_jaw(cells: Array, middles: Array, given: Given, discs: Array, stack
         cell, middle = cells[number], middles[number]
         pair = given.pairs[int(cell[PAIR])]
         tail, head = int(pair[FIRST_PEG]), int(pair[SECOND_PEG])
-        reach, s, at_low, at_high = (
-            (cell[HIGH] - cell[LOW]) / 2.0,
-            pair_in(middle),
-            pair_in(middle),
-            pair_in(middle),
-        )
+        reach, s = (cell[HIGH] - cell[LOW]) / 2.0, pair_in(middle)
+        at_low, at_high = s, s
         if cell[VAGUE] != 0.0:
             at_low, at_high = pair_at(pair, given, cell[LOW]), pair_at(pair, given, cell[HIGH])
         for third in range(given.pegs.shape[0]):

@@ -19,10 +19,7 @@ from __future__ import annotations
 
 from math import acos, atan2, cos, floor, hypot, inf, isnan, nan, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
 from workhold.kernels.seating.obstacles import (
@@ -34,8 +31,6 @@ from workhold.kernels.seating.obstacles import (
     turned_place,
 )
 from workhold.kernels.seating.two_contact_curves import gap
-
-Array = NDArray[np.float64]
 
 # Intervals of a jaw that are kept at one place, and crossings that are looked at.
 MOST_INTERVALS, MOST_CROSSINGS = 6, 256
@@ -184,11 +179,9 @@ def free_poses(
     return count
 
 
-# mm. A peg this near to a piece touches it, and one that is this deep in the part, as it may be where a way
-# down begins.
+# mm. A peg this near to a piece touches it, and one this deep in the part, as where a way down may begin.
 TOUCHED, ENTERED = 1e-4, 0.01
-# mm. So far a peg is taken off what it touches, so that the way along that is seen to be free as far as it
-# is.
+# mm. So far a peg is taken off what it touches, so that the way along that is seen to be free.
 LIFTED = 1e-6
 # Radians. Directions that pass an end by less meet it, and those that lead into what is touched by less go
 # along it; one range begins where another ends if no more is between: rounding.

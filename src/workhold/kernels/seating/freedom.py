@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from math import hypot, inf
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import END_SLACK
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.seating.columns import (
     CONTACTS,
     PEG,
@@ -28,9 +25,6 @@ from workhold.kernels.seating.obstacles import (
     turned_place,
 )
 from workhold.kernels.seating.two_contact_curves import gap
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # mm. Pegs this near touch, and may be in the part by as much.
 TOUCHES = 1e-7
@@ -117,10 +111,8 @@ def keep_free(motions: SelfMotions, around: Obstacles, seen: Array) -> int:
         if good > 0:
             for n in range(length):
                 for j in range(4):
-                    motions.configs[at + n, j], motions.clear[at + n, j] = (
-                        motions.configs[begin + n, j],
-                        motions.clear[begin + n, j],
-                    )
+                    motions.configs[at + n, j] = motions.configs[begin + n, j]
+                    motions.clear[at + n, j] = motions.clear[begin + n, j]
             for j in range(4):
                 motions.pegs[count, j], motions.pieces[count, j] = motions.pegs[w, j], motions.pieces[w, j]
             motions.across[count, 0], motions.across[count, 1] = motions.across[w, 0], motions.across[w, 1]
@@ -131,23 +123,21 @@ def keep_free(motions: SelfMotions, around: Obstacles, seen: Array) -> int:
 
 
 @inner
-def last_free(
-    ends: Array, touched: IntArray, around: Obstacles, trial: Array, seen: Array, clear: Array
-) -> None:
-    """Moves the first of two configurations (2, 4), which is free, straight towards the second, which is not.
+def last_free(ends: Array, touched: IntArray, around: Obstacles, seen: Array) -> None:
+    """Moves the first of two configurations, which is free, straight towards the second, which is not.
 
     It ends in the last free one.
 
     Parameters
     ----------
-    trial, seen, clear : (4,), (P + 1, 4) and (K,) work space.
+    ends, seen : (4, 4), the last two rows of it work space, and (P + 1, 4) work space.
     """
+    trial, clear = ends[2], ends[3]
     nothing_seen(seen)
     for attempt in range(EDGE_ROUNDS):
         last, end = 0, EDGE_PARTS
         while last + 1 < end:
-            # From the first where all of a step is looked at, in the middle where freedom surely ends but
-            # once.
+            # One after the other in the whole step, by halves where freedom surely ends but once.
             part = last + 1 if attempt == 0 else (last + end) // 2
             for k in range(4):
                 trial[k] = ends[0, k] + part / EDGE_PARTS * (ends[1, k] - ends[0, k])
@@ -225,37 +215,10 @@ def write_touching(config: Array, clear: Array, touched: IntArray, around: Obsta
     for peg in range(clear.shape[0]):
         if abs(clear[peg]) < TOUCHES:
             known = touched[peg] if peg < touched.shape[0] else -1
-            row[PEG + count], row[PIECE + count] = (
-                peg,
-                known if known >= 0 else touched_piece(config, peg, around),
-            )
+            row[PEG + count] = peg
+            row[PIECE + count] = known if known >= 0 else touched_piece(config, peg, around)
             count += 1
     row[CONTACTS] = count
-
-
-@inner
-def write_edge(
-    configs: Array,
-    inside: int,
-    outside: int,
-    begin: int,
-    end: int,
-    touched: IntArray,
-    around: Obstacles,
-    work: Array,
-    seen: Array,
-    clear: Array,
-    out: Array,
-) -> None:
-    """Writes the last free configuration (4,) between a free one and the next of its self-motion, if any."""
-    for j in range(4):
-        work[0, j] = configs[inside, j]
-    if begin <= outside < end:
-        for j in range(4):
-            work[1, j] = configs[outside, j]
-        last_free(work, touched, around, work[2], seen, clear)
-    for j in range(4):
-        out[j] = work[0, j]
 
 
 @inner
@@ -308,33 +271,23 @@ def write_along(
 ) -> None:
     """Writes the configurations along a run of a self-motion, and those of its ends."""
     at, length = out.begins[number], motions.counts[w]
-    end, is_closed = begin + length, motions.closed[w] != 0
-    if not is_closed:
-        write_edge(
-            motions.configs,
-            first,
-            first - 1,
-            begin,
-            end,
-            touched,
-            around,
-            work,
-            seen,
-            work[3],
-            out.configs[at],
-        )
-        at += 1
+    # What is closed has no ends.
+    end, ends = begin + length, 1 if motions.closed[w] == 0 else 0
     for i in range(count):
         for j in range(4):
-            out.configs[at, j] = motions.configs[begin + (first - begin + i) % length, j]
-        at += 1
-    if not is_closed:
-        last = first + count - 1
-        write_edge(
-            motions.configs, last, last + 1, begin, end, touched, around, work, seen, work[3], out.configs[at]
-        )
-        at += 1
-    out.begins[number + 1], out.closed[number] = at, 1 if is_closed and count == length else 0
+            out.configs[at + ends + i, j] = motions.configs[begin + (first - begin + i) % length, j]
+    for side in range(2 * ends):
+        inside, step = (first, -1) if side == 0 else (first + count - 1, 1)
+        for j in range(4):
+            work[0, j] = motions.configs[inside, j]
+        if begin <= inside + step < end:
+            for j in range(4):
+                work[1, j] = motions.configs[inside + step, j]
+            last_free(work, touched, around, seen)
+        for j in range(4):
+            out.configs[at + side * (count + 1), j] = work[0, j]
+    out.begins[number + 1] = at + count + 2 * ends
+    out.closed[number] = 1 if ends == 0 and count == length else 0
 
 
 @compiled

@@ -17,10 +17,7 @@ from __future__ import annotations
 
 from math import hypot, inf, pi
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.seating.candidates import add_fourths
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -35,10 +32,7 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.obstacles import length
 
-Array = NDArray[np.float64]
-
 FIRST, END, NUMBER, JAW, NAMES, SHIFT = 0, 1, 2, 3, 4, 8
-SUBSET_LENGTH = 11
 SUBSET, ORIGIN = CANDIDATE_LENGTH, CANDIDATE_LENGTH + 1
 GATHERED_LENGTH = CANDIDATE_LENGTH + 2
 
@@ -71,10 +65,8 @@ def keep_reached(out: Array, count: int, end: int, stop: float, widest: float) -
 
 @inner
 def add_rows(rows: Array, stop: float, widest: float, out: Array, count: int) -> int:
-    """Adds candidates of no subset at separations that are reached; returns the new count, or -1.
-
-    -1 means that they do not fit.
-    """
+    """Adds candidates of no subset at separations that are reached; returns the new count, -1 where they do
+    not fit."""
     if count + rows.shape[0] > out.shape[0]:
         return -1
     for n in range(rows.shape[0]):
@@ -127,8 +119,6 @@ def gathered(
                 count += 1
     return -1 if count < 0 else add_rows(after, stop, widest, out, count)
 
-
-IntArray = NDArray[np.int64]
 
 # mm. How much farther than to the next of its steps a place may be from a set in which it lies.
 BESIDE = 0.02

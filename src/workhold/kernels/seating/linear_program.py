@@ -7,13 +7,9 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.kernels.base.compiling import inner
 from workhold.kernels.seating.columns import DescentWorkSpace
 
-Array = NDArray[np.float64]
 Four = tuple[float, float, float, float]
 
 # mm. What is entered by less is not; how often what is met may change on one way out.
@@ -57,14 +53,8 @@ def shortest_out(count: int, work: DescentWorkSpace) -> None:
     A dual active-set method: from no step at all, to what is entered deepest, along the others that were met,
     of which one is let go that would pull (D. Goldfarb and A. Idnani, Mathematical Programming 27, 1983).
     """
-    near, basis, triangle, step, way, members = (
-        work.near,
-        work.basis,
-        work.triangle,
-        work.step,
-        work.way,
-        work.members,
-    )
+    near, basis, triangle, step, way = work.near, work.basis, work.triangle, work.step, work.way
+    members = work.members
     for j in range(4):
         step[j] = 0.0
     size, entered, pressed = 0, -1, 0.0

@@ -11,16 +11,12 @@ from __future__ import annotations
 
 from math import atan2, cos, hypot, inf, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import PARALLEL, SAME_CENTER
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, ByteArray, compiled, inner
 from workhold.kernels.base.distance import segment_distance
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y, is_shallow
 from workhold.kernels.seating.columns import Obstacles
 
-Array = NDArray[np.float64]
 # mm. Two pieces are as near when their distances agree to this: they end in one point.
 SAME_END = 1e-9
 Foot = tuple[float, float, float, float, float]
@@ -295,11 +291,11 @@ def covers_same(one: Array, other: Array, sign: float, rows: Array, points: Arra
 def cover_same(
     one: Array,
     others: Array,
-    turned_over: NDArray[np.int8],
+    turned_over: ByteArray,
     rows: Array,
     points: Array,
     most: float,
-    out: NDArray[np.int8],
+    out: ByteArray,
 ) -> None:
     """Writes whether a part covers in configurations (N, 4) the place that it covers in one (4,).
 

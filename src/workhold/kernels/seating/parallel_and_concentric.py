@@ -13,11 +13,11 @@ from __future__ import annotations
 from math import atan2, cos, hypot, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from workhold.conventions import END_SLACK, PARALLEL
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.conventions import END_SLACK
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
+from workhold.kernels.chord.intervals import are_parallel
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import MOTION, PEG, PIECE, SECOND, SEPARATION, Given
 from workhold.kernels.seating.obstacles import foot, length, on_piece, share_normals
@@ -32,15 +32,11 @@ from workhold.kernels.seating.slides import (
 )
 from workhold.kernels.seating.two_contact_curves import END
 
-Array = NDArray[np.float64]
-
 # Radians by which the orientation is changed to see on which side a chord goes on.
 STEP = 1e-6
-# No unit. Faces whose normals have less along x are level: no closing presses them. mm: forces this near are
-# in one line.
+# No unit: faces whose normals have less along x are level, not pressed. mm: forces this near are in line.
 LEVEL, SHORTEST = 1e-9, 1e-6
-# Columns of tangencies: line and arc, tail of the chord on the line, direction of the chord on the part in
-# radians.
+# Columns of tangencies: line and arc, the chord's tail on the line, its direction on the part in radians.
 ON_LINE, ON_ARC, TAIL_X, TAIL_Y, ALPHA = range(5)
 # Columns of what slides on three faces: number of the slide, third peg and its face, orientation, S,
 # parameters between which the first peg slides.
@@ -48,20 +44,12 @@ OF_SLIDE, THIRD, ON_THIRD, AT_THETA, AT_SEPARATION, AT_LOW, AT_HIGH = range(7)
 THREE_FACES = 7
 
 
-@inner
-def are_parallel(one: Array, two: Array) -> bool:
-    """Whether two lines are parallel."""
-    if one[IS_ARC] != 0.0 or two[IS_ARC] != 0.0:
-        return False
-    return abs(one[AXIS_X] * two[AXIS_Y] - one[AXIS_Y] * two[AXIS_X]) <= PARALLEL
-
-
 @compiled
 def tangent_chords(rows: Array, first: int, end: int, d: float, out: Array) -> int:
-    """Writes the tangencies (C, 5) of chords of length d from lines to arcs; returns their number, or -1.
-
-    Both are pieces from ``first`` to ``end``, and the arc's normal at the head is the line's. -1 means that
+    """Writes the tangencies (C, 5) of chords of length d from lines to arcs; returns their number, -1 where
     they do not fit.
+
+    Both are pieces from ``first`` to ``end``, and the arc's normal at the head is the line's.
     """
     count = 0
     for a in range(first, end):
@@ -114,7 +102,7 @@ def at_tangencies(
     """Writes the candidates of two pegs of one jaw at tangencies (C, 5) of their chord, with a third peg.
 
     The third peg, of the other jaw, is on a line parallel to the first's, or on the same. Returns their
-    number, or -1 where they do not fit.
+    number, -1 where they do not fit.
     """
     count = 0
     dx, dy = given.pegs[second, 0] - given.pegs[first, 0], given.pegs[second, 1] - given.pegs[first, 1]
@@ -185,18 +173,15 @@ def is_between(p: float, q: float, r: float, one: float, two: float, three: floa
 def on_three_faces(slides: Array, given: Given, stop: float, widest: float, out: Array) -> int:
     """Writes the self-motions on three parallel faces, the middle one against the outer two.
 
-    Two pegs of one jaw are on a slide (S, 7), and one of the other jaw is the third. Returns their number, or
-    -1 where they do not fit.
+    Two pegs of one jaw are on a slide (S, 7), and one of the other jaw is the third. Returns their number, -1
+    where they do not fit.
     """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
         first, second = int(slide[SLIDE_FIRST]), int(slide[SLIDE_SECOND])
-        one, mate, theta = (
-            given.rows[int(slide[SLIDE_ONE])],
-            given.rows[int(slide[SLIDE_TWO])],
-            -slide[SLIDE_PSI],
-        )
+        one, mate = given.rows[int(slide[SLIDE_ONE])], given.rows[int(slide[SLIDE_TWO])]
+        theta = -slide[SLIDE_PSI]
         c, d = cos(theta), sin(theta)
         # The face's direction and its outward normal in the frame of the pegs.
         tx, ty = c * one[AXIS_X] - d * one[AXIS_Y], d * one[AXIS_X] + c * one[AXIS_Y]
@@ -233,20 +218,14 @@ def on_three_faces(slides: Array, given: Given, stop: float, widest: float, out:
                 if count >= out.shape[0]:
                     return -1
                 row = out[count]
-                row[OF_SLIDE], row[THIRD], row[ON_THIRD], row[AT_THETA], row[AT_SEPARATION] = (
-                    n,
-                    k,
-                    number,
-                    theta,
-                    s,
-                )
+                row[OF_SLIDE], row[THIRD], row[ON_THIRD], row[AT_THETA] = n, k, number, theta
+                row[AT_SEPARATION] = s
                 row[AT_LOW], row[AT_HIGH] = low, high
                 count += 1
     return count
 
 
-# mm. Feet nearer to the centre than this have no direction from it; centres nearer to the line of two pegs
-# are on it.
+# mm. Feet nearer to the centre have no direction from it; centres nearer to the line of two pegs are on it.
 NEAREST = 1e-6
 
 
@@ -275,7 +254,7 @@ def add_about(
     """Writes the candidates of pegs on arcs of one centre, and on a piece whose normal goes through it.
 
     Peg p is on arc a and peg b on piece f, both of one jaw. Peg q of the other jaw is on arc c, which has the
-    centre of a, and the foot of the centre is on a side of f. Returns the new count, or -1 where they do not
+    centre of a, and the foot of the centre is on a side of f. Returns the new count, -1 where they do not
     fit.
     """
     arc, other, piece = given.rows[a], given.rows[c], given.rows[f]
@@ -299,12 +278,8 @@ def add_about(
         off = (1.0 - 2.0 * (way % 2)) * sqrt(square)
         # The centre, at separation 0 of the jaw of p and b, and the two pegs from it.
         x, y = given.pegs[p, 0] + (along * dx - off * dy) / d, given.pegs[p, 1] + (along * dy + off * dx) / d
-        px, py, bx, by = (
-            given.pegs[p, 0] - x,
-            given.pegs[p, 1] - y,
-            given.pegs[b, 0] - x,
-            given.pegs[b, 1] - y,
-        )
+        px, py = given.pegs[p, 0] - x, given.pegs[p, 1] - y
+        bx, by = given.pegs[b, 0] - x, given.pegs[b, 1] - y
         theta = atan2(by, bx) - atan2(ey, ex)
         qy = given.pegs[q, 1] - y
         level = other[RADIUS] * other[RADIUS] - qy * qy
@@ -323,8 +298,7 @@ def add_about(
         row[SEPARATION] = s
         row[PEG], row[PEG + 1], row[PEG + 2] = p, b, q
         row[PIECE], row[PIECE + 1], row[PIECE + 2] = a, f, c
-        # The centre stays as the part turns; to second order it moves across p, as b's piece goes away or
-        # comes nearer.
+        # The centre stays as the part turns; to second order it moves across p, as b's distance changes.
         pull = -bend * far / (bx * -py + by * px)
         row[SECOND] = moving * pull * (qx * -py + qy * px) / qx
         row[MOTION], row[MOTION + 1], row[MOTION + 2] = 1.0, turned_y, -turned_x
@@ -337,7 +311,7 @@ def about_one_center(given: Given, stop: float, widest: float, out: Array) -> in
     """Writes the candidates (N, 24) of pegs on two arcs of one centre and a piece with a normal through it.
 
     The arcs are those of pegs p and q of both jaws, the piece that of peg b of p's jaw. Returns their number,
-    or -1 where they do not fit.
+    -1 where they do not fit.
     """
     count = 0
     for p in range(given.pegs.shape[0]):

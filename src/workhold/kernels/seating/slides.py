@@ -11,13 +11,11 @@ from __future__ import annotations
 
 from math import acos, atan2, ceil, cos, hypot, nan, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import END_SLACK
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.chord.columns import FROM, TO
+from workhold.kernels.base.interval import TURN
+from workhold.kernels.base.tables import FROM, TO
 from workhold.kernels.seating.candidates import place_third, write_pair, write_pose
 from workhold.kernels.seating.columns import (
     ANGLE,
@@ -35,10 +33,7 @@ from workhold.kernels.seating.columns import (
     JawCells,
 )
 from workhold.kernels.seating.obstacles import on_piece
-from workhold.kernels.seating.two_contact_curves import TURN, height, is_on_its_pieces, pair_at
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from workhold.kernels.seating.two_contact_curves import height, is_on_its_pieces, pair_at
 
 SLIDE_FIRST, SLIDE_SECOND, SLIDE_ONE, SLIDE_TWO, SLIDE_LOW, SLIDE_HIGH, SLIDE_PSI = range(7)
 SLIDE_LENGTH = 7
@@ -138,7 +133,7 @@ def met_at(slide: Array, row: Array, middle: float, piece: Array, side: float, a
 def slides_squared(slides: Array, given: Given, out: Array) -> int:
     """Writes the candidates of slides (S, 7) with a third peg, of the other jaw, whose normal is parallel.
 
-    It is on an arc or, if the part goes round, on a line. Returns their number, or -1 where they do not fit.
+    It is on an arc or, if the part goes round, on a line. Returns their number, -1 where they do not fit.
     """
     count = 0
     for n in range(slides.shape[0]):
@@ -151,8 +146,7 @@ def slides_squared(slides: Array, given: Given, out: Array) -> int:
             above = given.pegs[third, 1] - given.pegs[first, 1]
             for number in range(given.parts[given.right[third], 0], given.parts[given.right[third], 1]):
                 piece = given.rows[number]
-                # The part moves on a circle of one radius while the peg stays on one of the other: their sum
-                # gives the curvature.
+                # The part moves on one circle, the peg on another: the sum of radii gives the curvature.
                 total = piece[SIGN] * piece[RADIUS] if piece[IS_ARC] != 0.0 else 0.0
                 total += row[SIGN] * row[RADIUS] if row[IS_ARC] != 0.0 else 0.0
                 ts = NONE
@@ -197,7 +191,7 @@ def slides_held(
 ) -> int:
     """Writes the candidates of slides (S, 7) with two contacts of the other jaw at their height.
 
-    Returns their number, or -1 where they do not fit.
+    Returns their number, -1 where they do not fit.
     """
     count = 0
     for n in range(slides.shape[0]):
@@ -257,7 +251,7 @@ def blocked(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Tw
 def slides_blocked(slides: Array, given: Given, out: Array) -> int:
     """Writes candidates of slides (S, 7) with a third contact, where a peg of their own jaw blocks them.
 
-    Their place is that at separation 0. Returns their number, or -1 where they do not fit.
+    Their place is that at separation 0. Returns their number, -1 where they do not fit.
     """
     count = 0
     for n in range(slides.shape[0]):

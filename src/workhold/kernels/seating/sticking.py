@@ -9,21 +9,15 @@ from __future__ import annotations
 
 from math import copysign, hypot, inf, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.kernels.base.arrays import eliminate
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Cubic = tuple[float, float, float, float]
 
 # No unit. Coefficients of a cubic, per the largest, that are none, and all of them; and how far, per 1 +
 # |root|, two complex roots are apart that are counted as one that is real.
 NO_COEFFICIENT, NO_CUBIC, APART = 1e-13, 1e-14, 1e-7
-# No unit. Forces are above minus the first, which on the jaw is no force; vectors below the second have no
-# direction.
+# No unit. Forces are above minus the first, none on the jaw; vectors below the second have no direction.
 PULLS, NO_FORCE = 1e-9, 1e-12
 # Determinants that are none. A share by which less friction is less, and how often it is halved.
 SINGULAR, LESS, HALVINGS = 1e-14, 1e-7, 60
@@ -110,16 +104,9 @@ def presses(
     for way in range(3):
         # Forces are square to two of the three components, of the two that are largest.
         m, n = (0 if way != 1 else 1), (1 if way == 0 else 2)
-        ai, aj, ak = (
-            straight[i, m] + fi * across[i, m],
-            straight[j, m] + fj * across[j, m],
-            straight[k, m] + fk * across[k, m],
-        )
-        bi, bj, bk = (
-            straight[i, n] + fi * across[i, n],
-            straight[j, n] + fj * across[j, n],
-            straight[k, n] + fk * across[k, n],
-        )
+        ai, bi = straight[i, m] + fi * across[i, m], straight[i, n] + fi * across[i, n]
+        aj, bj = straight[j, m] + fj * across[j, m], straight[j, n] + fj * across[j, n]
+        ak, bk = straight[k, m] + fk * across[k, m], straight[k, n] + fk * across[k, n]
         ci, cj, ck = aj * bk - ak * bj, ak * bi - ai * bk, ai * bj - aj * bi
         most = max(abs(ci), abs(cj), abs(ck))
         if most > size:
@@ -216,8 +203,7 @@ def balances(
 
     Some four of their six edges do then.
     """
-    # Edges no longer than about 1, whatever the friction: their determinant shows whether they are
-    # independent.
+    # Edges no longer than about 1, so that their determinant shows whether they are independent.
     along = 1.0 / max(1.0, friction)
     for left_out in range(4):
         # Of six edges, two are not used.

@@ -5,27 +5,20 @@ ray (``two_contact_curves.Ray``). Both bound the foot of P on a piece, the direc
 the height missed (``two_contact_curves.MISS``). A range is dropped where the foot is off the piece, the
 forces cannot all press, or the height cannot vanish; before that, whole pieces by the discs around them.
 
-By an enclosure of P' (``chord.center_speeds``) there is no root where the mean value theorem leaves none.
+By an enclosure of P' (``chord.stretches``) there is no root where the mean value theorem leaves none.
 There is one at most where the derivative keeps its sign; else the range is halved. What is too narrow to be
 halved is in doubt. Beside a tangency, where V is of no use, three values that hardly differ decide.
-
-The middle of each cell is computed once for all third pegs that may press against its pair
-(``cell_middles``).
 """
 
 from __future__ import annotations
 
 from math import asin, cos, inf, pi, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import Interval, idivide, imul
-from workhold.kernels.chord.columns import HEAD, TAIL
+from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.chord.stretches import center_motion
-from workhold.kernels.seating.cell_middles import COSINE, SINE, pair_in, ray_in, ray_over
 from workhold.kernels.seating.columns import (
     ANGLE,
     FIRST_PEG,
@@ -41,17 +34,21 @@ from workhold.kernels.seating.columns import (
 from workhold.kernels.seating.obstacles import Foot, angle_from_middle, foot, length, share_normals
 from workhold.kernels.seating.two_contact_curves import (
     AT_END,
+    COSINE,
     END,
     MISS,
+    SINE,
+    Function,
     PairState,
     Ray,
     foot_is_off,
     is_level,
     pair_at,
+    pair_in,
+    ray_in,
+    ray_over,
     root_between,
 )
-
-Array = NDArray[np.float64]
 
 # Ranges narrower than this, in radians, are not halved, but where values differ over them that are near 0 and
 # P moves by more than some mm, as beside a tangency; none is that is as narrow as the last.
@@ -193,8 +190,7 @@ def slope_over(
         tx, ty = -f[3], f[2]
         slope += (mx * tx + my * ty) * (cosine * ty - sine * tx)
         return (slope, (move + reach * (far + size) + spread) * (1.0 + 1e-6) + ROUNDING)
-    # foot' is the part of P' across the way from the centre, in proportion; that way turns by ``turn`` at
-    # most.
+    # foot' is the part of P' across the way from the centre, in proportion; the way turns by up to ``turn``.
     turn = asin(move / f[4])
     ex, ey = (f[0] - piece[X]) / piece[RADIUS], (f[1] - piece[Y]) / piece[RADIUS]
     ratio, worst = piece[RADIUS] / f[4], piece[RADIUS] / (f[4] - move)
@@ -227,10 +223,8 @@ def roots_of_cell(
     out: Array,
     count: int,
 ) -> int:
-    """Writes the balances of a cell with a third peg on a piece; returns the new count, or -1.
-
-    -1 means that they do not fit.
-    """
+    """Writes the balances of a cell with a third peg on a piece; returns the new count, -1 where they do not
+    fit."""
     pair, piece = given.pairs[int(cell[PAIR])], given.rows[number]
     k, tail, speed = int(pair[SOURCE]), int(pair[FIRST_PEG]), cell[SPEED]
     a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
@@ -238,7 +232,7 @@ def roots_of_cell(
     push = 1.0 if given.right[third] == 1 else -1.0
     above = given.pegs[third, 1] - given.pegs[tail, 1]
     s, ray, cosine, sine = pair_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
-    depth = 1
+    function, depth = Function(MISS, pair, pair, piece, above, side, given), 1
     stack[0, 0], stack[0, 1] = cell[LOW], cell[HIGH]
     while depth > 0:
         depth -= 1
@@ -266,7 +260,7 @@ def roots_of_cell(
             if abs(missed) > (abs(slope) + doubt) * reach + AT_END:
                 continue
             if abs(slope) > doubt:
-                found, psi = root_between(MISS, pair, pair, piece, above, side, given, low, high)
+                found, psi = root_between(function, low, high)
                 if found:
                     count = write_root(out, count, cell[PAIR], third, number, side, psi, 0.0)
                 if count < 0:
@@ -274,7 +268,7 @@ def roots_of_cell(
                 continue
         halved = reach > NARROWEST
         if not halved:
-            if verdict == MAYBE and is_level(MISS, pair, pair, piece, above, side, given, low, high, 0.0):
+            if verdict == MAYBE and is_level(function, low, high, 0.0):
                 continue
             halved = reach > LAST and speed * reach > STILL
         if halved and depth < stack.shape[0] - 1:

@@ -10,21 +10,14 @@ from __future__ import annotations
 
 from math import cos, hypot, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import SAME_CENTER
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import CONTACTS, DOUBT, PEG, PIECE, SEPARATION
 from workhold.kernels.seating.obstacles import on_piece
 from workhold.kernels.seating.turning import END, NONE, ROOT, judged, to_look_at
 from workhold.kernels.seating.wall_equilibria import LOCATOR, ON_WALL, TIP, Stood, heights
-
-__all__ = ["tip_in_pocket"]
-
-Array = NDArray[np.float64]
 
 Waves = tuple[float, float, float, float, float]
 # Of a sum of coefficients: rounding of the polynomial.
@@ -111,7 +104,7 @@ def off_piece(row: Array, ox: float, oy: float, dx: float, dy: float, along: flo
 
 @inner
 def write_pocketed(
-    stood: Stood, m: int, pocket: Array, pieces: NDArray[np.int64], found: Array, row: Array
+    stood: Stood, m: int, pocket: Array, pieces: IntArray, found: Array, row: Array
 ) -> tuple[float, float]:
     """Writes the candidate of a part with the tip in a pocket at an orientation that was found.
 
@@ -120,10 +113,8 @@ def write_pocketed(
     """
     piece, theta = int(stood.runs[m, 0]), found[0]
     c, s = cos(theta), sin(theta)
-    hx, hy = (
-        c * stood.hull[piece, 0] - s * stood.hull[piece, 1],
-        s * stood.hull[piece, 0] + c * stood.hull[piece, 1],
-    )
+    hx = c * stood.hull[piece, 0] - s * stood.hull[piece, 1]
+    hy = s * stood.hull[piece, 0] + c * stood.hull[piece, 1]
     ahead, up = c * pocket[0] - s * pocket[1], s * pocket[0] + c * pocket[1]
     x, y = stood.pegs[TIP, 0] - ahead, stood.pegs[TIP, 1] - up
     at = 0
@@ -139,7 +130,7 @@ def write_pocketed(
 
 @compiled
 def tip_in_pocket(
-    stood: Stood, pockets: Array, pieces: NDArray[np.int64], stack: Array, found: Array, out: Array
+    stood: Stood, pockets: Array, pieces: IntArray, stack: Array, found: Array, out: Array
 ) -> int:
     """Writes the candidates (N, 24) of a part on a wall with the tip in a pocket; returns their number or -1.
 

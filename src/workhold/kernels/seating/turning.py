@@ -25,10 +25,7 @@ from __future__ import annotations
 
 from math import asin, atan2, floor, hypot, pi
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import inner
+from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import (
     TURN,
@@ -45,28 +42,11 @@ from workhold.kernels.base.interval import (
     outward,
 )
 
-__all__ = [
-    "AWAY",
-    "HALVES",
-    "NONE",
-    "ROOT",
-    "SHAPE_LENGTH",
-    "Contact",
-    "contact",
-    "has_none",
-    "judged",
-    "meet",
-    "to_look_at",
-    "write_shape",
-]
-
-# Radians. Ranges narrower than the first are not halved, and a root known to less than the second is in
-# doubt.
+# Radians. Ranges narrower than the first are not halved; a root known less well than the second is in doubt.
 NARROWEST, KNOWN = 2e-8, 1e-8
 # Ranges that are looked at of one function; what is left then is in doubt.
 MOST_RANGES = 20000
-# Verdicts on a range: to be left, to be looked at in halves or as far as it is left, a root, or one
-# in doubt.
+# Verdicts on a range: to be left, to be looked at in halves or as far as it is left, a root, one in doubt.
 NONE, HALVES, REST, ROOT, IN_DOUBT = range(5)
 
 
@@ -101,7 +81,7 @@ def judged(turn: Interval, middle: float, value: Interval, slope: Interval) -> t
 
 
 @inner
-def to_look_at(verdict: int, turn: Interval, looked: int, stack: NDArray[np.float64], depth: int) -> int:
+def to_look_at(verdict: int, turn: Interval, looked: int, stack: Array, depth: int) -> int:
     """Writes what is left of a range after others.
 
     Returns the new depth, or -1 where it is neither halved nor cut.
@@ -117,7 +97,6 @@ def to_look_at(verdict: int, turn: Interval, looked: int, stack: NDArray[np.floa
     return depth + 2
 
 
-Array = NDArray[np.float64]
 # Columns of a shape, a piece seen from the point about which the part turns: curvature in 1 / mm; the arc's
 # centre by its distance and direction; what N is besides the centre's part, the distance of a line; direction
 # of the normal at the middle, and how far normals turn to either side of it; middle and half extent along a

@@ -23,14 +23,12 @@ GAP : distance of another peg of the same jaw from a piece. Zero where it touche
 from __future__ import annotations
 
 from math import cos, floor, hypot, inf, pi, sin, sqrt
+from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, compiled, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.chord.coincidences import NONE
-from workhold.kernels.chord.columns import (
+from workhold.kernels.base.interval import TURN
+from workhold.kernels.base.tables import (
     BACKWARD_ERROR,
     COINCIDENCE,
     END_STRETCH,
@@ -41,6 +39,7 @@ from workhold.kernels.chord.columns import (
     LENGTH,
     TAIL,
 )
+from workhold.kernels.chord.coincidences import NONE
 from workhold.kernels.chord.evaluation import chord_state
 from workhold.kernels.chord.stretches import PARTS, STRETCH_HIGH
 from workhold.kernels.chord.stretches import SPEED as STRETCH_SPEED
@@ -62,12 +61,8 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.obstacles import angle_from_middle, foot, length, on_piece
 
-__all__ = ["Ray", "foot_is_off", "ray_of"]
-
-Array = NDArray[np.float64]
 PairState = tuple[float, float, float, float, float, float, float, float, float, float]
 
-TURN = 2.0 * pi
 # Cells into which a turn about a pocket is cut.
 POCKET_CELLS = 16
 # How far in mm a contact may lie past the end of its piece: rounding.
@@ -78,11 +73,8 @@ ROUNDING = 1e-9
 
 @inner
 def pair_at(pair: Array, given: Given, psi: float) -> PairState:
-    """A pair at an orientation: places, outward normals and instant centre.
-
-    They are the place of its first peg on the part, the normals of both contacts, the centre, and the place
-    of the second peg.
-    """
+    """A pair at an orientation: place of its first peg on the part, outward normals, instant centre, and
+    place of its second peg."""
     if pair[KIND] == 1.0:
         x, y = pair[PIVOT_X], pair[PIVOT_Y]
         return (x, y, 0.0, 0.0, 0.0, 0.0, x, y, x, y)
@@ -109,19 +101,15 @@ def is_on_its_pieces(pair: Array, given: Given, psi: float, x: float, y: float) 
 
 @inner
 def height(pair: Array, given: Given, x: float, y: float, cosine: float, sine: float) -> float:
-    """The height of the first peg's place on the part less the peg's own.
-
-    It is one number for all pegs that hold one part.
-    """
+    """The height of the first peg's place on the part less the peg's own, one for all pegs that hold a
+    part."""
     return cosine * y - sine * x - given.pegs[int(pair[FIRST_PEG]), 1]
 
 
 @inner
 def write_cell(cell: Array, number: int, low: float, high: float, speed: float, given: Given) -> None:
-    """Writes the cell of a pair over [low, high], with bounds of its height.
-
-    The height's derivatives are h' = -x . P and h'' = -y . P - x . P'.
-    """
+    """Writes the cell of a pair over [low, high], with bounds of its height h: h' = -x . P and h'' = -y . P -
+    x . P'."""
     pair = given.pairs[number]
     middle, reach = (low + high) / 2.0, (high - low) / 2.0
     cosine, sine = cos(middle), sin(middle)
@@ -158,9 +146,8 @@ def make_cells(given: Given, stretches: Array, cells: Array) -> int:
             for k in range(POCKET_CELLS):
                 if count >= cells.shape[0]:
                     return -1
-                write_cell(
-                    cells[count], number, k * TURN / POCKET_CELLS, (k + 1) * TURN / POCKET_CELLS, 0.0, given
-                )
+                low, high = k * TURN / POCKET_CELLS, (k + 1) * TURN / POCKET_CELLS
+                write_cell(cells[count], number, low, high, 0.0, given)
                 count += 1
             continue
         curve = int(pair[SOURCE])
@@ -191,9 +178,7 @@ OF_DIRECTION, OF_BOUND = 1e-15, 1e-9
 
 @inner
 def ray_of(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach: float) -> Ray:
-    """The ray over a range in whose middle the pair is ``s``.
-
-    Its distances are 0 and inf where nothing is known.
+    """The ray over a range in whose middle the pair is ``s``, from 0 to inf where nothing is known.
 
     Parameters
     ----------
@@ -230,6 +215,51 @@ def ray_of(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach: 
     return (max(least, 0.0), most, sign * s[2], sign * s[3], most * reach + off, turn_a, turn_b)
 
 
+# Columns of the middle of a cell, computed once for all that may press against its pair: cosine and sine of
+# the orientation, the pair there, and the ray, which stands for nothing in a pocket or beside a tangency.
+COSINE, SINE, HELD, RAY = 0, 1, 2, 12
+MIDDLE_LENGTH = 19
+
+
+@inner
+def ray_over(pair: Array, given: Given, s: PairState, speed: float, reach: float) -> Ray:
+    """The ray of a pair of two contacts; see ``ray_of``."""
+    k = int(pair[SOURCE])
+    a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
+    return ray_of(given.reals[k], a, b, s, speed, reach)
+
+
+@compiled
+def write_middles(cells: Array, given: Given, out: Array) -> None:
+    """Writes the middles (C, 19) of cells (C, 7)."""
+    for number in range(cells.shape[0]):
+        cell, row = cells[number], out[number]
+        pair = given.pairs[int(cell[PAIR])]
+        psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
+        s, ray = pair_at(pair, given, psi), (0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
+        if pair[KIND] == 0.0 and cell[VAGUE] == 0.0:
+            ray = ray_over(pair, given, s, cell[SPEED], reach)
+        row[COSINE], row[SINE] = cos(psi), sin(psi)
+        for k in range(10):
+            row[HELD + k] = s[k]
+        for k in range(7):
+            row[RAY + k] = ray[k]
+
+
+@inner
+def pair_in(middle: Array) -> PairState:
+    """The pair in the middle of a cell."""
+    h = middle[HELD:RAY]
+    return (h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8], h[9])
+
+
+@inner
+def ray_in(middle: Array) -> Ray:
+    """The ray over a cell."""
+    r = middle[RAY:]
+    return (r[0], r[1], r[2], r[3], r[4], r[5], r[6])
+
+
 @inner
 def foot_is_off(
     piece: Array,
@@ -242,10 +272,8 @@ def foot_is_off(
     ray: Ray,
     reach: float,
 ) -> bool:
-    """Whether over a range the foot of P is off a piece, off the third peg's level, or without balance.
-
-    There is no balance where the force there cannot balance the other two; see ``three_contacts``.
-    """
+    """Whether over a range the foot of P is off a piece or off the third peg's level, or a force there
+    cannot balance the other two."""
     least, most, rx, ry, drift, turn_a, turn_b = ray
     if least <= 0.0:
         return False
@@ -289,19 +317,31 @@ AT_END = 1e-10
 MOST_HALVINGS = 80
 
 
-@inner
-def value(
-    kind: float, one: Array, two: Array, piece: Array, first: float, second: float, given: Given, psi: float
-) -> float:
-    """A function at an orientation.
+class Function(NamedTuple):
+    """A function of the orientation whose roots are sought.
 
     Parameters
     ----------
+    kind : MISS, APART or GAP.
     one, two : pairs; the second is asked for APART only.
     piece : row; asked for MISS and GAP.
     first, second : for MISS the height of the third peg above the first, and the side of the foot. For GAP
         the other peg's place in the closing frame, from the first.
     """
+
+    kind: float
+    one: Array
+    two: Array
+    piece: Array
+    first: float
+    second: float
+    given: Given
+
+
+@inner
+def value(function: Function, psi: float) -> float:
+    """A function at an orientation."""
+    kind, one, two, piece, first, second, given = function
     s = pair_at(one, given, psi)
     cosine, sine = cos(psi), sin(psi)
     if kind == APART:
@@ -329,25 +369,15 @@ def have_no_root(f_low: float, f_high: float) -> bool:
 
 
 @inner
-def root_between(
-    kind: float,
-    one: Array,
-    two: Array,
-    piece: Array,
-    first: float,
-    second: float,
-    given: Given,
-    low: float,
-    high: float,
-) -> tuple[bool, float]:
+def root_between(function: Function, low: float, high: float) -> tuple[bool, float]:
     """Whether a function has different signs at two orientations, or is 0 at one, and a root between them."""
-    f_low = value(kind, one, two, piece, first, second, given, low)
-    f_high = value(kind, one, two, piece, first, second, given, high)
+    f_low = value(function, low)
+    f_high = value(function, high)
     if f_low * f_high > 0.0:
         return (not have_no_root(f_low, f_high), low if abs(f_low) < abs(f_high) else high)
     psi = (low + high) / 2.0
     for step in range(MOST_HALVINGS):
-        f = value(kind, one, two, piece, first, second, given, psi)
+        f = value(function, psi)
         if (f > 0.0) == (f_high > 0.0):
             high, f_high = psi, f
         else:
@@ -362,20 +392,9 @@ def root_between(
 
 
 @inner
-def is_level(
-    kind: float,
-    one: Array,
-    two: Array,
-    piece: Array,
-    first: float,
-    second: float,
-    given: Given,
-    low: float,
-    high: float,
-    least: float,
-) -> bool:
+def is_level(function: Function, low: float, high: float, least: float) -> bool:
     """Whether three values over a range too narrow to cut are far from 0 by more than they differ."""
-    f = value(kind, one, two, piece, first, second, given, (low + high) / 2.0)
-    f_low = value(kind, one, two, piece, first, second, given, low)
-    f_high = value(kind, one, two, piece, first, second, given, high)
+    f = value(function, (low + high) / 2.0)
+    f_low = value(function, low)
+    f_high = value(function, high)
     return abs(f) > least and abs(f) > 2.0 * max(abs(f - f_low), abs(f - f_high))

@@ -12,11 +12,8 @@ from __future__ import annotations
 from math import ceil, cos, pi, sin
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from workhold.conventions import SAME_CENTER
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.base.interval import Interval, imul, ineg, iscale, ishift, isub
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import DOUBT, MOTION, PEG, PIECE, SECOND, SEPARATION
@@ -35,12 +32,10 @@ from workhold.kernels.seating.turning import (
     write_shape,
 )
 
-Array = NDArray[np.float64]
-
 # Radians. Ranges into which a run is cut first.
 CELL = 0.3
-# The pegs of a pattern on a fence, and the first and second contact with the wall.
-LOCATOR, TIP, ON_WALL, ON_WALL_TOO = range(4)
+# The pegs of a pattern on a fence, and the contact with the wall.
+LOCATOR, TIP, ON_WALL = range(3)
 # Whether a balance is possible, whether S is smooth throughout, S' and S''.
 Rate = tuple[bool, bool, Interval, Interval]
 NOWHERE = (False, False, NOTHING, NOTHING)
@@ -62,7 +57,7 @@ class Stood(NamedTuple):
 
     rows: Array
     discs: Array
-    parts: NDArray[np.int64]
+    parts: IntArray
     hull: Array
     runs: Array
     pegs: Array
@@ -102,8 +97,7 @@ def both(
         one = contact(locator, turn, level, NOTHING, NOTHING, way, within)
         return (one, contact(tip, turn, (high[2], high[2]), NOTHING, NOTHING, 1.0, within))
     one = contact(locator, ishift(pi / 2.0, turn), level, NOTHING, NOTHING, way, within)
-    # The part is as much higher as the locator's contact is lower; a quarter turn makes x of that what was
-    # -y.
+    # The part is higher as the locator's contact is lower; a quarter turn makes x of what was -y.
     two = contact(tip, turn, ishift(high[2], ineg(one[2])), ineg(one[3]), ineg(one[4]), 1.0, within)
     return (one, two if one[0] else one)
 
@@ -182,9 +176,7 @@ def write_balance(
 ) -> int:
     """Writes the candidate of three contacts at an orientation, if they lie on their pieces.
 
-    Returns the new count.
-
-    It is -1 where the candidate does not fit.
+    Returns the new count, -1 where it does not fit.
     """
     piece, upright = int(stood.runs[m, 0]), stood.half_plane[0] != 0.0
     high = heights(stood, piece)
@@ -194,10 +186,8 @@ def write_balance(
     if count >= out.shape[0]:
         return -1
     c, s = cos(theta), sin(theta)
-    hx, hy = (
-        c * stood.hull[piece, 0] - s * stood.hull[piece, 1],
-        s * stood.hull[piece, 0] + c * stood.hull[piece, 1],
-    )
+    hx = c * stood.hull[piece, 0] - s * stood.hull[piece, 1]
+    hy = s * stood.hull[piece, 0] + c * stood.hull[piece, 1]
     place, speed = (one[2][0] + one[2][1]) / 2.0, (one[3][0] + one[3][1]) / 2.0
     # The centre of the piece, and how it moves as the part turns.
     if upright:

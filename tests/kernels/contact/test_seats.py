@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
-from workhold.kernels.contact.pair_bounds import (
+from workhold.kernels.contact.seats import (
     AMPLIFICATION,
     BOUND_LENGTH,
     FACE,

@@ -1,5 +1,7 @@
-"""The tables that kernels hand each other: chord curves, sliding pairs, and the pieces that curves are cut
-to.
+"""What every kernel of a search is given, as named records, and the columns of the tables among them.
+
+Kernels work in the frame in which the moving carrier of the toolkit slides along +x (``contact.frame``). Pegs
+of the carrier that stands still come first.
 
 Whole numbers of a curve (C, 7), the same for a sliding pair:
 
@@ -45,8 +47,75 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
+from workhold.kernels.base.compiling import Array, IntArray
+
+
+class Features(NamedTuple):
+    """Contact features; the pegs of each carrier touch a range of them, of their own radius.
+
+    Parameters
+    ----------
+    loose : (F, 10) rows with ends moved out by a hair, to search.
+    rows : (F, 12) rows with the slack of their ends, to check.
+    standing, moving : first and past-the-last number of those that pegs of each carrier touch; ranges are the
+        same or apart.
+    """
+
+    loose: Array
+    rows: Array
+    standing: tuple[int, int]
+    moving: tuple[int, int]
+
+
+class Lattice(NamedTuple):
+    """The lattice of holes, common to both carriers, in mm; ``row_offset`` is the height of the moving
+    carrier's row 0 above that of the standing one."""
+
+    pitch_x: float
+    pitch_y: float
+    row_offset: float
+
+
+class Limits(NamedTuple):
+    """What bounds a fixture.
+
+    Parameters
+    ----------
+    gap : smallest distance in mm along x from a standing to a moving peg, -inf where there is no such rule.
+    contact_margin : smallest distance in mm from a contact to the end of its feature.
+    wrench_length : L in mm.
+    most_column_steps : largest column difference between pegs of one carrier.
+    clamping : 1 when the moving carrier clamps by pushing towards -x, -1 when it clamps by pushing towards
+        +x.
+    least_margin : smallest closure margin of interest.
+    most_listed : how many contacts a block lists when it counts them.
+    pairing : 1 when the peg that moves is one of two clamps: nothing need close yet, but the standing pegs
+        alone must fix the pose, and the clamp must push. Else 0.
+    """
+
+    gap: float
+    contact_margin: float
+    wrench_length: float
+    most_column_steps: float
+    clamping: float
+    least_margin: float
+    most_listed: float
+    pairing: float = 0.0
+
+
+class Setting(NamedTuple):
+    """What is common to all records of a search.
+
+    It holds lattice and limits, radii of the standing and the moving pegs in mm, and how far in mm the
+    features' rows may be from the drawing.
+    """
+
+    lattice: Lattice
+    limits: Limits
+    standing_radius: float
+    moving_radius: float
+    backward_error: float
+
 
 TAIL, HEAD, COLUMN_STEP, ROW_STEP, CENTER, FIRST_STRETCH, END_STRETCH = range(7)
 CURVE_INTEGERS = 7
@@ -61,36 +130,26 @@ class Curves(NamedTuple):
     """Chord curves: whole numbers (C, 7), reals (C, 14), and their stretches (S, 13), see
     ``chord.stretches``."""
 
-    integers: NDArray[np.int64]
-    reals: NDArray[np.float64]
-    stretches: NDArray[np.float64]
+    integers: IntArray
+    reals: Array
+    stretches: Array
 
 
 class SlidingPairs(NamedTuple):
     """Sliding pairs: whole numbers (P, 7) and reals (P, 5)."""
 
-    integers: NDArray[np.int64]
-    reals: NDArray[np.float64]
+    integers: IntArray
+    reals: Array
 
 
-(
-    LOW,
-    HIGH,
-    VALUE_LOW,
-    SLOPE_LOW,
-    VALUE_HIGH,
-    SLOPE_HIGH,
-    SECOND_DERIVATIVE_LOW,
-    SECOND_DERIVATIVE_HIGH,
-    CURVE,
-) = range(9)
+LOW, HIGH, VALUE_LOW, SLOPE_LOW, VALUE_HIGH, SLOPE_HIGH = range(6)
+SECOND_DERIVATIVE_LOW, SECOND_DERIVATIVE_HIGH, CURVE = range(6, 9)
 VALUE_ERROR_LOW, SLOPE_ERROR_LOW, VALUE_ERROR_HIGH, SLOPE_ERROR_HIGH = range(9, 13)
 VALUE_LEAST, VALUE_MOST, X_STANDING, X_MOVING = range(13, 17)
 RIGHTWARD_LOW, RIGHTWARD_HIGH, LEFTWARD_LOW, LEFTWARD_HIGH, ACROSS_LEAST, ACROSS_MOST, STEADY = range(17, 24)
 PIECE_LENGTH = 24
 
-EDGE_VALUE, EDGE_SLOPE, EDGE_VALUE_ERROR, EDGE_SLOPE_ERROR, EDGE_X, EDGE_CENTER, EDGE_ARM, EDGE_ERROR = range(
-    8
-)
+EDGE_VALUE, EDGE_SLOPE, EDGE_VALUE_ERROR, EDGE_SLOPE_ERROR = range(4)
+EDGE_X, EDGE_CENTER, EDGE_ARM, EDGE_ERROR = range(4, 8)
 TAIL_NORMAL_X, TAIL_NORMAL_Y, HEAD_NORMAL_X, HEAD_NORMAL_Y, EDGE_ACROSS, EDGE_CENTER_ERROR = range(8, 14)
 EDGE_LENGTH = 14

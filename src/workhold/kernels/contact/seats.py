@@ -1,28 +1,69 @@
-r"""What no pair of clamps at a seat exceeds: clamp freedom and closure margin, and the least amplification.
+r"""Seats of three locators: numbers by which they are grouped, and what no pair of clamps at one exceeds.
 
-Let the locators carry b_1 f_1 + b_2 f_2, each entry known to within e. Where a force is larger, no condition
-that a locator be pressed is stricter. So the interval of f_2 / f_1 for b + e holds the true one, and that for
-b - e lies in it. At a ratio t the share of a peg of f_1 + f_2 is (b_1 + b_2 t) / (1 + t), monotone in t. So
-over an interval no peg carries less than at one of its ends.
+Contacts of three locators are grouped by seat, whatever the direction of the clamp. The holes of the locators
+become one number of 64 bits: that two triples agree only puts them together. The place of the part beside the
+holes becomes one number, too.
+
+Bounds of pairs: let the locators carry b_1 f_1 + b_2 f_2, each entry known to within e. Where a force is
+larger, no condition that a locator be pressed is stricter. So the interval of f_2 / f_1 for b + e holds the
+true one, and that for b - e lies in it. At a ratio t the share of a peg of f_1 + f_2 is
+(b_1 + b_2 t) / (1 + t), monotone in t. So over an interval no peg carries less than at one of its ends.
 """
 
 from __future__ import annotations
 
-from math import atan, cos, degrees, inf, sin
+from math import atan, cos, degrees, inf, pi, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
-from workhold.kernels.base.compiling import compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, compiled, inner
 from workhold.kernels.contact.clamp_pairs import closure_margin
+from workhold.kernels.contact.record import COLUMNS, PSI, ROWS, TAIL_X, TAIL_Y
 
-__all__ = ["BOUND_LENGTH", "FORCE_LENGTH", "bounds_of_pairs"]
+# What mixes two coordinates to one number.
+ASIDE = 0.7548776662
+# Odd numbers that mix the holes of three locators; of products the last 64 bits count.
+COLUMN_STEP = -7046029254386353131
+FIRST, SECOND, THIRD = -4658895280553007687, -7723592293110705685, -2960836687051489901
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
-# Columns of a clamp's forces per unit of its own: three locators', that on its face, and how far they may be
-# off.
+@compiled
+def numbers_of_seats(
+    records: Array, turn: Array, pitch: Array, start: float, holes: IntArray, theta: Array, places: Array
+) -> None:
+    """What distinguishes the seats of contacts.
+
+    Parameters
+    ----------
+    records : (N, 19), see ``kernels.contact.record``.
+    turn : (3,) cosine, sine and angle in radians by which the frame is turned on the plate.
+    pitch : (2,) of the holes in mm.
+    start : the angle in radians from which orientations are counted.
+    holes : (N,) receives a number for the holes of the locators, the same wherever they are on the plate.
+    theta : (N,) receives orientations from ``start`` on.
+    places : (N,) receives a number for the place of the part beside the lowest holes in mm.
+    """
+    cosine, sine = int(turn[0]), int(turn[1])
+    for n in range(records.shape[0]):
+        record = records[n]
+        a, b, c = int(record[COLUMNS]), int(record[COLUMNS + 1]), int(record[COLUMNS + 2])
+        d, e, f = int(record[ROWS]), int(record[ROWS + 1]), int(record[ROWS + 2])
+        a, d = cosine * a - sine * d, sine * a + cosine * d
+        b, e = cosine * b - sine * e, sine * b + cosine * e
+        c, f = cosine * c - sine * f, sine * c + cosine * f
+        column, row = min(a, min(b, c)), min(d, min(e, f))
+        a, b, c, d, e, f = a - column, b - column, c - column, d - row, e - row, f - row
+        one, two, three = a * COLUMN_STEP + d, b * COLUMN_STEP + e, c * COLUMN_STEP + f
+        low, high = min(one, two), max(one, two)
+        low, middle = min(low, three), max(low, three)
+        middle, high = min(middle, high), max(middle, high)
+        holes[n] = low * FIRST + middle * SECOND + high * THIRD
+        angle = turn[2] - record[PSI]
+        x = cos(angle) * record[TAIL_X] - sin(angle) * record[TAIL_Y]
+        y = sin(angle) * record[TAIL_X] + cos(angle) * record[TAIL_Y]
+        places[n] = a * pitch[0] - x + ASIDE * (d * pitch[1] - y)
+        theta[n] = (angle - start) % (2.0 * pi)
+
+
+# Columns of forces per unit of a clamp's own: three locators', that on its face, how far they may be off.
 LOCATOR, FACE, OFF = 0, 3, 4
 FORCE_LENGTH = 5
 # Columns of what bounds the pairs of a seat.
